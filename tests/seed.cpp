@@ -1,13 +1,8 @@
 // The seed of the day, and where failures are written. A listener prints the seed once at the start
 // of a test program and beside each failure.
-#include "tests/core/base/seed.h"
+#include "tests/lab/test.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <stdexcept>
 
 namespace farcull {
 namespace {

@@ -1,18 +1,11 @@
 // The canvas on GL with one call lost or one allocation failed at a time: what its passes answer is
 // as without the fault, or there is an error; and the next use of the same canvas is right.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <filesystem>
-#include <fstream>
-#include <optional>
 #include <regex>
-#include <sstream>
 
 #include "core/gl/canvas/canvas.h"
 #include "offsets/offsets.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/faults/outcomes.h"
+#include "tests/faults/gl_calls.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {
@@ -119,8 +112,7 @@ class CanvasFaults : public testing::TestWithParam<Setting> {
     other->run(cells.first(true));
   }
   static bool mixed(const std::vector<std::uint8_t>& seen) {
-    return std::count(seen.begin(), seen.end(), 1) > 0 &&
-           std::count(seen.begin(), seen.end(), 0) > 0;
+    return std::ranges::count(seen, 1) > 0 && std::ranges::count(seen, 0) > 0;
   }
 };
 
@@ -205,35 +197,21 @@ TEST(CanvasSampleFaults, EveryLostCallIsNoticed) {
 }
 
 // Functions that neither change GL's state or data nor bring data back.
-const std::set<std::string> kQuestions = {"glCheckFramebufferStatus",
-                                          "glGetBufferParameteri64v",
-                                          "glGetError",
-                                          "glGetFloatv",
-                                          "glGetFramebufferParameteriv",
-                                          "glGetGraphicsResetStatus",
-                                          "glGetGraphicsResetStatusKHR",
-                                          "glGetInteger64v",
-                                          "glGetIntegeri_v",
-                                          "glGetIntegerv",
-                                          "glGetProgramInfoLog",
-                                          "glGetProgramInterfaceiv",
-                                          "glGetProgramResourceiv",
-                                          "glGetProgramiv",
-                                          "glGetQueryiv",
-                                          "glGetShaderInfoLog",
-                                          "glGetShaderiv",
-                                          "glGetString",
-                                          "glGetTexParameteriv",
-                                          "glGetUniformLocation",
-                                          "glIsEnabled"};
+const std::vector<std::string> kQuestions = listed(
+    "glCheckFramebufferStatus,glGetBufferParameteri64v,glGetError,glGetFloatv,"
+    "glGetFramebufferParameteriv,glGetGraphicsResetStatus,glGetGraphicsResetStatusKHR,"
+    "glGetInteger64v,glGetIntegeri_v,glGetIntegerv,glGetProgramInfoLog,"
+    "glGetProgramInterfaceiv,glGetProgramResourceiv,glGetProgramiv,glGetQueryiv,"
+    "glGetShaderInfoLog,glGetShaderiv,glGetString,glGetTexParameteriv,glGetUniformLocation,"
+    "glIsEnabled");
 
 std::set<std::string> unlisted_calls(const std::string& text) {
   const std::set<std::string> hooked = lab::hooked_gl_calls();
   static const std::regex call("\\bgl[A-Z][A-Za-z0-9_]*");
   std::set<std::string> out;
-  for (std::sregex_iterator i(text.begin(), text.end(), call), end; i != end; ++i) {
-    if (!hooked.contains(i->str()) && !kQuestions.contains(i->str())) out.insert(i->str());
-  }
+  for (std::sregex_iterator i(text.begin(), text.end(), call), end; i != end; ++i)
+    if (!hooked.contains(i->str()) && std::ranges::find(kQuestions, i->str()) == kQuestions.end())
+      out.insert(i->str());
   return out;
 }
 
@@ -245,9 +223,7 @@ TEST(CanvasFaultList, HasEveryCallOfTheSources) {
     const std::string name = entry.path().string();
     if (!entry.is_regular_file() || !std::regex_match(name, ours)) continue;
     ++files;
-    std::stringstream text;
-    text << std::ifstream(entry.path()).rdbuf();
-    for (const std::string& call : unlisted_calls(text.str()))
+    for (const std::string& call : unlisted_calls(read_text(name)))
       ADD_FAILURE() << name << " calls " << call << ", which tests/faults/gl_calls.h does not drop";
   }
   EXPECT_GE(files, 12);
@@ -280,10 +256,9 @@ TEST(CanvasFaultList, ShadersStayInsideTheirBuffers) {
     if (!name.starts_with("pair_") && !name.starts_with("canvas.") && !name.starts_with("canvas_"))
       continue;
     ++files;
-    std::stringstream stream;
-    stream << std::ifstream(entry.path()).rdbuf();
-    EXPECT_EQ(unclamped(stream.str()), std::set<std::string>()) << name;
-    clamped += stream.str().find("FAR_AT(") != std::string::npos;
+    const std::string text = read_text(entry.path());
+    EXPECT_EQ(unclamped(text), std::set<std::string>()) << name;
+    clamped += text.find("FAR_AT(") != std::string::npos;
   }
   EXPECT_GE(files, 12);
   EXPECT_GE(clamped, 10);

@@ -1,19 +1,14 @@
 // Colliders and canvases on GL beside each other, beside contexts of the caller's own, and in
 // several threads.
 #include <epoxy/egl.h>
+
 #include <epoxy/gl.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
-#include <optional>
-#include <random>
-#include <thread>
-
-#include "core/base/error.h"
 #include "core/gl/canvas/canvas.h"
+#include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/faults/flat_scene.h"
+#include "tests/faults/gl_calls.h"
+#include "tests/lab/flat.h"
 
 namespace farcull {
 namespace {
@@ -131,7 +126,7 @@ TEST(Contexts, TwoThreadsAtOnceAreRefusedByName) {
       said = error.what();
     }
   }).join();
-  EXPECT_NE(said.find("another thread is using it"), std::string::npos) << said;
+  EXPECT_TRUE(has_text(said, "another thread is using it"));
 }
 
 TEST(Contexts, ContextsNest) {
@@ -210,6 +205,28 @@ TEST(Contexts, AnyOrderOfUse) {
   EXPECT_GT(answers, 50);
   std::printf("contexts interleaved: 120 steps, 4 colliders, 2 hosts' contexts, %d answers\n",
               answers);
+}
+
+using lab::GlFault;
+using lab::GlFaultOutcome;
+
+TEST(SessionFaults, ASessionGoesOnAfterAFailure) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  for (const Method method : {Method::far, Method::far_pairs}) {
+    RunOptions options;
+    options.method = method;
+    options.resolution = 32;
+    options.verify = false;
+    Session session("software");
+    const auto right = run(scene, options, session).collisions.pairs;
+    ASSERT_GT(right.size(), 0u);
+    const auto outcomes = lab::try_gl_faults(
+        GlFault::out_of_memory, [&] { session.forget_device(); },
+        [&] { return run(scene, options, session).collisions.pairs == right; });
+    EXPECT_GT(outcomes.size(), 4u);
+    for (const GlFaultOutcome& o : outcomes) EXPECT_TRUE(o.threw) << o.at;
+    lab::expect_no_wrong_answer("failed allocations of a session", outcomes);
+  }
 }
 
 }  // namespace

@@ -11,9 +11,7 @@ namespace farcull {
 /// once_per_byte * n + constant bytes, and never more than all_per_byte * n + constant bytes alive.
 /// The factors are derived where a target states them.
 struct AllocationLimits {
-  std::size_t once_per_byte = 0;
-  std::size_t all_per_byte = 0;
-  std::size_t constant = 0;
+  std::size_t once_per_byte = 0, all_per_byte = 0, constant = 0;
 };
 
 /// Counts what the calling thread allocates from its construction on and frees again. One at a time

@@ -27,34 +27,22 @@ constexpr AllocationLimits kLimits = {
 Scene make_scene() {
   Scene scene;
   scene.name = "fuzz";
-  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {a, b, c});
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(first / 3);
-  };
-  const auto end_object = [&scene](const char* name) {
-    const std::uint32_t first = scene.objects.empty() ? 0
-                                                      : scene.objects.back().first_triangle +
-                                                            scene.objects.back().triangle_count;
-    const auto end = static_cast<std::uint32_t>(scene.triangles.size());
-    scene.objects.push_back({name, first, end - first});
-  };
   constexpr double kUlp = 0x1p-52;
-  add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
-  add({4, 0, 0}, {4, 4, 0}, {0, 4, 0});
-  end_object("floor");
-  add({1, 1, -1}, {1, 1, 1}, {2, 1, 1});     // through the floor
-  add({0, 0, 0}, {-1, 0, 2}, {0, -1, 2});    // a corner on a corner
-  add({1, 0, 0}, {3, 0, 0}, {2, -1, 1});     // an edge on an edge
-  add({3, 3, 0}, {3.5, 3, 0}, {3, 3.5, 0});  // within the plane and inside
-  add({1, 1, kUlp}, {2, 1, 1}, {1, 2, 1});
-  end_object("things");
-  add({2, 2, -1}, {2, 2, 1}, {2, 2, 3});  // a segment through the floor
-  add({1, 1, 0}, {1, 1, 0}, {1, 1, 0});   // a point on it
-  add({3.9, 3.9, -1}, {4.5, 3.9, 1}, {4.5, 4.5, 1});
-  add({2, 1 + kUlp, 1}, {1, 2 + 2 * kUlp, 1}, {2, 2, 1.5});  // one ulp from an edge of a thing
-  end_object("degenerate");
+  add_triangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add_triangle(scene, {4, 0, 0}, {4, 4, 0}, {0, 4, 0});
+  end_object(scene, "floor");
+  add_triangle(scene, {1, 1, -1}, {1, 1, 1}, {2, 1, 1});     // through the floor
+  add_triangle(scene, {0, 0, 0}, {-1, 0, 2}, {0, -1, 2});    // a corner on a corner
+  add_triangle(scene, {1, 0, 0}, {3, 0, 0}, {2, -1, 1});     // an edge on an edge
+  add_triangle(scene, {3, 3, 0}, {3.5, 3, 0}, {3, 3.5, 0});  // within the plane and inside
+  add_triangle(scene, {1, 1, kUlp}, {2, 1, 1}, {1, 2, 1});
+  end_object(scene, "things");
+  add_triangle(scene, {2, 2, -1}, {2, 2, 1}, {2, 2, 3});  // a segment through the floor
+  add_triangle(scene, {1, 1, 0}, {1, 1, 0}, {1, 1, 0});   // a point on it
+  add_triangle(scene, {3.9, 3.9, -1}, {4.5, 3.9, 1}, {4.5, 4.5, 1});
+  add_triangle(scene, {2, 1 + kUlp, 1}, {1, 2 + 2 * kUlp, 1},
+               {2, 2, 1.5});  // one ulp from an edge of a thing
+  end_object(scene, "degenerate");
   return scene;
 }
 

@@ -29,37 +29,24 @@ constexpr AllocationLimits kLimits = {
 Scene make_scene() {
   Scene scene;
   scene.name = "fuzz";
-  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {a, b, c});
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(first / 3);
-  };
-  std::uint32_t first = 0;
-  const auto end_object = [&](const char* name, bool self) {
-    const auto end = static_cast<std::uint32_t>(scene.triangles.size());
-    scene.objects.push_back(
-        {.name = name, .first_triangle = first, .triangle_count = end - first, .self = self});
-    first = end;
-  };
   const Vec3 o(0, 0, 0), x(8, 0, 0), y(0, 8, 0), z(0, 0, 8);
-  add(o, y, x);
-  add(o, x, z);
-  add(o, z, y);
-  add(x, y, z);
-  end_object("tetrahedron", false);
-  add({1, 1, 1}, {2, 1, 1}, {1, 2, 1.5});
-  end_object("inside", false);
-  add({0, 0, -3}, {2, 0, -3}, {0, 2, -3});
-  add({2, 0, -3}, {2, 2, -3}, {0, 2, -3});
-  end_object("square", false);
-  add({0, 0, -4}, {2, 0, -4}, {0, 2, -4});
-  add({2, 0, -4}, {2, 2, -4}, {0, 2, -4});
-  add({3, 0, -4}, {4, 0, -4}, {3, 2, -4 - 0x1p-40});
-  end_object("self", true);
-  add({1, 1, -3}, {1, 1, -3}, {1, 1, -3});
-  end_object("point", false);
-  end_object("empty", false);
+  add_triangle(scene, o, y, x);
+  add_triangle(scene, o, x, z);
+  add_triangle(scene, o, z, y);
+  add_triangle(scene, x, y, z);
+  end_object(scene, "tetrahedron");
+  add_triangle(scene, {1, 1, 1}, {2, 1, 1}, {1, 2, 1.5});
+  end_object(scene, "inside");
+  add_triangle(scene, {0, 0, -3}, {2, 0, -3}, {0, 2, -3});
+  add_triangle(scene, {2, 0, -3}, {2, 2, -3}, {0, 2, -3});
+  end_object(scene, "square");
+  add_triangle(scene, {0, 0, -4}, {2, 0, -4}, {0, 2, -4});
+  add_triangle(scene, {2, 0, -4}, {2, 2, -4}, {0, 2, -4});
+  add_triangle(scene, {3, 0, -4}, {4, 0, -4}, {3, 2, -4 - 0x1p-40});
+  end_object(scene, "self", true);
+  add_triangle(scene, {1, 1, -3}, {1, 1, -3}, {1, 1, -3});
+  end_object(scene, "point");
+  end_object(scene, "empty");
   return scene;
 }
 

@@ -2,19 +2,9 @@
 // found stays found, and readers change under the eyes of the ordinary tests. A finding names the
 // file, the seed and the bytes; `tests/fuzz/run.sh` goes on from there.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <random>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "tests/fuzz/target.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -28,51 +18,26 @@ constexpr std::uint32_t kMutations = 2000;
 constexpr std::size_t kMaxBytes = 4096;  // of a mutated input
 
 struct File {
-  std::string name;
-  std::string bytes;
+  std::string name, bytes;
 };
 
 std::vector<File> corpus(const std::string& folder) {
   std::vector<File> files;
   const std::filesystem::path root = std::filesystem::path(FARCULL_FUZZ_CORPUS) / folder;
-  for (const auto& entry : std::filesystem::directory_iterator(root)) {
-    std::ifstream in(entry.path(), std::ios::binary);
-    files.push_back({entry.path().filename().string(),
-                     {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}});
-  }
-  // The order of a folder is the file system's.
-  std::sort(files.begin(), files.end(),
-            [](const File& a, const File& b) { return a.name < b.name; });
+  for (const auto& entry : std::filesystem::directory_iterator(root))
+    files.push_back({entry.path().filename().string(), read_text(entry.path().string())});
+  std::ranges::sort(files, {}, &File::name);  // the order of a folder is the file system's
   return files;
 }
 
 // What random bytes would not come across: limits of integers, special numbers, structure.
-constexpr std::array<std::string_view, 26> kTokens = {"0",
-                                                      "-1",
-                                                      "3",
-                                                      "127",
-                                                      "255",
-                                                      "65535",
-                                                      "2147483648",
-                                                      "4294967295",
-                                                      "4294967296",
-                                                      "9223372036854775807",
-                                                      "18446744073709551615",
-                                                      "1e308",
-                                                      "-1e309",
-                                                      "5e-324",
-                                                      "nan",
-                                                      "inf",
-                                                      "\n",
-                                                      " ",
-                                                      "\\\n",
-                                                      "#",
-                                                      "\"",
-                                                      "{",
-                                                      "}",
-                                                      "[",
-                                                      "]",
-                                                      ","};
+const std::vector<std::string> kTokens = [] {
+  std::vector<std::string> out = listed(
+      "0,-1,3,127,255,65535,2147483648,4294967295,4294967296,9223372036854775807,"
+      "18446744073709551615,1e308,-1e309,5e-324,nan,inf,\n, ,\\\n,#,\",{,},[,]");
+  out.emplace_back(",");
+  return out;
+}();
 
 /// One to four random edits: bytes changed, removed, repeated, taken from another file, numbers
 /// replaced.
@@ -83,7 +48,7 @@ std::string mutated(std::string bytes, const std::vector<File>& files, std::uint
   for (std::size_t edit = 1 + below(4); edit > 0; --edit) {
     const std::size_t at = below(bytes.size() + 1);
     const std::size_t length = std::min(below(below(4) == 0 ? 64 : 5), bytes.size() - at);
-    const std::string_view token = kTokens[below(kTokens.size())];
+    const std::string& token = kTokens[below(kTokens.size())];
     switch (below(7)) {
       case 0:
         if (at < bytes.size()) bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/scene/scene.h"
 #include "tests/fuzz/allocations.h"
 
 namespace farcull {
@@ -38,6 +39,23 @@ Answer fuzz_distances(const std::uint8_t* data, std::size_t size);
 struct FuzzFinding {
   std::string what;
 };
+
+/// Adds a triangle with corners of its own, to no object.
+inline void add_triangle(Scene& scene, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.vertices.insert(scene.vertices.end(), {a, b, c});
+  scene.triangles.push_back({first, first + 1, first + 2});
+  scene.source_face.push_back(first / 3);
+}
+
+/// An object of all triangles that belong to none yet.
+inline void end_object(Scene& scene, const char* name, bool self = false) {
+  const std::uint32_t first = scene.objects.empty() ? 0
+                                                    : scene.objects.back().first_triangle +
+                                                          scene.objects.back().triangle_count;
+  const auto end = static_cast<std::uint32_t>(scene.triangles.size());
+  scene.objects.push_back({name, first, end - first, self});
+}
 
 inline void require(bool condition, const std::string& what) {
   if (!condition) throw FuzzFinding{what};

@@ -1,15 +1,8 @@
 // The kernels as the GL device runs them: what they answer is what the same text answers as C++,
 // or where a normal was chosen in another way, an interval that holds the exact one too.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "offsets/offsets.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/gl/gl_lab.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/rational.h"
 #include "verify/solid_lines.h"
 
 namespace farcull {
@@ -89,9 +82,8 @@ Comparison compare(const Fattener& fattener, const Fattener& reference, std::uin
   for (int phase = 0; phase < 4; ++phase) {
     draws.clear();
     const auto mine = [phase](int i) { return (i % kSide % 2 + i / kSide % 2 * 2) == phase; };
-    for (int i = 0; i < kSide * kSide; ++i) {
+    for (int i = 0; i < kSide * kSide; ++i)
       if (mine(i)) draws.push_back({static_cast<std::uint32_t>(i), 0});
-    }
     const std::vector<float> first = canvas.samples(Verb::store, draws);
     const std::vector<float> last = canvas.samples(Verb::ask, draws);
     for (int i = 0; i < kSide * kSide; ++i) {

@@ -3,18 +3,11 @@
 // the worst ones.
 #include "offsets/offsets.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <iostream>
-
 #include "embedded/minkowski_glsl.h"
 #include "offsets/kernel.h"
 #include "offsets/rounding.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/kernel_cases.h"
 #include "verify/solid_lines.h"
 
@@ -78,9 +71,8 @@ TEST(ExactOf, HoldsHullAndBallOfEveryTriangle) {
     if (n == 30'000) random = Random(seed_of_day(601));
     const Case c = random_case(random, n % kKindCount);
     const Solid solid = solid_of(c.triangle, c.radius);
-    for (const auto& row : solid) {
+    for (const auto& row : solid)
       for (const float x : row) ASSERT_TRUE(std::isfinite(x));
-    }
     for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
     ASSERT_TRUE(holds_balls(solid, c.triangle, c.radius)) << kKinds[c.kind] << ", case " << n;
   }

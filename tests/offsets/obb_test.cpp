@@ -2,18 +2,11 @@
 // the exact one of the solid that the floats say.
 #include "offsets/offsets.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <iostream>
-#include <limits>
 
 #include "core/base/glsl_shim.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/solid_lines.h"
 
 namespace farcull {
@@ -106,13 +99,11 @@ TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {
                           : random.below(3) == 0 ? std::abs(random.scaled(-20, 8))
                                                  : 0.715;
     const Solid solid = obb_of(points, radius);
-    for (const auto& row : solid) {
+    for (const auto& row : solid)
       for (const float x : row) ASSERT_TRUE(std::isfinite(x));
-    }
-    for (int i = 1; i <= 3; ++i) {
+    for (int i = 1; i <= 3; ++i)
       for (int k = 0; k < 3; ++k)
-        ASSERT_LE(std::abs(solid[i][k]), 1.001f);  // the kernel's |a| <= 2
-    }
+        ASSERT_LE(std::abs(solid[i][k]), 1.001f);           // the kernel's |a| <= 2
     for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
     expect_holds_balls(solid, points, radius);
     if (HasFatalFailure()) FAIL() << "polygon " << n;
@@ -336,7 +327,7 @@ TEST(ObbSurface, IsAClosedSurfaceOfTwelveTriangles) {
         edges.push_back({a[0], a[1], a[2], b[0], b[1], b[2]});
       }
     }
-    std::sort(edges.begin(), edges.end());
+    std::ranges::sort(edges);
     ASSERT_EQ(edges.size(), 36u);
     for (std::size_t i = 0; i < 36; i += 2) ASSERT_EQ(edges[i], edges[i + 1]);
     ASSERT_EQ(std::unique(edges.begin(), edges.end()) - edges.begin(), 18);

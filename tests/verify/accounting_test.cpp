@@ -2,19 +2,12 @@
 #include "verify/accounting.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <random>
-#include <stdexcept>
-#include <utility>
-
-#include "tests/verify/reference.h"
-#include "verify/certificate/box_pairs.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
+#include "verify/certificate/box_pairs.h"
 
 namespace farcull {
 namespace {
@@ -31,7 +24,7 @@ bool is_ignored(const Scene& scene, const TrianglePair& pair,
     return o;
   };
   const ObjectPair objects{owner(pair.a), owner(pair.b)};
-  return std::find(ignored.begin(), ignored.end(), objects) != ignored.end();
+  return std::ranges::find(ignored, objects) != ignored.end();
 }
 
 /// Every class recounted over all pairs, by the reference.
@@ -43,7 +36,7 @@ Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& 
         ++result.pairs_total;
         if (is_ignored(scene, pair, options.ignored)) {
           ++result.ignored;
-        } else if (std::binary_search(kept.begin(), kept.end(), pair)) {
+        } else if (std::ranges::binary_search(kept, pair)) {
           ++result.pairs_kept;
         } else if (!overlapping) {
           ++result.certified_by_boxes;
@@ -215,33 +208,18 @@ TEST(Accounting, HoldsAtTheEndsOfTheDoubles) {
   expect_equal(account(scene, {}), recount(scene, {}, {}));
 }
 
-/// Objects of small triangles on a grid, some of them `self`; many touch, share corners or are
-/// degenerate.
-Scene random_scene(std::mt19937& random, int object_count, int extent, int self_one_in) {
-  std::vector<std::vector<Triangle>> objects(object_count);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % 4 == 0 ? 0 : random() % 40);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
-  Scene scene = reference::welded(reference::scene_of(objects), random() % 2 == 0);
-  for (Object& object : scene.objects) object.self = random() % self_one_in == 0;
-  return scene;
-}
-
 RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
   const int object_count = *rc::gen::inRange(0, 6);
   const int extent = *rc::gen::inRange(1, 7);
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-  const Scene scene = random_scene(random, object_count, extent, *rc::gen::inRange(1, 4));
+  const int self_one_in = *rc::gen::inRange(1, 4);
+  Scene scene = reference::grid_scene(random, object_count, extent, 4);
+  for (Object& object : scene.objects) object.self = random() % self_one_in == 0;
   const unsigned keep_one_in = *rc::gen::inRange(1, 6);
   std::vector<ObjectPair> ignored;
   for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b) {
+    for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b)
       if (random() % 4 == 0) ignored.push_back({a, b});
-    }
   }
   Pairs kept;  // of all pairs that are not ignored, so that some have disjoint boxes
   reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) {
@@ -302,9 +280,8 @@ TEST(AccountingClearance, ComparesDistancesExactly) {
   EXPECT_EQ(account(diagonal, {}, {.clearance = std::nextafter(5.0, 0.0)}).certified_by_predicates,
             1u);
   for (const double wrong :
-       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(account(scene, {}, {.clearance = wrong}), std::logic_error);
-  }
 }
 
 // Two joins that share nothing but the definition: what one loses the other shows. Large enough for

@@ -1,17 +1,11 @@
 // Clearance: squared distances against the square of the clearance, exactly.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "experiments/generators/pair_generators.h"
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
+#include "verify/within.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
-#include "verify/within.h"
 
 namespace farcull {
 namespace {
@@ -66,8 +60,7 @@ TEST(Clearance, WhoseSquareUnderflowsOrOverflows) {
 
 /// The least clearance that a disjoint pair is within, by the reference, by bisection of doubles.
 double least_clearance(const Triangle& a, const Triangle& b) {
-  std::uint64_t no = 0;
-  std::uint64_t yes = std::bit_cast<std::uint64_t>(0x1p1000);
+  std::uint64_t no = 0, yes = std::bit_cast<std::uint64_t>(0x1p1000);
   while (yes - no > 1) {
     const std::uint64_t middle = no + (yes - no) / 2;
     (reference::within(a, b, std::bit_cast<double>(middle)) ? yes : no) = middle;
@@ -96,8 +89,7 @@ TEST(Clearance, AsTheReferenceAtTheThreshold) {
 }
 
 struct Count {
-  int decided = 0;
-  int wrong = 0;
+  int decided = 0, wrong = 0;
 };
 
 /// Corners of a and b much closer than they are to the other corners, the clearance their distance.
@@ -106,8 +98,7 @@ void put_corners_close(RandomDraws& random, DrawnPair& pair, double& clearance) 
     const double x = random.between(-1, 1), y = random.between(-1, 1);
     return Vec3(x, y, random.between(-1, 1));
   };
-  const Vec3 corner = point();
-  const Vec3 towards = point();
+  const Vec3 corner = point(), towards = point();
   const auto away = [&](double side) {
     const Vec3 p = point();
     return Vec3((p.dot(towards) > 0 ? side : -side) * p);

@@ -1,18 +1,9 @@
 // Exact closest points against a reference in integers and rationals, on pairs of every kind.
 #include "verify/closest.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/core/base/seed.h"
-#include "tests/core/base/trials.h"
-#include "tests/verify/closest_reference.h"
-#include "tests/verify/hard_pairs.h"
+#include "tests/lab/closest.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/test.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -26,9 +17,8 @@ using reference::Triangle;
 
 Triangle whole(RandomDraws& random, int most) {
   Triangle t;
-  for (Vec3& p : t) {
+  for (Vec3& p : t)
     for (double& x : p) x = random.whole(0, most);
-  }
   return t;
 }
 
@@ -129,11 +119,8 @@ void expect_as_reference(const Triangle& a, const Triangle& b) {
   EXPECT_EQ(rational(got.squared), want.squared);
   EXPECT_TRUE(is_rounded_root(got.distance, want.squared)) << got.distance;
   EXPECT_EQ(got.features, want.features);
-  for (int side = 0; side < 2; ++side) {
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_TRUE(is_rounded(got.points[side][k], want.points[side][k]));
-    }
-  }
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(is_rounded(got.points[side][k], want.points[side][k]));
 }
 
 /// Points p and q are closest iff no corner is beyond the planes through them (verify/closest.h).
@@ -258,9 +245,8 @@ TEST(ClosestPoints, TheFirstFeaturesOfManyAreTheAnswer) {
 TEST(ClosestPoints, ZerosHaveNoSign) {
   const Triangle a = {Vec3(-0.0, -0.0, -0.0), Vec3(1, -0.0, 0), Vec3(0, 1, -0.0)};
   const Closest c = closest_points(a, {Vec3(-0.0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2)});
-  for (const Vec3& p : c.points) {
+  for (const Vec3& p : c.points)
     for (const double x : p) EXPECT_FALSE(std::signbit(x));
-  }
 }
 
 TEST(ClosestPoints, TheEndsOfTheDoubles) {

@@ -5,33 +5,21 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
 #include <CGAL/mpq_class.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "tests/core/base/rational.h"
-#include "tests/verify/hard_pairs.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using rational::Random;
+using reference::kMax;
+using reference::kPermutations;
+using reference::kTiny;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kMax = std::numeric_limits<double>::max();
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
-}
 
 /// The kind and the shape under every order of arguments and corners; the shape of the first.
 ContactShape expect_kind(const std::string& expected, int dimension, const Triangle& a,
@@ -171,16 +159,14 @@ Drawn draw(Random& random, int n) {
   }
   const auto triangle = [&] {
     Triangle t;
-    for (Vec3& p : t) {
+    for (Vec3& p : t)
       for (int axis = 0; axis < 3; ++axis) p[axis] = values[random.below(5)];
-    }
     return t;
   };
   Drawn out = {triangle(), triangle()};
   if (n % 4 == 0) {  // in one plane
-    for (Triangle* t : {&out.a, &out.b}) {
+    for (Triangle* t : {&out.a, &out.b})
       for (Vec3& p : *t) p.z() = values[0];
-    }
   }
   return out;
 }
@@ -226,8 +212,7 @@ TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {
     };
     return contact_shape(cut(a), cut(b)).kind;
   };
-  int wrong = 0;
-  int caught = 0;
+  int wrong = 0, caught = 0;
   RandomDraws random(602);
   for (const auto& [name, make] : hard_pairs::generators()) {
     for (int n = 0; n < 60; ++n) {
@@ -248,9 +233,8 @@ TEST(ContactKind, EveryPairOnAGridHasOneKind) {
   std::vector<Triangle> all;
   const auto corner = [](int i) { return Vec3(i % 2, i / 2 % 2, i / 4); };
   for (int i = 0; i < 8; ++i) {
-    for (int j = i; j < 8; ++j) {
+    for (int j = i; j < 8; ++j)
       for (int k = j; k < 8; ++k) all.push_back({corner(i), corner(j), corner(k)});
-    }
   }
   std::array<int, kContactKinds.size()> of_kind{};
   int wrong = 0;
@@ -269,14 +253,7 @@ TEST(ContactKind, EveryPairOnAGridHasOneKind) {
 
 TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
   Random random(603);
-  Scene scene;
-  for (std::uint32_t t = 0; t < 40; ++t) {
-    for (int k = 0; k < 3; ++k)
-      scene.vertices.emplace_back(random.below(4), random.below(4), random.below(4));
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
-  }
-  scene.objects.push_back({"soup", 0, 40, true});
+  const Scene scene = reference::soup(random, 40, 4);
   std::vector<TrianglePair> pairs;
   std::vector<ContactKind> kinds;
   std::vector<ContactShape> shapes;

@@ -1,29 +1,20 @@
 // Kinds of contact, each from triangles made for it.
 #include "verify/contact.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using rational::Random;
+using reference::kMax;
+using reference::kPermutations;
+using reference::kTiny;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kMax = std::numeric_limits<double>::max();
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 /// The definition by the difference A - B: penetrating iff 0 is an interior point of it, that is,
 /// iff no d != 0 has d . p >= 0 for all nine differences p of corners. If the p span less than all
@@ -41,8 +32,7 @@ bool penetrate(const std::array<reference::Vector<Integer>, 3>& a,
     for (std::size_t j = i + 1; j < p.size(); ++j) {
       const auto d = reference::cross(p[i], p[j]);
       if (d[0] == 0 && d[1] == 0 && d[2] == 0) continue;
-      bool below = false;
-      bool above = false;
+      bool below = false, above = false;
       for (const auto& q : p) {
         const Integer side = reference::dot(d, q);
         below = below || side < 0;
@@ -63,10 +53,6 @@ Contact by_reference(const Triangle& a, const Triangle& b) {
                       converted(b, [](double x) { return std::int64_t(x); }))
           : penetrate(converted(a, reference::scaled), converted(b, reference::scaled));
   return found ? Contact::penetrating : Contact::touching;
-}
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
 }
 
 /// The answer under every order of arguments and corners, and the reference's.
@@ -160,11 +146,9 @@ std::vector<Triangle> on_grid(int x, int y, int z) {
   for (int i = 0; i < x * y * z; ++i) points.emplace_back(i % x, i / x % y, i / x / y);
   std::vector<Triangle> out;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = i; j < points.size(); ++j) {
-      for (std::size_t k = j; k < points.size(); ++k) {
+    for (std::size_t j = i; j < points.size(); ++j)
+      for (std::size_t k = j; k < points.size(); ++k)
         out.push_back({points[i], points[j], points[k]});
-      }
-    }
   }
   return out;
 }
@@ -172,9 +156,8 @@ std::vector<Triangle> on_grid(int x, int y, int z) {
 std::uint64_t differences_on_grid(int keep, std::uint64_t& penetrating) {
   std::vector<std::array<reference::Vector<std::int64_t>, 3>> exact;
   const std::vector<Triangle> all = on_grid(3, 3, 2);
-  for (const Triangle& t : all) {
+  for (const Triangle& t : all)
     exact.push_back(reference::converted(t, [](double x) { return std::int64_t(x); }));
-  }
   std::uint64_t differences = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < all.size(); ++j) {
@@ -215,23 +198,19 @@ TEST(Contact, ClosedTrianglesInsteadOfInteriorsAreCaught) {
 // Coordinates of few values of all sizes, so that corners, edges and planes often coincide.
 TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
   Random random(501);
-  std::uint64_t penetrating = 0;
-  std::uint64_t touching = 0;
+  std::uint64_t penetrating = 0, touching = 0;
   for (int n = 0; n < 4000; ++n) {
     if (n == 2000) random = Random(seed_of_day(501));
     std::array<double, 5> values{};
-    for (double& value : values) {
+    for (double& value : values)
       value = n % 2 == 0 ? random.uniform(-1, 1) : random.scaled(-40, 40);
-    }
     const auto triangle = [&] {
       Triangle t;
-      for (Vec3& p : t) {
+      for (Vec3& p : t)
         for (int axis = 0; axis < 3; ++axis) p[axis] = values[random.below(5)];
-      }
       return t;
     };
-    const Triangle a = triangle();
-    const Triangle b = triangle();
+    const Triangle a = triangle(), b = triangle();
     const Contact expected = by_reference(a, b);
     ASSERT_EQ(contact_of(a, b), expected) << "pair " << n;
     ASSERT_EQ(contact_of(b, a), expected) << "pair " << n;
@@ -245,15 +224,7 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
 
 TEST(CountContacts, CountsEachPairWhateverTheThreads) {
   Random random(502);
-  Scene scene;
-  for (std::uint32_t t = 0; t < 100; ++t) {
-    for (int corner = 0; corner < 3; ++corner) {
-      scene.vertices.emplace_back(random.below(5), random.below(5), random.below(5));
-    }
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
-  }
-  scene.objects.push_back({"soup", 0, 100, true});
+  const Scene scene = reference::soup(random, 100, 5);
   std::vector<TrianglePair> pairs;
   ContactCounts expected;
   for (std::uint32_t a = 0; a < 100; ++a) {
@@ -267,9 +238,8 @@ TEST(CountContacts, CountsEachPairWhateverTheThreads) {
   EXPECT_GT(pairs.size(), 2048u);  // enough for more than one thread
   EXPECT_GT(expected.touching, 0u);
   EXPECT_GT(expected.penetrating, 0u);
-  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u})
     EXPECT_EQ(count_contacts(scene, pairs, threads), expected);
-  }
   EXPECT_EQ(count_contacts(scene, {}), ContactCounts{});
 }
 

@@ -2,14 +2,10 @@
 // to find.
 #include "verify/distance_accounting.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "experiments/generators/pair_generators.h"
-#include "tests/core/base/trials.h"
-#include "tests/experiments/method/distance_lab.h"
-#include "tests/verify/hard_pairs.h"
+#include "tests/lab/distances.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/test.h"
 #include "verify/distance_claims.h"
 #include "verify/exact.h"
 #include "verify/separation.h"
@@ -200,10 +196,9 @@ TEST(DistanceAccounting, FindsAnAnswerThatIsNotTheNearest) {
 TrianglePair last_as_near(const Scene& scene, const ClaimedDistance& claim) {
   const Object &x = scene.objects[claim.a], &y = scene.objects[claim.b];
   for (std::uint32_t i = x.first_triangle + x.triangle_count; i-- > x.first_triangle;) {
-    for (std::uint32_t j = y.first_triangle + y.triangle_count; j-- > y.first_triangle;) {
+    for (std::uint32_t j = y.first_triangle + y.triangle_count; j-- > y.first_triangle;)
       if (distance_lab::squared_distance(scene.corners(i), scene.corners(j)) == Q(claim.squared))
         return {i, j};
-    }
   }
   return claim.pair;
 }
@@ -270,16 +265,7 @@ TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
 
 Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::array<Vec3, 3>& other) {
-  Scene scene;
-  for (const auto* t : {&a, &b, &other}) {
-    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), t->begin(), t->end());
-    scene.triangles.push_back({v, v + 1, v + 2});
-    scene.source_face.push_back(static_cast<std::uint32_t>(scene.source_face.size()));
-  }
-  scene.objects = {{.name = "a", .first_triangle = 0, .triangle_count = 1},
-                   {.name = "b", .first_triangle = 1, .triangle_count = 2}};
-  return scene;
+  return reference::scene_of({{a}, {b, other}});
 }
 
 // Slivers, points, huge and tiny ones: a triangle, one that is all but as near, and one that ties.
@@ -377,15 +363,9 @@ TEST(DistanceAccounting, FindsPointsAndFeaturesThatAreNotTheFirstNearest) {
 
 /// Points on a line, an object each.
 Scene points(std::initializer_list<double> places) {
-  Scene scene;
-  for (const double x : places) {
-    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.push_back({x, 0, 0});
-    scene.objects.push_back({.name = "", .first_triangle = v, .triangle_count = 1});
-    scene.triangles.push_back({v, v, v});
-    scene.source_face.push_back(0);
-  }
-  return scene;
+  std::vector<std::vector<reference::Triangle>> objects;
+  for (const double x : places) objects.push_back({{Vec3(x, 0, 0), Vec3(x, 0, 0), Vec3(x, 0, 0)}});
+  return reference::scene_of(objects);
 }
 
 TEST(DistanceAccounting, OfObjectsAsFarTheLowerOneIsTheNeighbour) {

@@ -2,28 +2,20 @@
 #include "verify/exact.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <sstream>
-#include <stdexcept>
-
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
+using reference::kMax;
+using reference::kPermutations;
+using reference::kTiny;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kMax = std::numeric_limits<double>::max();
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 std::string text(const Triangle& a, const Triangle& b) {
   const Eigen::IOFormat format(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "{",
@@ -41,10 +33,6 @@ double down(double x) { return std::nextafter(x, -kMax); }
 
 Triangle segment(const Vec3& a, const Vec3& b) { return {a, b, a}; }
 Triangle single_point(const Vec3& a) { return {a, a, a}; }
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
-}
 
 Triangle with_axes(const Triangle& t, const std::array<int, 3>& axes) {
   Triangle result;
@@ -203,11 +191,9 @@ TEST(Intersects, CoordinatesAtTheEndsOfTheDoubles) {
 std::vector<Triangle> all_triangles(const std::vector<Vec3>& corners) {
   std::vector<Triangle> result;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (std::size_t j = i; j < corners.size(); ++j) {
-      for (std::size_t k = j; k < corners.size(); ++k) {
+    for (std::size_t j = i; j < corners.size(); ++j)
+      for (std::size_t k = j; k < corners.size(); ++k)
         result.push_back({corners[i], corners[j], corners[k]});
-      }
-    }
   }
   return result;
 }
@@ -252,9 +238,8 @@ TEST(Intersects, RandomPairsOnSmallGrids) {
     if (n == 150'000) random.seed(static_cast<unsigned>(seed_of_day(7)));
     const int size = 2 + n % 5;
     std::array<Triangle, 2> pair;
-    for (Triangle& t : pair) {
+    for (Triangle& t : pair)
       for (Vec3& p : t) p = Vec3(random() % size, random() % size, random() % size);
-    }
     const bool expected = reference::intersects(pair[0], pair[1]);
     ASSERT_EQ(intersects(pair[0], pair[1]), expected) << text(pair[0], pair[1]);
     answers[expected] += n < 150'000;  // by the fixed seed
@@ -274,11 +259,9 @@ TEST(Intersects, RandomPairsOfArbitraryBits) {
     std::array<Triangle, 2> pair;
     for (Triangle& t : pair) {
       for (Vec3& p : t) {
-        for (int axis = 0; axis < 3; ++axis) {
-          do {
+        for (int axis = 0; axis < 3; ++axis) do {
             p[axis] = std::bit_cast<double>(random());
           } while (!std::isfinite(p[axis]));
-        }
       }
     }
     auto& [a, b] = pair;
@@ -313,9 +296,8 @@ rc::Gen<double> nearly_grid_coordinate() {
 
 Triangle generated(const rc::Gen<double>& coordinate) {
   Triangle t;
-  for (Vec3& p : t) {
+  for (Vec3& p : t)
     for (int axis = 0; axis < 3; ++axis) p[axis] = *coordinate;
-  }
   return t;
 }
 
@@ -364,9 +346,8 @@ TEST(Exact, CountsDegenerateTriangles) {
 TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
   std::mt19937 random(11);
   std::vector<Triangle> triangles(60);
-  for (Triangle& t : triangles) {
+  for (Triangle& t : triangles)
     for (Vec3& p : t) p = Vec3(random() % 9, random() % 9, random() % 9);
-  }
   std::vector<std::vector<Triangle>> objects;  // of one triangle, so that none are neighbours
   for (const Triangle& t : triangles) objects.push_back({t});
   const Scene scene = reference::scene_of(objects);
@@ -376,14 +357,12 @@ TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
     pair.b = (pair.a + 1 + random() % 59) % 60;
   }
   std::vector<TrianglePair> expected;
-  for (const TrianglePair& pair : candidates) {
+  for (const TrianglePair& pair : candidates)
     if (reference::intersects(triangles[pair.a], triangles[pair.b])) expected.push_back(pair);
-  }
   ASSERT_GT(expected.size(), 1000u);
   ASSERT_LT(expected.size(), candidates.size() - 1000);
-  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u})
     EXPECT_EQ(decide(scene, candidates, {.threads = threads}).pairs, expected) << threads;
-  }
 }
 
 TEST(Exact, RefusesCandidatesOutOfRange) {
@@ -470,11 +449,101 @@ TEST(BoxJoin, AsBruteForceBeyondTheCutoff) {
   expect_join_as_brute_force(reference::scene_of(grid_objects({3000, 0, 4000, 2500}, 40, 2, 4)));
   auto flat = grid_objects({5000, 5000}, 400, 3, 5);
   for (auto& triangles : flat) {
-    for (Triangle& t : triangles) {
+    for (Triangle& t : triangles)
       for (Vec3& p : t) p.z() = 1;
-    }
   }
   expect_join_as_brute_force(reference::scene_of(flat));
+}
+
+// ---- The first colliding candidates: always a prefix of all of them, and no more is decided than
+// that takes.
+
+/// An object of triangles between points of a grid, against itself, and all its pairs.
+struct Tangle {
+  Scene scene;
+  std::vector<TrianglePair> pairs;
+};
+Tangle tangle(std::uint32_t triangles) {
+  rational::Random random(641);
+  Tangle out;
+  for (int i = 0; i < 125; ++i) out.scene.vertices.emplace_back(i % 5, i / 5 % 5, i / 25);
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    std::array<std::uint32_t, 3> corners{};
+    for (std::uint32_t& corner : corners) corner = random.below(125u);
+    out.scene.triangles.push_back(corners);
+    out.scene.source_face.push_back(t);
+    for (std::uint32_t a = 0; a < t; ++a) out.pairs.push_back({a, t});
+  }
+  out.scene.objects.push_back({"", 0, triangles, true});
+  std::ranges::sort(out.pairs);
+  return out;
+}
+
+TEST(DecideFirst, GivesAPrefixOfAllThatCollide) {
+  const Tangle all = tangle(120);
+  const std::vector<TrianglePair> expected = decide(all.scene, all.pairs).all();
+  ASSERT_GT(expected.size(), 500u);
+  for (const unsigned threads : {1u, 2u}) {
+    for (const std::uint64_t limit : {std::uint64_t{1}, std::uint64_t{100}, expected.size() - 1,
+                                      expected.size(), expected.size() + 1}) {
+      const FirstCollisions first = decide_first(all.scene, all.pairs, limit, {.threads = threads});
+      const std::vector<TrianglePair> found = first.collisions.all();
+      const auto end = expected.begin() + static_cast<long>(std::min(limit, expected.size()));
+      EXPECT_EQ(found, std::vector<TrianglePair>(expected.begin(), end)) << limit;
+      EXPECT_EQ(first.complete, limit >= expected.size() && first.decided == all.pairs.size());
+      if (limit == 1) {
+        EXPECT_LT(first.decided, all.pairs.size() / 2);
+      }
+      if (limit > expected.size()) {
+        EXPECT_TRUE(first.complete);
+      }
+      // The twin: what is decided ends at or behind the last pair; a block less does not suffice.
+      EXPECT_GE(all.pairs[first.decided - 1], found.back());
+    }
+  }
+}
+
+// Exactly as many pairs collide as the limit allows, and the last of them stands before many
+// candidates that do not.
+TEST(DecideFirst, NumberOfThreadsDecidesNothing) {
+  const Tangle all = tangle(120);
+  const std::vector<TrianglePair> meet = decide(all.scene, all.pairs).all();
+  const TrianglePair one = meet.front();
+  std::vector<TrianglePair> candidates;
+  for (const TrianglePair& pair : all.pairs)
+    if (pair == one || (one < pair && !std::ranges::binary_search(meet, pair)))
+      candidates.push_back(pair);
+  ASSERT_GT(candidates.size(), 3000u);
+  const FirstCollisions first = decide_first(all.scene, candidates, 1, {.threads = 1});
+  EXPECT_EQ(first.collisions.all(), std::vector<TrianglePair>{one});
+  EXPECT_FALSE(first.complete);
+  for (const unsigned threads : {2u, 3u, 16u}) {
+    const FirstCollisions other = decide_first(all.scene, candidates, 1, {.threads = threads});
+    EXPECT_EQ(other.decided, first.decided);
+    EXPECT_EQ(other.complete, first.complete);
+  }
+}
+
+TEST(DecideFirst, OfNoCandidatesIsComplete) {
+  const Tangle all = tangle(3);
+  const FirstCollisions none = decide_first(all.scene, {}, 1);
+  EXPECT_TRUE(none.complete);
+  EXPECT_EQ(none.decided, 0u);
+  EXPECT_THROW(decide_first(all.scene, {}, 0), std::logic_error);
+  EXPECT_THROW(decide_first(all.scene, std::vector<TrianglePair>{{0, 3}}, 1), std::logic_error);
+}
+
+TEST(KeepFirst, CutsTheLastOfBothLists) {
+  Collisions some;
+  some.pairs = {{0, 1}, {0, 5}, {2, 3}};
+  some.neighbour_pairs = {{0, 2}, {2, 4}};
+  EXPECT_FALSE(keep_first(5, some));
+  EXPECT_TRUE(keep_first(3, some));
+  EXPECT_EQ(some.pairs, (std::vector<TrianglePair>{{0, 1}, {0, 5}}));
+  EXPECT_EQ(some.neighbour_pairs, (std::vector<TrianglePair>{{0, 2}}));
+  EXPECT_TRUE(keep_first(1, some));
+  EXPECT_EQ(some.pairs, (std::vector<TrianglePair>{{0, 1}}));
+  EXPECT_TRUE(some.neighbour_pairs.empty());
 }
 
 }  // namespace

@@ -2,13 +2,9 @@
 // decide() answers as the predicates on two triangles do.
 #include "verify/filter.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "core/native/lanes.h"
-#include "tests/verify/hard_pairs.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
 
@@ -107,7 +103,7 @@ TEST(FilterLanes, AnswerAsTheScalarTextOnEveryTarget) {
 // A vector that is not full, and pairs that are not in the order of the scene.
 TEST(FilterLanes, AnswerForAnyNumberOfPairsInAnyOrder) {
   PairsOfScene of = made(hard_pairs::generators().front().second, Sharing::none, 300);
-  std::reverse(of.pairs.begin(), of.pairs.end());
+  std::ranges::reverse(of.pairs);
   const std::vector<Triage> all = on_scalars<FilterBounds>(of, 0);
   for (const std::string& target : lane_targets()) {
     const UseLanes use(target);
@@ -127,7 +123,7 @@ TEST(FilterLanes, KnowNothingOfTrianglesThatShareACorner) {
       const PairsOfScene of = made(make, sharing, 8000);
       for (const double clearance : {0.0, 1e-3, 1.0}) {
         const std::vector<Triage> answers = on_lanes(of, clearance);
-        EXPECT_EQ(std::count(answers.begin(), answers.end(), Triage::unknown), answers.size())
+        EXPECT_EQ(std::ranges::count(answers, Triage::unknown), answers.size())
             << name << " " << static_cast<int>(sharing) << " " << clearance;
       }
     }
@@ -168,7 +164,7 @@ TEST(FilterLanesTwin, WithTheLanesExchangedTheAnswersDiffer) {
 TEST(FilterLanesTwin, WithoutTheBoundOfSidesSharedCornersAreDecided) {
   const PairsOfScene of = made(hard_pairs::nearly_coplanar, Sharing::vertex, 8000);
   const std::vector<Triage> answers = on_scalars<NoSide>(of, 0);
-  EXPECT_LT(std::count(answers.begin(), answers.end(), Triage::unknown), answers.size());
+  EXPECT_LT(std::ranges::count(answers, Triage::unknown), answers.size());
 }
 
 // ---- decide() ----
@@ -242,9 +238,8 @@ TEST(FilterLanes, DecideAnswersAsThePredicatesOnTwoTriangles) {
   const Scene scene = crossing_sheets();
   const auto count = static_cast<std::uint32_t>(scene.triangles.size());
   std::vector<TrianglePair> all, near;
-  for (std::uint32_t a = 0; a < count; ++a) {
+  for (std::uint32_t a = 0; a < count; ++a)
     for (std::uint32_t b = a + 1; b < count; ++b) all.push_back({a, b});
-  }
   const std::vector<Box> boxes = triangle_boxes(scene);
   std::copy_if(all.begin(), all.end(), std::back_inserter(near),
                [&](const TrianglePair& p) { return overlap(boxes[p.a], boxes[p.b]); });

@@ -2,16 +2,8 @@
 // easy, or it would be of no use. Each twin lowers one bound to zero and must be caught.
 #include "verify/filter.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-
-#include "tests/core/base/seed.h"
-#include "tests/verify/hard_pairs.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
 
@@ -50,16 +42,15 @@ Tally tally(const Make& make, Sharing sharing, int pairs, std::uint64_t seed = 1
     hard_pairs::share(sharing, a, b);
     const auto beyond = [&] { return reference::intersects_beyond_shared(a, b); };
     int shared = 0;
-    for (const Vec3& p : a) shared += std::find(b.begin(), b.end(), p) != b.end();
+    for (const Vec3& p : a) shared += std::ranges::find(b, p) != b.end();
     switch (sharing) {
       case Sharing::none:
         out.add(filters::filter_planes<Bounds>(a, b, 0),
                 [&] { return reference::intersects(a, b); });
         break;
       case Sharing::vertex:
-        if (shared == 1) {
+        if (shared == 1)
           out.add(filters::filter_beyond_vertex<Bounds>(a[0], a[1], a[2], b[1], b[2]), beyond);
-        }
         break;
       case Sharing::edge:
         if (shared == 2)
@@ -85,9 +76,8 @@ TEST(Filter, NeverContradictsExactArithmetic) {
 TEST(Filter, DecidesWhatIsNotClose) {
   const auto random_pair = [](RandomDraws& random) {
     DrawnPair pair;
-    for (Triangle* t : {&pair.a, &pair.b}) {
+    for (Triangle* t : {&pair.a, &pair.b})
       for (Vec3& p : *t) p = point(random);
-    }
     return pair;
   };
   for (const Sharing sharing : {Sharing::none, Sharing::vertex, Sharing::edge}) {

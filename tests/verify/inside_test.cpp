@@ -3,22 +3,11 @@
 // is where that number is odd. Whole coordinates make rays meet edges and corners.
 #include "verify/inside.h"
 
-#include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
-#include <vector>
-
 #include "experiments/scenes/scene_file.h"
-#include "tests/core/base/trials.h"
-#include "tests/verify/hard_pairs.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -40,9 +29,8 @@ std::int64_t orientation(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3
 void add_faces(const Tetrahedron& t, std::vector<Triangle>& triangles) {
   for (int left_out = 0; left_out < 4; ++left_out) {
     Triangle face;
-    for (int i = 0, k = 0; i < 4; ++i) {
+    for (int i = 0, k = 0; i < 4; ++i)
       if (i != left_out) face[k++] = t[i];
-    }
     triangles.push_back(face);
   }
 }
@@ -176,8 +164,7 @@ TEST(Inside, ATorusAsItsEquationSays) {
   constexpr int kAround = 40, kTube = 20;
   const auto corner = [](int i, int j) {
     const double u = 2 * std::numbers::pi * (i % kAround) / kAround;
-    const double v = 2 * std::numbers::pi * (j % kTube) / kTube;
-    const double r = 3 + std::cos(v);
+    const double v = 2 * std::numbers::pi * (j % kTube) / kTube, r = 3 + std::cos(v);
     return Vec3(r * std::cos(u), r * std::sin(u), std::sin(v));
   };
   std::vector<Triangle> triangles;
@@ -247,9 +234,8 @@ TEST(Inside, IsDecidedOnTheLineOfATriangleThatIsASegment) {
 
 TEST(Inside, ZerosOfEitherSignAreOnePosition) {
   std::vector<Triangle> triangles = cube(Vec3(0, 0, 0), Vec3(2, 2, 2));
-  for (Vec3& p : triangles[0]) {
+  for (Vec3& p : triangles[0])
     for (double& x : p) x = x == 0 ? -0.0 : x;
-  }
   EXPECT_TRUE(is_closed(scene_of(triangles), 0));
 }
 

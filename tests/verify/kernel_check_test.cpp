@@ -3,13 +3,8 @@
 #include "verify/kernel_check.h"
 #include "offsets/offsets.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
 #include "core/pairs/grid.h"
+#include "tests/lab/test.h"
 
 namespace farcull::lab {
 using Answer = IntervalAnswer;
@@ -26,35 +21,34 @@ namespace {
 
 using Change = std::function<void(SolidAnswer&)>;
 
-KernelTally boxes(const Change& change) {
+/// Of solids that are adversarial, and of those of triangles; `check` judges an answer.
+template <class Adversarial, class Of, class Check>
+KernelTally solids(const SolidProgram& program, Adversarial adversarial, Of of, Check check,
+                   const Change& change) {
   KernelTally tally;
   for (std::uint64_t i = 0; i < 20'000; ++i) {
     SolidCase c{0.5f + static_cast<float>(i % 100), 0.5f, {}};
     const bool direct = i % 3 == 0;
     const KernelTriangle t = kernel_triangle(3, i, c.cx, c.cy);
-    c.solid = direct ? adversarial_box(3, i, c.cx, c.cy) : obb_of(t.corners, t.radius);
+    c.solid = direct ? adversarial(3, i, c.cx, c.cy) : of(t);
     SolidAnswer a{};
-    a.hit = obb_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
+    a.hit = program.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
     change(a);
-    check_box(c, a, !direct && t.ordinary, tally);
+    check(c, a, !direct && t.ordinary, tally);
   }
   return tally;
 }
 
+KernelTally boxes(const Change& change) {
+  const auto of = [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); };
+  return solids(obb_fattener().solid, adversarial_box, of, check_box, change);
+}
+
 KernelTally sums(const Change& change) {
-  KernelTally tally;
-  for (std::uint64_t i = 0; i < 20'000; ++i) {
-    SolidCase c{0.5f + static_cast<float>(i % 100), 0.5f, {}};
-    const bool direct = i % 3 == 0;
-    const KernelTriangle t = kernel_triangle(3, i, c.cx, c.cy);
-    c.solid = direct ? adversarial_minkowski(3, i, c.cx, c.cy)
-                     : minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
-    SolidAnswer a{};
-    a.hit = minkowski_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
-    change(a);
-    check_minkowski(c, a, !direct && t.ordinary, tally);
-  }
-  return tally;
+  const auto of = [](const KernelTriangle& t) {
+    return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
+  };
+  return solids(minkowski_fattener().solid, adversarial_minkowski, of, check_minkowski, change);
 }
 
 KernelTally intervals(const std::function<void(IntervalAnswer&)>& change) {

@@ -1,16 +1,7 @@
 // The nearest of many pairs, against all of them one by one; and the bounds that leave pairs out.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <vector>
-
-#include "tests/core/base/trials.h"
-#include "tests/core/scene/scenes.h"
-#include "tests/verify/closest_reference.h"
-#include "tests/verify/hard_pairs.h"
+#include "tests/lab/closest.h"
+#include "tests/lab/hard_pairs.h"
+#include "tests/lab/scenes.h"
 #include "verify/closest.h"
 #include "verify/filter_scalars.h"
 
@@ -61,7 +52,7 @@ void expect_nearest(const Scene& scene, std::vector<TrianglePair> pairs) {
     EXPECT_EQ(nearest->closest.squared, one.squared);
     EXPECT_EQ(nearest->closest.points, one.points);
     EXPECT_EQ(nearest->closest.features, one.features);
-    std::reverse(pairs.begin(), pairs.end());
+    std::ranges::reverse(pairs);
   }
 }
 

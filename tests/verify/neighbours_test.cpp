@@ -1,29 +1,19 @@
 // Neighbours: what they share as neighbours is no collision, whatever is more is one. Every case
 // against rational arithmetic that shares no code with verify/.
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <stdexcept>
-
 #include "experiments/generators/pair_generators.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
+using reference::kPermutations;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
-}
 
 /// In all orders of corners and triangles, and alone in a scene, where the filter decides first.
 void expect_beyond(bool expected, const Triangle& a, const Triangle& b) {
@@ -123,11 +113,9 @@ void expect_as_reference(const std::vector<Vec3>& points, int pairs, unsigned se
   std::mt19937 random(seed);
   std::array<int, 2> answers = {0, 0};
   for (int n = 0; n < pairs; ++n) {
-    Triangle a;
-    Triangle b;
-    for (Triangle* t : {&a, &b}) {
+    Triangle a, b;
+    for (Triangle* t : {&a, &b})
       for (Vec3& p : *t) p = points[random() % points.size()];
-    }
     b[random() % 3] = a[random() % 3];
     const bool expected = reference::intersects_beyond_shared(a, b);
     ASSERT_EQ(intersects_beyond_shared(a, b), expected) << n;
@@ -206,14 +194,12 @@ TEST(Neighbours, SharedIndicesOfTwoObjectsMakeNone) {
   }
   scene.objects = {{"above", 0, kFan, true}, {"below", kFan, kFan, false}};
   std::vector<TrianglePair> candidates, of_both;
-  for (std::uint32_t a = 0; a < kFan; ++a) {
+  for (std::uint32_t a = 0; a < kFan; ++a)
     for (std::uint32_t b = a + 1; b < kFan; ++b) candidates.push_back({a, b});
-  }
   const std::size_t neighbours = candidates.size();
   ASSERT_GT(neighbours, 1024u) << "a block of decide()";
-  for (std::uint32_t a = 0; a < kFan; ++a) {
+  for (std::uint32_t a = 0; a < kFan; ++a)
     for (std::uint32_t b = kFan; b < 2 * kFan; ++b) of_both.push_back({a, b});
-  }
   candidates.insert(candidates.end(), of_both.begin(), of_both.end());
   for (const bool asked : {false, true}) {
     const Collisions found = decide(scene, candidates, {.threads = 1, .neighbours = asked});
@@ -229,24 +215,11 @@ TEST(Neighbours, DecideRefusesATriangleWithItselfAndBadClearances) {
   EXPECT_THROW(decide(scene, {}, {.clearance = std::nan("")}), std::logic_error);
 }
 
-/// Small triangles on a grid in several objects, some `self`, with empty objects between.
-Scene grid_scene(std::mt19937& random, int extent) {
-  std::vector<std::vector<Triangle>> objects(1 + random() % 5);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % 3 == 0 ? 0 : random() % 40);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
-  Scene scene = reference::welded(reference::scene_of(objects), random() % 2 == 0);
-  for (Object& object : scene.objects) object.self = random() % 2 == 0;
-  return scene;
-}
-
 RC_GTEST_PROP(AllCollidingPairsProperty, AsBruteForceWithSelfAndClearance, ()) {
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-  const Scene scene = grid_scene(random, *rc::gen::inRange(1, 8));
+  const int extent = *rc::gen::inRange(1, 8);
+  Scene scene = reference::grid_scene(random, 1 + random() % 5, extent, 3);
+  for (Object& object : scene.objects) object.self = random() % 2 == 0;
   const double clearance = *rc::gen::element(0.0, 0.0, 0.5, 1.0, 1.7320508075688772, 1e-300);
   ExactResult expected;
   reference::for_each_pair(

@@ -3,10 +3,11 @@
 #include "verify/worst_canvas.h"
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/canvas/lemma_suite.h"
-#include "tests/core/cull/far_properties.h"
-#include "tests/core/scene/scenes.h"
+#include "offsets/offsets.h"
+#include "tests/lab/far.h"
+#include "tests/lab/lemmas.h"
+#include "tests/lab/test.h"
+#include "verify/exact_point.h"
 
 namespace farcull {
 namespace {
@@ -121,6 +122,75 @@ TEST(WorstFar, MissesPairsNearPixelCornersAtNineTenthsOfTheRadius) {
     EXPECT_EQ(far_on(canvas, scene, fattener, "z", 128).accounting.false_negatives, 0u);
     EXPECT_GT(far_on(canvas, scene, fattener, "z", 128, 0.9).accounting.false_negatives, 100u);
   }
+}
+
+TEST(WorstTouching, IsSeenWhereItCounts) {
+  const Window window = lab::window(8, 100);
+  const auto triangle = [](float z) {
+    return std::array<float, 12>{-4, -4, z, 0, 12, -4, z, 0, -4, 12, z, 0};
+  };
+  for (const int bits : {32, 24}) {
+    WorstCanvas canvas(obb_fattener().solid, {.depth_bits = bits});
+    const auto is_seen = [&](float stored, float asked, bool touching) {
+      Drawables drawables;
+      drawables.mode = DepthMode::fixed;
+      drawables.first = {0, 1, 2};
+      drawables.triangles = {triangle(stored), triangle(asked)};
+      Pass pass;
+      pass.slots = 1;
+      pass.touching = touching;
+      pass.draws = {{0, 0}, {1, 0}};
+      pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 1}};
+      canvas.begin(window, drawables);
+      return canvas.run(pass)[0] != 0;
+    };
+    EXPECT_TRUE(is_seen(3, 3, true)) << bits;
+    EXPECT_FALSE(is_seen(3, 3, false)) << bits;
+    // The twins: a quarter of a pixel before, and behind.
+    EXPECT_FALSE(is_seen(3, 2.75f, true)) << bits;
+    EXPECT_TRUE(is_seen(3, 3.25f, false)) << bits;
+  }
+}
+
+// ---- Which pixels a point lies in: pixels are closed squares, so a border belongs to both sides.
+
+using Places = std::vector<std::pair<int, int>>;
+
+// The pixels of a window of 4 x 2 px, whose middle is the origin, that contain the point;
+// ascending.
+Places places_of(const ExactPoint& point) {
+  Places out;
+  for (const Pixel& pixel : pixels_containing(point, 4, 2)) out.push_back({pixel.x, pixel.y});
+  std::ranges::sort(out);
+  return out;
+}
+
+ExactPoint at(double x, double y) {
+  const Vec3 p(x, y, 7);
+  return {{p, p, p}, {1, 0, 0}};
+}
+
+TEST(ExactPixels, ABorderBelongsToBothSidesAndACornerToFourPixels) {
+  EXPECT_EQ(places_of(at(0.5, 0.5)), (Places{{2, 1}}));
+  EXPECT_EQ(places_of(at(1, 0.5)), (Places{{2, 1}, {3, 1}}));
+  EXPECT_EQ(places_of(at(0.5, 0)), (Places{{2, 0}, {2, 1}}));
+  EXPECT_EQ(places_of(at(-1, 0)), (Places{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
+}
+
+TEST(ExactPixels, TheRimOfTheWindowBelongsToItAndNothingBeyond) {
+  EXPECT_EQ(places_of(at(-2, -1)), (Places{{0, 0}}));
+  EXPECT_EQ(places_of(at(2, 1)), (Places{{3, 1}}));
+  EXPECT_TRUE(places_of(at(std::nextafter(2, 3), 0.5)).empty());
+  EXPECT_TRUE(places_of(at(0.5, std::nextafter(-1, -2))).empty());
+}
+
+TEST(ExactPixels, NothingIsRounded) {
+  // A third of 3 along x, then of the double below 3.
+  const auto third = [](double x) {
+    return ExactPoint{{Vec3(x, 0.5, 0), Vec3(0, 0.5, 0), Vec3(0, 0.5, 0)}, {7, 7, 7}};
+  };
+  EXPECT_EQ(places_of(third(3)), (Places{{2, 1}, {3, 1}}));
+  EXPECT_EQ(places_of(third(std::nextafter(3, 0))), (Places{{2, 1}}));
 }
 
 }  // namespace

@@ -1,14 +1,8 @@
 // The worst canvas where the program that stores and the one that asks round the depth map, each in
 // a direction of its own: nothing is lost with the slack, and pairs are lost without it.
 // FARCULL_ROUNDING_PAIRS: how many pairs each depth of window and each way to round tries.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdlib>
-
 #include "core/base/random.h"
-#include "tests/core/canvas/lab.h"
-#include "tests/core/canvas/lemma_suite.h"
+#include "tests/lab/lemmas.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

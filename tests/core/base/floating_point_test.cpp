@@ -2,15 +2,8 @@
 // thread of core/parallel has the one that the proofs are about.
 #include "core/base/floating_point.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <stdexcept>
-#include <thread>
-
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "tests/core/base/floating_point_lab.h"
+#include "tests/lab/floating_point.h"
 
 namespace farcull {
 namespace {
@@ -108,7 +101,7 @@ TEST(FloatingPoint, RequiringItThrowsElsewhere) {
       }
     }
     EXPECT_EQ(where, "a driver") << environment.name;
-    EXPECT_NE(reason.find(to_string(environment.found)), std::string::npos) << reason;
+    EXPECT_TRUE(has_text(reason, to_string(environment.found)));
   }
 }
 

@@ -5,11 +5,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <bit>
-#include <cfenv>
-#include <limits>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

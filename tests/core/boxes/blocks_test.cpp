@@ -2,22 +2,13 @@
 // instruction set, whatever the order of the triangles. Each property has a twin that must fail.
 #include "core/boxes/triangle_blocks.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numeric>
-#include <set>
-
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
-#include "core/native/lanes.h"
 #include "core/pairs/regions.h"
 #include "core/pairs/sweep.h"
-#include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/pairs/pairs_lab.h"
+#include "tests/lab/lanes.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -27,16 +18,6 @@ using lab::Random;
 using lab::random_scene;
 using lab::truth_of;
 using lab::with_self;
-
-// Calls `work` on every instruction set.
-void for_each_target(const std::function<void()>& work) {
-  for (const std::string& target : lane_targets()) {
-    SCOPED_TRACE(target);
-    use_lane_target(target);
-    work();
-  }
-  use_lane_target("");
-}
 
 // The triangles of each object in another order.
 Scene shuffled(Scene scene, std::uint64_t seed) {
@@ -80,9 +61,8 @@ std::vector<Scene> small_scenes() {
     out.push_back(shuffled(scene, 1));
     out.push_back(std::move(scene));
   }
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
     out.push_back(seed % 2 ? with_self(random_scene(seed)) : random_scene(seed));
-  }
   return out;
 }
 
@@ -196,17 +176,16 @@ TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
       for (std::uint32_t b = a; b < std::min(objects, a + 8); ++b) {
         std::vector<BlockPair> expected;
         for (std::uint32_t r = blocks.first[a]; r < blocks.first[a + 1]; ++r) {
-          for (std::uint32_t s = a == b ? r : blocks.first[b]; s < blocks.first[b + 1]; ++s) {
+          for (std::uint32_t s = a == b ? r : blocks.first[b]; s < blocks.first[b + 1]; ++s)
             if (overlap(blocks.boxes[r], blocks.boxes[s])) expected.push_back({r, s});
-          }
         }
         std::vector<BlockPair> first;
-        for_each_target([&] {
+        on_every_target([&] {
           std::vector<BlockPair> pairs;
           pair_blocks(trees, a, b, blocks.first[a], blocks.first[a + 1], SIZE_MAX, pairs);
           if (first.empty()) first = pairs;
           ASSERT_EQ(pairs, first);
-          std::sort(pairs.begin(), pairs.end());
+          std::ranges::sort(pairs);
           ASSERT_TRUE(std::ranges::includes(pairs, expected));
           found += pairs.size();
         });
@@ -226,12 +205,11 @@ TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
         ++by_blocks;
         const std::vector<TrianglePair> expected = overlapping(scene, clearance, neighbours);
         pairs += expected.size();
-        for_each_target([&] {
-          for (const unsigned threads : {1u, 3u}) {
+        on_every_target([&] {
+          for (const unsigned threads : {1u, 3u})
             ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, clearance, neighbours, threads),
                       expected)
                 << scene.name;
-          }
         });
       }
     }
@@ -245,9 +223,8 @@ TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
   std::size_t removed = 0;
   for (const Scene& scene : small_scenes()) {
     std::vector<ObjectPair> ignored;
-    for (std::uint32_t b = 1; b < scene.objects.size(); ++b) {
+    for (std::uint32_t b = 1; b < scene.objects.size(); ++b)
       for (std::uint32_t a = b % 2; a < b; a += 2) ignored.push_back({a, b});
-    }
     ignored = in_order(std::move(ignored));
     const PairParts parts = split_meetings(scene, 0, 2, false, ignored);
     if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
@@ -337,7 +314,7 @@ TEST(Blocks, CountBoxesThatTouch) {
     ASSERT_FALSE(parts.blocks.empty());
     const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     ASSERT_GE(expected.size(), 40u);
-    for_each_target(
+    on_every_target(
         [&] { ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 1), expected) << at; });
   }
 }
@@ -410,10 +387,9 @@ TEST(Blocks, FollowWhatMoved) {
       }
       for (const std::uint32_t v : vertices) scene.vertices[v].x() += by;
       for (std::size_t r = 0; r < blocks.ranges.size(); ++r) {
-        for (std::uint32_t i = 0; i < blocks.ranges[r].count; ++i) {
+        for (std::uint32_t i = 0; i < blocks.ranges[r].count; ++i)
           for (const std::uint32_t v : scene.triangles[blocks.triangle(blocks.ranges[r].first + i)])
             moved[r] = moved[r] || vertices.contains(v);
-        }
       }
       for (const unsigned threads : {1u, 2u}) {
         TriangleBlocks updated = blocks;
@@ -439,7 +415,7 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   for (const BlockPair& pair : parts.blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
   BlockFindings found;
   compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
-  std::sort(found.certain.begin(), found.certain.end());
+  std::ranges::sort(found.certain);
   EXPECT_GT(missed(overlapping(scene, 0, true), found.certain), 0u);
 }
 
@@ -489,9 +465,8 @@ SweepCase sweep_case(Random& random) {
     row.group = static_cast<std::uint32_t>(random.below(5));
     row.begun = static_cast<std::uint32_t>(random.below(4));
     row.owner = static_cast<std::uint32_t>(random.below(3));
-    for (std::uint32_t* v : {&row.v0, &row.v1, &row.v2}) {
+    for (std::uint32_t* v : {&row.v0, &row.v1, &row.v2})
       *v = static_cast<std::uint32_t>(random.below(40));
-    }
     out.rows.push_back(row);
   }
   if (out.sorted) std::ranges::stable_sort(out.rows, {}, &SweepColumns::Row::near);
@@ -518,9 +493,8 @@ TEST(SweepOnLanes, FindsWhatTheDefinitionSays) {
     for (std::size_t x = 0; x < n; ++x) {
       for (std::size_t y = x + 1; y < n; ++y) {
         const std::uint32_t a = c.rows[x].id, b = c.rows[y].id;
-        if (makes_pair(c.rows[x], c.rows[y], c.drops_neighbours)) {
+        if (makes_pair(c.rows[x], c.rows[y], c.drops_neighbours))
           expected.push_back({std::min(a, b), std::max(a, b)});
-        }
         tests += !c.sorted || c.rows[y].near <= c.rows[x].far;
       }
     }
@@ -529,7 +503,7 @@ TEST(SweepOnLanes, FindsWhatTheDefinitionSays) {
     columns.start(n);
     for (const SweepColumns::Row& row : c.rows) columns.add(row);
     columns.finish();
-    for_each_target([&] {
+    on_every_target([&] {
       std::vector<TrianglePair> pairs;
       std::vector<TrianglePair> room(n + kSweepPadding +
                                      static_cast<std::size_t>(random.below(200)));

@@ -2,41 +2,26 @@
 #include "core/boxes/join.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <cfloat>
-#include <numeric>
-#include <utility>
-
-#include "tests/core/base/rational.h"
+#include "core/boxes/block.h"
+#include "tests/lab/boxes.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
-using Pairs = std::vector<TrianglePair>;
-using Indices = std::vector<std::uint32_t>;
+using lab::Indices;
+using lab::Pairs;
 using rational::Random;
 
-/// Its own comparison, so that overlap() is not what tests itself.
-bool meet(const Box& a, const Box& b) {
-  for (int i = 0; i < 3; ++i) {
-    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
-  }
-  return true;
-}
-
-Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, Indices items) {
-  std::sort(items.begin(), items.end());
-  Pairs pairs;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    for (std::size_t j = i + 1; j < items.size(); ++j) {
-      const std::uint32_t a = items[i], b = items[j];
-      if (owners[a] != owners[b] && meet(boxes[a], boxes[b])) pairs.push_back({a, b});
-    }
-  }
-  return pairs;
+Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, const Indices& items) {
+  std::vector<bool> taken(boxes.size());
+  for (const std::uint32_t item : items) taken[item] = true;
+  return lab::brute_force(boxes, [&](std::uint32_t a, std::uint32_t b) {
+    return owners[a] != owners[b] && taken[a] && taken[b];
+  });
 }
 
 void expect_as_brute_force(const std::vector<Box>& boxes, const Indices& owners,
@@ -102,7 +87,7 @@ RC_GTEST_PROP(SweepJoinProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
     owners.push_back(static_cast<std::uint32_t>(*rc::gen::inRange(0, owner_count)));
     if (*rc::gen::inRange(0, 4) != 0) items.push_back(static_cast<std::uint32_t>(n));
   }
-  std::reverse(items.begin(), items.end());  // the order of items does not matter
+  std::ranges::reverse(items);  // the order of items does not matter
   RC_ASSERT(box_join(boxes, owners, items) == brute_force(boxes, owners, items));
 }
 
@@ -122,6 +107,120 @@ TEST(SweepJoin, AsBruteForceOnManyBoxesOfEveryShape) {
     expect_as_brute_force(boxes, owners, all(count));
     if (HasFatalFailure()) return;
   }
+}
+
+// ---- Boxes that grow by half a clearance, against rationals.
+
+using rational::Q;
+
+// Two boxes each of which is beyond the exact sum overlap wherever the boxes were that close.
+TEST(GrownBox, IsBeyondTheExactSumOnEverySide) {
+  Random random(811);
+  int nearest_is_inside = 0;
+  for (int n = 0; n < 20'000; ++n) {
+    const double clearance = std::abs(random.scaled(-60, 20));
+    const double half = half_of(clearance);
+    ASSERT_GT(Q(half), Q(clearance) / 2);
+    const Vec3 a = random.scaled3(-30, 30), b = random.scaled3(-30, 30);
+    const Box box{a.cwiseMin(b), a.cwiseMax(b)};
+    const Box grown = grow(box, half);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Q lo = Q(box.lo[axis]) - Q(half), hi = Q(box.hi[axis]) + Q(half);
+      ASSERT_LT(Q(grown.lo[axis]), lo);
+      ASSERT_GT(Q(grown.hi[axis]), hi);
+      nearest_is_inside += Q(box.lo[axis] - half) > lo;
+    }
+  }
+  EXPECT_GT(nearest_is_inside, 1000) << "the twin: sums that are rounded to nearest";
+}
+
+TEST(GrownBox, StaysWhatItIsWithoutAClearance) {
+  const Box box{Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  const Box same = grow(box, half_of(0));
+  EXPECT_EQ(same.lo, box.lo);
+  EXPECT_EQ(same.hi, box.hi);
+  EXPECT_TRUE(grow(Box::empty(), half_of(1)).is_empty());
+}
+
+// ---- Pairs in order, some at a time, against all pairs of triangles whose boxes overlap.
+
+/// Objects of small triangles, some of them `self`, and one triangle that meets nearly all others.
+Scene some_scene(Random& random, int triangles) {
+  Scene scene;
+  for (int t = 0; t < triangles; ++t) {
+    const Vec3 at(random.below(7), random.below(7), random.below(3));
+    std::array<Vec3, 3> corners;
+    for (Vec3& p : corners) p = t == 5 ? Vec3(random.cube(9)) : Vec3(at + random.cube(0.7));
+    add_triangle(scene, corners);
+  }
+  for (int first = 0; first < triangles;) {
+    const int count = std::min(random.below(triangles / 2 + 2), triangles - first);
+    scene.objects.push_back(
+        {"", static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), random.coin()});
+    first += count;
+  }
+  return scene;
+}
+
+std::vector<TrianglePair> by_search(const Scene& scene, double clearance,
+                                    const std::vector<ObjectPair>& ignored) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> out;
+  for (std::uint32_t a = 0; a < owner.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
+      if (owner[a] == owner[b] && !scene.objects[owner[a]].self) continue;
+      if (std::ranges::find(ignored, ObjectPair{owner[a], owner[b]}) != ignored.end()) continue;
+      if (overlap(grown_box(scene, a, clearance), grown_box(scene, b, clearance)))
+        out.push_back({a, b});
+    }
+  }
+  return out;
+}
+
+std::vector<TrianglePair> streamed(const Scene& scene, double clearance,
+                                   const std::vector<ObjectPair>& ignored, unsigned threads,
+                                   std::size_t most) {
+  OrderedPairs pairs(scene, clearance, ignored, threads);
+  std::vector<TrianglePair> out, part;
+  while (!pairs.at_end()) {
+    pairs.next(most, part);
+    EXPECT_LE(part.size(), most + threads * scene.triangles.size());
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  pairs.next(most, part);
+  EXPECT_TRUE(part.empty());
+  return out;
+}
+
+TEST(OrderedPairs, AreAllPairsInOrderWhateverThePartsAndThreads) {
+  Random random(621);
+  std::size_t found = 0;
+  for (const int triangles : {0, 1, 2, 15, 16, 17, 300, 700}) {
+    const Scene scene = some_scene(random, triangles);
+    std::vector<ObjectPair> ignored;
+    if (scene.objects.size() > 2) ignored = {{0, 2}};
+    const double clearance = random.coin() ? 0 : 0.25;
+    const std::vector<TrianglePair> expected = by_search(scene, clearance, ignored);
+    found += expected.size();
+    for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}})
+      for (const unsigned threads : {1u, 3u})
+        EXPECT_EQ(streamed(scene, clearance, ignored, threads, most), expected) << triangles;
+    // The twin: the search notices a pair of objects that is not ignored.
+    if (!ignored.empty() && by_search(scene, clearance, {}) != expected) {
+      EXPECT_NE(streamed(scene, clearance, {}, 1, 40), expected);
+    }
+  }
+  EXPECT_GT(found, 200u);
+}
+
+TEST(OrderedPairs, OfAClearanceBeyondTheDoublesAreAllPairs) {
+  Random random(622);
+  Scene scene = some_scene(random, 40);
+  for (Vec3& p : scene.vertices) p *= 1e307;
+  constexpr double kMax = std::numeric_limits<double>::max();
+  const std::vector<TrianglePair> expected = by_search(scene, kMax, {});
+  EXPECT_GT(expected.size(), 500u);
+  EXPECT_EQ(streamed(scene, kMax, {}, 2, 64), expected);
 }
 
 }  // namespace

@@ -2,15 +2,9 @@
 #include "core/canvas/fatten.h"
 #include "offsets/offsets.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <numeric>
-
-#include "tests/core/base/rational.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -176,9 +170,8 @@ TEST(Fatten, IsTheConcatenationOfItsItems) {
   const std::vector<Box> region{{Vec3::Constant(-1), Vec3::Constant(1)}};
   const Scene scene = mixed_scene(random, 20'000);  // several chunks where there are cores
   std::vector<std::uint32_t> items;
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
     if (random.below(8) != 0) items.push_back(t);
-  }
   for (const Fattener& fattener : {obb_fattener(), raw_triangles(), obb_surface_fattener()}) {
     for (const char* view : {"z", "1:2:3"}) {
       const Window window = *fit_window(parse_view(view), region, 300);

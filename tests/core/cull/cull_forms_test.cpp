@@ -1,13 +1,7 @@
 // Forms of CULLIDE: a limit of rounds, views that all have to clear, objects alone. Each against
 // what single views and single rounds give by themselves.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cfloat>
-#include <iterator>
-
 #include "core/boxes/join.h"
-#include "tests/core/cull/cull_lab.h"
+#include "tests/lab/cull.h"
 #include "verify/accounting.h"
 
 namespace farcull {
@@ -102,9 +96,8 @@ TEST(CullForms, RoundsEndWhereTheyAreLimited) {
       int last = 0;
       for (const Stage& stage : run.stages) last = std::max(last, stage.round);
       EXPECT_LE(last, rounds) << seed;
-      const auto limit = std::find_if(run.stages.begin(), run.stages.end(), [](const Stage& s) {
-        return s.reason == Reason::rounds_given;
-      });
+      const auto limit = std::ranges::find_if(
+          run.stages, [](const Stage& s) { return s.reason == Reason::rounds_given; });
       if (rounds == 1) {
         EXPECT_NE(limit, run.stages.end());
       }
@@ -125,7 +118,7 @@ TEST(CullForms, ObjectsAloneStayWhole) {
       int count = 0;
       for (const Object& object : scene.objects) {
         const auto of = [&](const Indices& list) {
-          const auto from = std::lower_bound(list.begin(), list.end(), object.first_triangle);
+          const auto from = std::ranges::lower_bound(list, object.first_triangle);
           const auto to =
               std::lower_bound(from, list.end(), object.first_triangle + object.triangle_count);
           return to - from;
@@ -194,13 +187,11 @@ TEST(CullForms, PlansNameTheStagesOfTheFirstRound) {
     settings.objects_alone = form & 4;
     settings.full = true;
     std::vector<std::string> planned, went;
-    for (const Stage& stage : planned_stages(scene, find_regions(scene), settings)) {
+    for (const Stage& stage : planned_stages(scene, find_regions(scene), settings))
       if (stage.kind != StageKind::further_rounds) planned.push_back(name_of(stage));
-    }
-    for (const Stage& stage : cull(scene, find_regions(scene), settings, *drawing.canvas).stages) {
+    for (const Stage& stage : cull(scene, find_regions(scene), settings, *drawing.canvas).stages)
       if (stage.kind != StageKind::further_rounds && stage.round <= 1)
         went.push_back(name_of(stage));
-    }
     EXPECT_EQ(planned, went) << "form " << form;
   }
 }

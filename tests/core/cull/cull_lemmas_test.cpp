@@ -2,9 +2,7 @@
 // "Quick-CULLIDE": lemmas 6 to 12; the names of tests have the numbers of the two papers), each as
 // a property: on raw triangles in the pixel-exact sense, on fattened ones against exact collisions.
 // Each has a twin that breaks its rule and is caught.
-#include <gtest/gtest.h>
-
-#include "tests/core/cull/cull_lab.h"
+#include "tests/lab/cull.h"
 
 namespace farcull {
 namespace {
@@ -122,10 +120,9 @@ TEST(CullLemma, L2AndL4QuestionsLeftOutWouldClearNothing) {
             for (const PassRule& rule : {asks_ffv_twice, asks_sfv_twice}) {
               const Trace more = lab::run_by(rule, scene, q.drawing, settings);
               RC_ASSERT(more.result.bits == quick.result.bits);
-              for (std::size_t i = 0; i < std::min(more.steps.size(), quick.steps.size()); ++i) {
+              for (std::size_t i = 0; i < std::min(more.steps.size(), quick.steps.size()); ++i)
                 for (std::size_t t = 0; t < scene.triangles.size(); ++t)
                   RC_ASSERT((more.steps[i].bits[t] & ~quick.steps[i].bits[t]) == 0);
-              }
             }
           });
 }
@@ -154,9 +151,8 @@ TEST(CullLemma, L2AndL4TheOtherQuestionIsNeeded) {
 // passes a set is stored; everything else is stored in both.
 PassRule storing(Bit set, bool first, bool second) {
   PassRule rule = kQuickRule;
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < 2; ++pass)
     for (int bits = 0; bits < kCulled; ++bits) rule.stores[pass][bits] = true;
-  }
   rule.stores[0][set] = first;
   rule.stores[1][set] = second;
   return rule;
@@ -165,9 +161,8 @@ PassRule storing(Bit set, bool first, bool second) {
 TEST(CullLemma, L3AndL5SetsStoredInOnePassLoseNoPair) {
   for_all(813, [](const Question& q, const Scene& scene, const CullSettings& settings,
                   const Pairs& pairs) {
-    for (const PassRule& rule : {storing(kF, true, false), storing(kL, false, true), kQuickRule}) {
+    for (const PassRule& rule : {storing(kF, true, false), storing(kL, false, true), kQuickRule})
       RC_ASSERT(lab::wrongly_cleared(lab::run_by(rule, scene, q.drawing, settings), pairs) == 0);
-    }
   });
 }
 
@@ -208,9 +203,8 @@ class OneView {
     pass.slots = 1;
     const auto step = [&](Verb verb, const auto& wanted) {
       const auto first = static_cast<std::uint32_t>(pass.draws.size());
-      for (std::uint32_t i = 0; i < plan_.triangles.size(); ++i) {
+      for (std::uint32_t i = 0; i < plan_.triangles.size(); ++i)
         if (wanted(object_[plan_.triangles[i]])) lab::add(pass.draws, drawables_, i, 0);
-      }
       pass.steps.push_back({verb, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
     };
     step(Verb::store, stored);
@@ -240,7 +234,7 @@ int visible_and_colliding(const Scene& scene, const Drawing& drawing, const Cull
     const auto others = [o](std::uint32_t s) { return s != o; };
     const auto count = [&](const auto& stored) {
       if (!view.fully_visible(o, stored)) return;
-      found += std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+      found += std::ranges::any_of(pairs, [&](const auto& pair) {
         const std::uint32_t a = view.objects()[pair.first], b = view.objects()[pair.second];
         return (a == o && stored(b)) || (b == o && stored(a));
       });

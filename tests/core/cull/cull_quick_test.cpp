@@ -1,12 +1,8 @@
 // Quick-CULLIDE against plain CULLIDE, step by step on their common schedule; the level of
 // clusters, runs in sequence and what may be left out, which must not change what is kept.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 #include "core/base/text.h"
 #include "core/cull/clusters.h"
-#include "tests/core/cull/cull_lab.h"
+#include "tests/lab/cull.h"
 
 namespace farcull {
 namespace {
@@ -97,11 +93,7 @@ Scene with_crowd(Scene scene) {
         {"crowd", static_cast<std::uint32_t>(scene.triangles.size()), 100, false});
     for (int i = 0; i < 100; ++i) {
       const Vec3 at(3 + 0.1 * (i % 10), 3 + 0.1 * (i / 10), 3 + 0.1 * (i % 10));
-      const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-      for (const Vec3& d : {Vec3(0, 0, 0), Vec3(0.2, 0, 0.1), Vec3(0, 0.2, 0.1)})
-        scene.vertices.push_back(at + d);
-      scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
-      scene.triangles.push_back({v, v + 1, v + 2});
+      add_triangle(scene, {at, at + Vec3(0.2, 0, 0.1), at + Vec3(0, 0.2, 0.1)});
     }
   }
   return scene;
@@ -143,9 +135,7 @@ TEST(CullQuick, SavedAndUsedTogetherArePlainsCost) {
         ASSERT_EQ(q.draws + q.draws_saved, plain.steps[i].draws) << n << ", " << q.name;
         ASSERT_EQ(q.queries + q.queries_saved, plain.steps[i].queries) << n << ", " << q.name;
         ++compared;
-        const auto culled = [](const StepRecord& s) {
-          return std::count(s.bits.begin(), s.bits.end(), kCulled);
-        };
+        const auto culled = [](const StepRecord& s) { return std::ranges::count(s.bits, kCulled); };
         if (culled(q) != culled(plain.steps[i])) break;
       }
       std::uint64_t draws_saved = 0, queries_saved = 0;
@@ -196,12 +186,11 @@ class FirstOfSlot : public IdealCanvas {
     for (const Step& step : cut.steps) {
       if (step.verb == Verb::store) continue;
       std::size_t kept = step.first;
-      for (std::uint32_t d = step.first; d < step.first + step.count; ++d) {
+      for (std::uint32_t d = step.first; d < step.first + step.count; ++d)
         if (d > step.first && cut.draws[d].slot == pass.draws[d - 1].slot)
           cut.draws[d] = cut.draws[kept];
         else
           kept = d;
-      }
     }
     return IdealCanvas::run(cut);
   }
@@ -228,7 +217,7 @@ TEST(CullClusters, CutEachOwnerAlongTheCurve) {
   const std::vector<std::uint32_t> order =
       spatial_order(plan.triangles, owner, plan.triangle_boxes);
   std::vector<std::uint32_t> sorted = order;
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   EXPECT_EQ(sorted, plan.triangles);
   const std::vector<std::uint32_t> number = cluster_numbers(order, owner, 4);
   std::uint32_t filled = 1;
@@ -291,14 +280,12 @@ TEST(CullSequence, BitsThatAreNoFactsLosePairs) {
     const Scene scene = lab::scene_of(lab::random_small(8000 + n, 20));
     CullSettings settings = lab::cull_settings(exact, "x,y,z", 12);
     settings.bits = lab::run_by(kQuickRule, scene, exact, settings).result.bits;
-    for (std::uint8_t& bits : settings.bits) {
+    for (std::uint8_t& bits : settings.bits)
       if (bits == 0) bits = kF;
-    }
     const Trace wrong = lab::run_by(kQuickRule, scene, exact, settings);
     for (const auto& [u, t] : lab::collisions(scene)) {
       const auto& live = wrong.result.live;
-      lost += !std::binary_search(live.begin(), live.end(), u) ||
-              !std::binary_search(live.begin(), live.end(), t);
+      lost += !std::ranges::binary_search(live, u) || !std::ranges::binary_search(live, t);
     }
   }
   EXPECT_GT(lost, 0u);
@@ -337,9 +324,8 @@ TEST(CullLeftOut, FullRunsEverythingAndKeepsTheSame) {
 }
 
 const Stage* stage_named(const CullResult& result, const std::string& part) {
-  for (const Stage& stage : result.stages) {
+  for (const Stage& stage : result.stages)
     if (name_of(stage).find(part) != std::string::npos) return &stage;
-  }
   return nullptr;
 }
 
@@ -359,7 +345,7 @@ TEST(CullLeftOut, NoLevelForAnEmptySet) {
     const Stage* stage = stage_named(result, level);
     ASSERT_NE(stage, nullptr) << level;
     EXPECT_FALSE(stage->ran);
-    EXPECT_NE(reason_of(*stage).find("nothing is left"), std::string::npos) << reason_of(*stage);
+    EXPECT_TRUE(has_text(reason_of(*stage), "nothing is left"));
   }
 }
 

@@ -1,9 +1,7 @@
 // The CULLIDE family on the real rasterizer: both kinds of query give the same answers with any
 // primitive and either test, and Quick-CULLIDE is ahead of plain CULLIDE after every step.
-#include <gtest/gtest.h>
-
-#include "tests/core/cull/cull_lab.h"
-#include "tests/core/gl/gl_lab.h"
+#include "tests/lab/cull.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {

@@ -1,8 +1,5 @@
 // FAR from triangles to pairs on the real rasterizer, against the exact oracle over all pairs.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/boxes/join.h"
 #include "core/cull/cull.h"
@@ -11,9 +8,8 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/offsets.h"
-#include "tests/core/base/seed.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/far.h"
+#include "tests/lab/gl.h"
 #include "verify/accounting.h"
 #include "verify/exact.h"
 
@@ -254,7 +250,7 @@ std::vector<TrianglePair> mapped_back(std::vector<TrianglePair> pairs,
                                       const std::vector<std::uint32_t>& from) {
   for (TrianglePair& p : pairs)
     p = {std::min(from[p.a], from[p.b]), std::max(from[p.a], from[p.b])};
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 
@@ -294,9 +290,8 @@ TEST(GlFar, SignedAxisPermutationsChangeNoAnswer) {
 // too.
 TEST(GlFar, ScalingsByPowersOfTwoAndExactMovesChangeNothingAtAll) {
   Scene scene = make_builtin_scene("random-soup");
-  for (Vec3& v : scene.vertices) {
+  for (Vec3& v : scene.vertices)
     for (double& x : v) x = std::round(x * 0x1p20) * 0x1p-20;
-  }
   const Record before = run(scene, 96);
   for (const int exponent : {-300, -40, -1, 1, 40, 300}) {
     Scene other = scene;
@@ -321,31 +316,29 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   Session none("no such device");  // opening it would throw
   const Record record = run(scene, {.method = Method::far}, none);
   EXPECT_FALSE(record.found.device.gl.has_value());
-  EXPECT_NE(record.found.device.note.find("nothing to draw"), std::string::npos);
+  EXPECT_TRUE(has_text(record.found.device.note, "nothing to draw"));
   EXPECT_EQ(record.found.triangle_count, 0u);
   EXPECT_EQ(record.verification->false_negatives, 0u);
 }
 
-// The economy of storing only open items must cost no culling: the fixed point is at least as
-// small.
-TEST(GlFar, EconomyNeverKeepsMore) {
-  for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
-    SCOPED_TRACE(name);
-    const Scene scene = make_builtin_scene(name);
-    const Regions plan = find_regions(scene);
-    const Fattener fattener = obb_fattener();
-    GlCanvas canvas(session().context(), fattener.mode, fattener.solid);
-    CullSettings settings{.views = parse_views("x,y,z"),
-                          .resolution = 96,
-                          .fattener = fattener,
-                          .radius = {},
-                          .quick = true};
-    const std::vector<std::uint32_t> economical = cull(scene, plan, settings, canvas).live;
-    settings.quick = false;
-    const std::vector<std::uint32_t> plain = cull(scene, plan, settings, canvas).live;
-    EXPECT_TRUE(std::includes(plain.begin(), plain.end(), economical.begin(), economical.end()));
-  }
+lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
+  return [options](const Fattener& fattener) {
+    return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);
+  };
 }
+
+TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
+  lab::expect_far_survives_all_families(canvases(),
+                                        {.canvas = "gl", .fixed = 30, .of_the_day = 30});
+}
+
+TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
+  lab::expect_far_survives_all_families(
+      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}),
+      {.canvas = "gl24", .fixed = 8, .of_the_day = 4});
+}
+
+TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
 
 }  // namespace
 }  // namespace farcull

@@ -1,8 +1,6 @@
 // The reliability lemmas on the real rasterizer.
-#include <cmath>
-
-#include "tests/core/canvas/lemma_suite.h"
-#include "tests/core/gl/gl_lab.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/lemmas.h"
 
 namespace farcull {
 namespace {
@@ -78,36 +76,13 @@ TEST(GlLemma, InterpolatedDepthFailsOnSteepEdgesAtThePublishedRadius) {
   }
 }
 
+// Adding the slack rounds once more where it crosses 1/2.
 TEST(GlLemma, ABufferHoldsTheSamplesUnderTheDepthMap) {
-  const Window w = lab::window(64, 100);
-  const std::vector<Patch> patches = {lab::patch({{-20, -20, -60}, {20, -10, 30}, {0, 25, 80}}),
-                                      lab::patch({{-5, 0, 2}, {28, 3, 9}, {10, 30, -99}})};
   const Fattener fattener = obb_fattener();
   for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
     const std::unique_ptr<Canvas> canvas =
         canvases({.depth_format = format, .query = QueryMode::occlusion})(fattener);
-    const Drawables drawables = lab::fattened(w, fattener, 0.72, patches);
-    canvas->begin(w, drawables);
-    const std::vector<Draw> draws = {{0, 0}, {1, 0}};
-    for (const Verb verb : {Verb::store, Verb::ask}) {
-      const std::vector<float> px = canvas->samples(verb, draws),
-                               held = canvas->depths(verb, draws);
-      int covered = 0;
-      for (std::size_t i = 0; i < px.size(); ++i) {
-        if (std::isnan(px[i])) {
-          EXPECT_EQ(held[i], verb == Verb::store ? 1 : 0);
-          continue;
-        }
-        ++covered;
-        const bool ask = verb == Verb::ask;
-        const double map =
-            0.5 + static_cast<double>(px[i]) * depth_scale(w) + (ask ? kAskedBehind : 0);
-        // Adding the slack rounds once more where it crosses 1/2.
-        EXPECT_LE(std::abs(held[i] - map) * 0x1p24,
-                  depth_rounding(canvas->limits().depth_bits) + (ask ? 1 : 0));
-      }
-      EXPECT_GT(covered, 500);
-    }
+    lab::expect_held_under_map(*canvas, fattener, canvas->limits().depth_bits, kAskedBehind);
   }
 }
 

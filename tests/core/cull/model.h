@@ -3,10 +3,7 @@
 // and what is tested with it.
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <vector>
+#include "tests/lab/standard.h"
 
 namespace farcull::model {
 

@@ -1,11 +1,5 @@
 // The model of the passes against core/cull, step by step, on random worlds and schedules
 // (docs/model.md). FARCULL_MODEL_TRIALS=1000000 asks for more of them.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-
 #include "tests/core/cull/model_cases.h"
 #include "tests/core/cull/model_worlds.h"
 
@@ -45,7 +39,7 @@ struct Contents {
       undrawable += view.drawn && view.undrawable != 0;
       undrawn += view.drawn && (c.world.region & ~view.undrawable & ~view.shown) != 0;
     }
-    culled += std::count(outcome.bits.begin(), outcome.bits.end(), kCulled) > 0;
+    culled += std::ranges::count(outcome.bits, kCulled) > 0;
     must_stay += (no.f | no.l) != 0;
   }
   std::vector<int> all() const {
@@ -58,13 +52,12 @@ struct Contents {
 bool breaks(const Case& c, const Outcome& outcome, const Bits& no) {
   const std::vector<std::uint8_t> forbidden = bits_of(c, no);
   const auto wrong = [&](const std::vector<std::uint8_t>& bits) {
-    for (std::size_t t = 0; t < bits.size(); ++t) {
+    for (std::size_t t = 0; t < bits.size(); ++t)
       if (bits[t] & forbidden[t]) return true;
-    }
     return false;
   };
-  return wrong(outcome.bits) || std::any_of(outcome.steps.begin(), outcome.steps.end(),
-                                            [&](const Seen& step) { return wrong(step.bits); });
+  return wrong(outcome.bits) ||
+         std::ranges::any_of(outcome.steps, [&](const Seen& step) { return wrong(step.bits); });
 }
 
 TEST(CullModel, AgreesWithCullStepByStep) {
@@ -182,9 +175,8 @@ TEST(CullModel, AgreesWithJoinPatches) {
     const Bits bits = run(c.world, c.schedule, c.start, [](const Step&) {});
     const Outcome core = by_core(c);
     std::vector<std::uint32_t> live;
-    for (std::uint32_t t = 0; t < core.bits.size(); ++t) {
+    for (std::uint32_t t = 0; t < core.bits.size(); ++t)
       if (core.bits[t] != kCulled) live.push_back(t);
-    }
     // All boxes overlap.
     const std::vector<Box> boxes(core.bits.size(), Box{Vec3::Zero(), Vec3::Ones()});
     const std::vector<TrianglePair> pairs =

@@ -1,14 +1,8 @@
 // Each rule of the passes, and each thing that they take for granted, removed once: the smallest
 // world in which something breaks, as docs/model.md shows it. core/cull, which has all the rules,
 // keeps what is lost there.
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <string>
-
 #include "core/base/text.h"
 #include "tests/core/cull/model_cases.h"
-#include "tests/core/cull/model_page.h"
 #include "tests/core/cull/model_worlds.h"
 
 namespace farcull::model {
@@ -50,9 +44,8 @@ std::string lost_pair(const World& world, const Bits& end, const Removal& remova
   for (int t = 0; t < n; ++t) {
     const Set met = may_meet(world, t, removal.axioms);
     for (int u = 0; u < t; ++u) {
-      const bool one_owner = std::any_of(world.owners.begin(), world.owners.end(), [&](Set owner) {
-        return (owner & only(t)) && (owner & only(u));
-      });
+      const bool one_owner = std::ranges::any_of(
+          world.owners, [&](Set owner) { return (owner & only(t)) && (owner & only(u)); });
       // Whether triangles of one owner are seen against each other nobody asks.
       if (!one_owner && !(met & only(u))) continue;
       const bool patches = removal.breaks == Breaks::lost_in_patches;
@@ -78,9 +71,8 @@ std::string effect(const World& world, const Bits& start, const Schedule& intact
     if (end != wanted || groups == fewer_groups) return "";
     return counted(groups, "question", "questions") + " in place of " + grouped(fewer_groups);
   }
-  for (int t = 0; t < n; ++t) {
+  for (int t = 0; t < n; ++t)
     if (wanted.culled() & ~end.culled() & only(t)) return letter(t) + " is kept";
-  }
   return "";
 }
 
@@ -136,9 +128,8 @@ Found smallest(const Removal& removal) {
 
 std::string line(const Removal& removal, const Found& found) {
   std::string world = text_of(found.world, found.n);
-  for (int t = 0; t < found.n; ++t) {
+  for (int t = 0; t < found.n; ++t)
     if (!(found.world.region & only(t))) world += "; " + letter(t) + " takes no part";
-  }
   if (found.start != Bits{}) world += "; it begins with" + text_of_bits(found.start, found.n);
   if (found.schedule.rounds > 1) world += "; " + std::to_string(found.schedule.rounds) + " rounds";
   return std::string("| ") + removal.text + " | " + world + " | " + found.effect + " |";
@@ -205,10 +196,9 @@ TEST(ModelRules, EachIsNeededAsThePageShows) {
 // Of the removed rules: with all rules nothing is lost in any world of up to three triangles, one
 // view and two rounds. (model_worlds_test.cpp has larger worlds, without patches.)
 TEST(ModelRules, TogetherTheyLoseNothing) {
-  for (const Breaks breaks : {Breaks::lost, Breaks::lost_in_patches}) {
+  for (const Breaks breaks : {Breaks::lost, Breaks::lost_in_patches})
     for (int n = 1; n <= 3; ++n)
       EXPECT_EQ(smallest_of(n, 1, 2, {.text = "", .breaks = breaks}).effect, "");
-  }
 }
 
 }  // namespace

@@ -2,10 +2,8 @@
 // in docs/model.md.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "tests/core/cull/model.h"
+#include "tests/lab/test.h"
 
 namespace farcull::model {
 
@@ -47,9 +45,8 @@ inline Set all_of(const World& world) {
 inline Set may_meet(const World& world, int t, const Axioms& axioms = {}) {
   const Set part = axioms.takes_part ? world.region : all_of(world);
   Set out = part & only(t) ? part & ~only(t) : 0;
-  for (const View& view : world.views) {
+  for (const View& view : world.views)
     if (view.drawn) out &= may_meet(view, t, axioms);
-  }
   return out;
 }
 
@@ -115,21 +112,60 @@ inline std::vector<View> all_views(const std::vector<Set>& owners, int n) {
     std::vector<std::pair<int, Set>> pairs;  // asked, stored
     for (const Set owner : owners) {
       for (int t = 0; t < n; ++t) {
-        for (int u = 0; u < n; ++u) {
+        for (int u = 0; u < n; ++u)
           if ((owner & view.shown & only(t)) && (~owner & view.shown & only(u)))
             pairs.emplace_back(t, only(u));
-        }
       }
     }
     for (Set relation = 0; relation < only(static_cast<int>(pairs.size())); ++relation) {
       view.behind = {};
-      for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t i = 0; i < pairs.size(); ++i)
         if (relation & only(static_cast<int>(i))) view.behind[pairs[i].first] |= pairs[i].second;
-      }
       out.push_back(view);
     }
   }
   return out;
+}
+
+// Worlds of the model as docs/model.md writes them, and the lines of that page.
+
+/// Triangles are a, b, c ...
+inline std::string letter(int t) { return {static_cast<char>('a' + t)}; }
+
+inline std::string text_of(const View& view, int n) {
+  if (!view.drawn) return " cannot be drawn";
+  std::string out;
+  for (int t = 0; t < n; ++t) {
+    if (view.undrawable & only(t))
+      out += " " + letter(t) + "?";
+    else if (!(view.shown & only(t)))
+      out += " " + letter(t) + "-";
+    for (int u = 0; u < n; ++u)
+      if (view.behind[t] & only(u)) out += " " + letter(t) + ">" + letter(u);
+  }
+  return out.empty() ? " nothing is seen" : out;
+}
+
+/// "{a} {b c}; view 1: a>b c?": the owners in order; a is seen against b; c is undrawable. "c-": it
+/// has no point in the window.
+inline std::string text_of(const World& world, int n) {
+  std::string out;
+  for (const Set owner : world.owners) {
+    out += out.empty() ? "{" : " {";
+    std::string members;
+    for (int t = 0; t < n; ++t)
+      if (owner & only(t)) members += (members.empty() ? "" : " ") + letter(t);
+    out += members + "}";
+  }
+  for (std::size_t v = 0; v < world.views.size(); ++v)
+    out += "; view " + std::to_string(v + 1) + ":" + text_of(world.views[v], n);
+  return out;
+}
+
+/// Expects that a line of docs/model.md begins so.
+inline void expect_on_page(const std::string& text) {
+  const std::string page = "\n" + read_text(FARCULL_TEST_DIR "/../docs/model.md");
+  EXPECT_NE(page.find("\n" + text), std::string::npos) << "docs/model.md has no line that begins so:\n" << text;
 }
 
 }  // namespace farcull::model

@@ -2,15 +2,8 @@
 // allow nothing is missed; without one of the parts of the argument pairs are lost.
 #include "core/cull/patches.h"
 
-#include <algorithm>
-#include <map>
-#include <set>
-#include <stdexcept>
-
 #include "core/cull/pass.h"
-#include "tests/core/base/seed.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/cull/far_properties.h"
+#include "tests/lab/far.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {
@@ -234,11 +227,10 @@ TEST(Patches, AreOwnersOfAtMostTheirSizeInsideTheirObjects) {
       const std::uint32_t expected =
           object.self ? (object.triangle_count + size - 1) / size : object.triangle_count > 0;
       EXPECT_EQ(own.size(), expected);
-      for (const std::uint32_t owner : own) {
+      for (const std::uint32_t owner : own)
         if (object.self) {
           EXPECT_LE(members[owner], size);
         }
-      }
       if (object.self) count += expected;
       cut |= object.self && expected > 1;
       beyond = *own.rbegin() + 1;

@@ -1,14 +1,10 @@
 // Theorems 9 and 11: what a radius below the budget loses, on models of devices that round corners.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <string>
-
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "offsets/offsets.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/far.h"
+#include "tests/lab/scenes.h"
+#include "verify/worst_canvas.h"
 
 namespace farcull {
 namespace {
@@ -28,13 +24,11 @@ class RoundingCanvas final : public Canvas {
   const RasterLimits& limits() const override { return limits_; }
   void begin(const Window& window, const Drawables& drawables) override {
     drawn_ = drawables;
-    for (Proxy& proxy : drawn_.proxies) {
+    for (Proxy& proxy : drawn_.proxies)
       for (float& x : proxy.corners) move(x);
-    }
     for (std::array<float, 12>& triangle : drawn_.triangles) {
-      for (int corner = 0; corner < 3; ++corner) {
+      for (int corner = 0; corner < 3; ++corner)
         for (int axis = 0; axis < 2; ++axis) move(triangle[4 * corner + axis]);
-      }
     }
     native_.begin(window, drawn_);
   }
@@ -93,9 +87,8 @@ TEST(Radius, AsPublishedItLosesPairsBesideThatPair) {
   lab::Random random(1);
   for (int i = 0; i < 100; ++i) {
     Scene moved = scene;
-    for (Vec3& p : moved.vertices) {
+    for (Vec3& p : moved.vertices)
       for (double& x : p) x += random.grid(-0x1p-14, 0x1p-14, 0x1p-30);
-    }
     EXPECT_EQ(kept(moved, fattener, canvas, {.published = true}), 0u) << i;
   }
 }
@@ -128,6 +121,19 @@ TEST(Radius, BelowTheBoundADeviceThatKeepsTheAssumptionsLosesAPair) {
     EXPECT_LT(budget_for(limits, 4096).radius(), 1.006 * bound);
   }
 }
+
+// ---- FAR as a property on the worst canvas; the same on GL in gl_far_test.cpp.
+
+std::unique_ptr<Canvas> worst(const Fattener& fattener) {
+  return std::make_unique<WorstCanvas>(fattener.solid);
+}
+
+TEST(FarProperty, NoFamilyOfExtremeScenesLosesAPairOnTheWorstCanvas) {
+  lab::expect_far_survives_all_families(
+      worst, {.canvas = "worst", .fixed = 8, .of_the_day = trials(8, 4), .most_px = 24});
+}
+
+TEST(FarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(worst), 0); }
 
 }  // namespace
 }  // namespace farcull

@@ -1,17 +1,8 @@
 // The GL canvas does what core/canvas/canvas.h specifies, and notices every fault of assumption A7.
-#include <gtest/gtest.h>
-
-#include <cfenv>
-#include <cfloat>
-#include <cmath>
-#include <optional>
-#include <string>
-
 #include "core/base/error.h"
 #include "core/gl/base/driver_fault.h"
 #include "offsets/offsets.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/gl/reversed_depth.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {
@@ -26,11 +17,9 @@ struct Layers {
 
   Layers() {
     for (int y = -24; y <= 24; y += 8) {
-      for (int x = -24; x <= 24; x += 8) {
-        for (const double z : {-10.0, 10.0}) {
+      for (int x = -24; x <= 24; x += 8)
+        for (const double z : {-10.0, 10.0})
           patches.push_back(lab::patch({Vec3(x, y, z), Vec3(x + 2, y, z), Vec3(x, y + 2, z)}));
-        }
-      }
     }
   }
   int cells() const { return static_cast<int>(patches.size()) / 2; }
@@ -46,6 +35,18 @@ struct Layers {
                {Verb::ask, middle, static_cast<std::uint32_t>(p.draws.size()) - middle}};
     return p;
   }
+};
+
+// The canvas has begun with the layers.
+struct Drawn {
+  explicit Drawn(const Fattener& by = obb_fattener(), const GlCanvasOptions& options = {})
+      : fattener(by), canvas(lab::context(), by.mode, by.solid, options) {
+    canvas.begin(layers.window, drawables);
+  }
+  Layers layers;
+  Fattener fattener;
+  Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  GlCanvas canvas;
 };
 
 struct Setting {
@@ -72,13 +73,9 @@ std::vector<Setting> settings() {
 }
 
 TEST(GlCanvas, SeesWhatIsBehindAndNotWhatIsInFront) {
-  const Layers layers;
   for (const Setting& setting : settings()) {
     SCOPED_TRACE(setting.name);
-    const Fattener fattener = setting.fattener();
-    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
-    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-    canvas.begin(layers.window, drawables);
+    auto [layers, fattener, drawables, canvas] = Drawn(setting.fattener(), setting.options);
     EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 1)),
               std::vector<std::uint8_t>(layers.cells(), 1));
     EXPECT_EQ(canvas.run(layers.pass(drawables, 1, 0)),
@@ -90,13 +87,9 @@ TEST(GlCanvas, SeesWhatIsBehindAndNotWhatIsInFront) {
 }
 
 TEST(GlCanvas, NothingIsSeenWhereNothingIsStored) {
-  const Layers layers;
   for (const Setting& setting : settings()) {
     SCOPED_TRACE(setting.name);
-    const Fattener fattener = setting.fattener();
-    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
-    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-    canvas.begin(layers.window, drawables);
+    auto [layers, fattener, drawables, canvas] = Drawn(setting.fattener(), setting.options);
     Pass pass;  // only the first cell is stored
     lab::add(pass.draws, drawables, 0, 0);
     const auto middle = static_cast<std::uint32_t>(pass.draws.size());
@@ -106,18 +99,14 @@ TEST(GlCanvas, NothingIsSeenWhereNothingIsStored) {
                   {Verb::ask, middle, static_cast<std::uint32_t>(pass.draws.size()) - middle}};
     const std::vector<std::uint8_t> seen = canvas.run(pass);
     EXPECT_EQ(seen[0], 1);
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), 1);
+    EXPECT_EQ(std::ranges::count(seen, 1), 1);
   }
 }
 
 TEST(GlCanvas, StoringEverywhereHidesAll) {
-  const Layers layers;
   for (const Setting& setting : settings()) {
     SCOPED_TRACE(setting.name);
-    const Fattener fattener = setting.fattener();
-    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
-    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-    canvas.begin(layers.window, drawables);
+    auto [layers, fattener, drawables, canvas] = Drawn(setting.fattener(), setting.options);
     Pass pass;
     pass.draws.push_back({kEverywhere, 0});
     for (int i = 0; i < layers.cells(); ++i) lab::add(pass.draws, drawables, 2 * i, i);
@@ -129,12 +118,8 @@ TEST(GlCanvas, StoringEverywhereHidesAll) {
 }
 
 TEST(GlCanvas, SeveralStoresAddUp) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
   for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
-    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
-    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-    canvas.begin(layers.window, drawables);
+    auto [layers, fattener, drawables, canvas] = Drawn(obb_fattener(), {.query = query});
     // Cell after cell: ask the far item of all cells so far, then store the near one of the next.
     Pass pass;
     std::vector<std::uint8_t> expected;
@@ -232,12 +217,8 @@ TEST(GlCanvas, SendsNothingTwice) {
 
 // Counts go on after a failure, which drops all that lies on the device.
 TEST(GlCanvas, CountsGoOnAfterAFault) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
   std::optional<DriverFault> fault(DriverFaultKind::lost_draw);
-  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
-  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-  canvas.begin(layers.window, drawables);
+  auto [layers, fattener, drawables, canvas] = Drawn();
   const Pass pass = layers.pass(drawables, 0, 1);
   canvas.run(pass);
   const CanvasWork clean = canvas.work();
@@ -255,12 +236,8 @@ TEST(GlCanvas, CountsGoOnAfterAFault) {
 }
 
 TEST(GlCanvas, ReversedDepthTestIsADefectThatShows) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
   const lab::ReversedDepth reversed;
-  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
-  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-  canvas.begin(layers.window, drawables);
+  auto [layers, fattener, drawables, canvas] = Drawn();
   EXPECT_THROW(canvas.run(layers.pass(drawables, 0, 1)), Error)
       << "a depth test that stores nothing loses the control item";
 }
@@ -307,20 +284,11 @@ TEST(GlCanvas, NoticesEveryFault) {
 
 // A work item that does not finish is seen by the count, not by an echo that differs.
 TEST(GlCanvas, CountsFinishedItems) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
   DriverFault fault(DriverFaultKind::unfinished_item);
-  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
-  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-  canvas.begin(layers.window, drawables);
+  auto [layers, fattener, drawables, canvas] = Drawn();
   fault.strike();
-  try {
-    canvas.run(layers.pass(drawables, 0, 1));
-    FAIL() << "the fault was not noticed";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("work items finished"), std::string::npos)
-        << error.what();
-  }
+  const std::string said = message_of([&] { canvas.run(layers.pass(drawables, 0, 1)); });
+  EXPECT_TRUE(has_text(said, "work items finished"));
 }
 
 // A driver that leaves out the last element of each draw that has more than one.
@@ -336,22 +304,12 @@ class ShortDraws {
 // The first vertex of such a draw runs, and so do the control items. Only the number of primitives
 // is wrong, and an item would not be seen.
 TEST(GlCanvas, CountsPrimitives) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
   for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
-    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
-    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-    canvas.begin(layers.window, drawables);
+    auto [layers, fattener, drawables, canvas] = Drawn(obb_fattener(), {.query = query});
     const Pass pass = layers.pass(drawables, 0, 1);
     EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
     const ShortDraws fault;
-    try {
-      canvas.run(pass);
-      FAIL() << "the fault was not noticed";
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("primitives were drawn"), std::string::npos)
-          << error.what();
-    }
+    EXPECT_TRUE(refuses("primitives were drawn", [&] { canvas.run(pass); }));
   }
 }
 
@@ -373,11 +331,7 @@ TEST(GlCanvas, LimitsComeFromTheDevice) {
 // Drivers flush subnormals in their own threads; if that leaked into ours, exact predicates and
 // outward rounding would silently lose their premises.
 TEST(GlCanvas, LeavesTheFloatingPointModeAlone) {
-  const Layers layers;
-  const Fattener fattener = obb_fattener();
-  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
-  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
-  canvas.begin(layers.window, drawables);
+  auto [layers, fattener, drawables, canvas] = Drawn();
   canvas.run(layers.pass(drawables, 0, 1));
   volatile double smallest = DBL_TRUE_MIN;
   volatile double two = 2;

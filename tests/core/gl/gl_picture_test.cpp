@@ -1,14 +1,9 @@
 // Pictures on the device: which pixels a triangle covers, in which colour, and which of two is in
 // front.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/base/error.h"
 #include "core/gl/picture/picture.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/gl/reversed_depth.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -16,18 +11,7 @@ namespace {
 constexpr Rgba kRed = {200, 20, 30}, kGreen = {10, 180, 60}, kNothing = {0, 0, 0, 0};
 
 Scene scene_of(const std::vector<std::array<Vec3, 3>>& triangles) {
-  Scene scene;
-  scene.name = "test";
-  for (const std::array<Vec3, 3>& corners : triangles) {
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), corners.begin(), corners.end());
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(static_cast<std::uint32_t>(scene.source_face.size()));
-  }
-  scene.objects.push_back({.name = "o",
-                           .first_triangle = 0,
-                           .triangle_count = static_cast<std::uint32_t>(triangles.size())});
-  return scene;
+  return lab::scene_of({triangles});
 }
 
 // 20 x 20 px of a tenth each, looked at along -z: x to the right, y up, as written.
@@ -48,8 +32,8 @@ std::array<Vec3, 3> square_half(double z) {
 }
 
 std::size_t covered(const Image& image) {
-  return static_cast<std::size_t>(std::count_if(image.pixels.begin(), image.pixels.end(),
-                                                [](const Rgba& p) { return p.a > 0; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(image.pixels, [](const Rgba& p) { return p.a > 0; }));
 }
 
 TEST(GlPicture, CoversThePixelsInsideAndNoneOutside) {
@@ -128,7 +112,7 @@ TEST(GlPicture, OutlineShowsWhatHasNoArea) {
     EXPECT_EQ(covered(draw(scene, {{.triangle = t, .colour = kRed, .shaded = false}})), 0u);
     const Image image =
         draw(scene, {{.triangle = t, .colour = kRed, .shaded = false, .outline = 4}});
-    EXPECT_GE(std::count(image.pixels.begin(), image.pixels.end(), kRed), 9);
+    EXPECT_GE(std::ranges::count(image.pixels, kRed), 9);
   }
 }
 
@@ -148,8 +132,7 @@ TEST(GlPicture, IsTheSameFarFromTheOrigin) {
 TEST(GlPicture, HugeTriangleFillsAllOfIt) {
   const Scene scene = scene_of({{Vec3(-3e9, -2e9, 0), Vec3(3e9, -2e9, 0), Vec3(0, 3e9, 0)}});
   const Image image = draw(scene, {{.triangle = 0, .colour = kRed, .shaded = false}});
-  EXPECT_TRUE(std::all_of(image.pixels.begin(), image.pixels.end(),
-                          [](const Rgba& p) { return p == kRed; }));
+  EXPECT_TRUE(std::ranges::all_of(image.pixels, [](const Rgba& p) { return p == kRed; }));
 }
 
 TEST(GlPicture, DrawsMoreThanABatch) {

@@ -2,12 +2,7 @@
 // deliberate defect under which it must fail.
 #include "core/gl/probe/probe.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-
-#include "tests/core/gl/reversed_depth.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {
@@ -104,30 +99,39 @@ TEST(GlProbe, FailsWhereATriangleOfTheSplitIsLost) {
   EXPECT_FALSE(failed.count("no area covers nothing"));
 }
 
-TEST(GlProbe, FailsWhereTrianglesWithoutAreaCover) {
-  ProbeOptions options = kBrief;
-  options.fat_zero_area = true;
-  EXPECT_EQ(failures(options, "A3"), Names{"no area covers nothing"});
-}
-
-TEST(GlProbe, FailsWhereFragCoordNamesAnotherPixel) {
-  ProbeOptions options = kBrief;
-  options.shifted_pixel = true;
-  EXPECT_EQ(failures(options, "A9"), Names{"gl_FragCoord names the pixel"});
-}
-
-TEST(GlProbe, FailsWhereArithmeticRoundsMoreThanTheBound) {
-  ProbeOptions options = kBrief;
-  options.exact_arithmetic = true;
-  EXPECT_EQ(failures(options, "A4"),
-            (Names{"+ - * (fragment)", "+ - * (compute)", "division (fragment)",
-                   "division (compute)", "precise (fragment)", "precise (compute)"}));
-}
-
-TEST(GlProbe, FailsWithoutPrecise) {
-  ProbeOptions options = kBrief;
-  options.loose_text = true;
-  EXPECT_EQ(failures(options, "A4"), (Names{"precise (fragment)", "precise (compute)"}));
+// Each defect, and the probes of its assumption that fail under it, and no others of it.
+TEST(GlProbe, FailsUnderEachDefect) {
+  struct Defect {
+    bool ProbeOptions::*is;
+    std::string assumption;
+    Names failed;
+  };
+  for (const Defect& defect : std::vector<Defect>{
+           {&ProbeOptions::fat_zero_area, "A3", {"no area covers nothing"}},
+           {&ProbeOptions::shifted_pixel, "A9", {"gl_FragCoord names the pixel"}},
+           {&ProbeOptions::exact_arithmetic,
+            "A4",
+            {"+ - * (fragment)", "+ - * (compute)", "division (fragment)", "division (compute)",
+             "precise (fragment)", "precise (compute)"}},
+           {&ProbeOptions::loose_text, "A4", {"precise (fragment)", "precise (compute)"}},
+           {&ProbeOptions::blind_queries,
+            "A6",
+            {"queries of single pixels", "areas, flags, 32F", "areas, occlusion queries, 32F",
+             "areas, occlusion queries, 24 bits"}},
+           {&ProbeOptions::skipped_faults,
+            "A7",
+            {"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
+             "faults are noticed, occlusion queries, 24 bits", "faults are noticed, far-pairs"}},
+           {&ProbeOptions::damaged_texel, "A5", {"texels of the depth buffer, 32F"}},
+           {&ProbeOptions::plain_atomics, "A8", {"atomics"}},
+           {&ProbeOptions::unordered_reads,
+            "A8",
+            {"dispatch after dispatch", "dispatch after draw"}},
+           {&ProbeOptions::one_thread, "A10", {"threads that may write to freed memory"}}}) {
+    ProbeOptions options = kBrief;
+    options.*defect.is = true;
+    EXPECT_EQ(failures(options, defect.assumption), defect.failed);
+  }
 }
 
 TEST(GlProbe, FailsWhereOneBitIsDamaged) {
@@ -152,48 +156,7 @@ TEST(GlProbe, FailsWhereTheDepthTestKeepsTheFarthest) {
                    "canvas, occlusion queries, 32F", "canvas, occlusion queries, 24 bits"}));
 }
 
-TEST(GlProbe, FailsWhereQueriesAreBlind) {
-  ProbeOptions options = kBrief;
-  options.blind_queries = true;
-  EXPECT_EQ(failures(options, "A6"),
-            (Names{"queries of single pixels", "areas, flags, 32F", "areas, occlusion queries, 32F",
-                   "areas, occlusion queries, 24 bits"}));
-}
-
-TEST(GlProbe, FailsWhereAFaultGoesUnnoticed) {
-  ProbeOptions options = kBrief;
-  options.skipped_faults = true;
-  EXPECT_EQ(
-      failures(options, "A7"),
-      (Names{"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
-             "faults are noticed, occlusion queries, 24 bits", "faults are noticed, far-pairs"}));
-}
-
-TEST(GlProbe, FailsWhereATexelIsNotWhatWasStored) {
-  ProbeOptions options = kBrief;
-  options.damaged_texel = true;
-  EXPECT_EQ(failures(options, "A5"), Names{"texels of the depth buffer, 32F"});
-}
-
-TEST(GlProbe, FailsWhereAtomicsLoseOrDouble) {
-  ProbeOptions options = kBrief;
-  options.plain_atomics = true;
-  EXPECT_EQ(failures(options, "A8"), Names{"atomics"});
-}
-
-TEST(GlProbe, FailsWhereReadsComeBeforeWrites) {
-  ProbeOptions options = kBrief;
-  options.unordered_reads = true;
-  EXPECT_EQ(failures(options, "A8"), (Names{"dispatch after dispatch", "dispatch after draw"}));
-}
-
 // FAR pairs relies on no rasterizer, and what it relies on is the same either way.
-TEST(GlProbe, FailsWhereTheDriverHasAThread) {
-  ProbeOptions options = kBrief;
-  options.one_thread = true;
-  EXPECT_EQ(failures(options, "A10"), Names{"threads that may write to freed memory"});
-}
-
 TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
   std::set<std::string> all, alone;
   for (const ProbeResult& r : run({.brief = true}, "")) {

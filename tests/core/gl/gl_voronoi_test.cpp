@@ -1,11 +1,8 @@
 // The diagram on OpenGL beside that of the CPU, and the reliable form on OpenGL against rationals.
 #include "core/gl/voronoi/voronoi.h"
 
-#include <gtest/gtest.h>
-
-#include "core/base/error.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/voronoi/voronoi_slices_lab.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {

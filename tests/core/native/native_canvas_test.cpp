@@ -2,21 +2,12 @@
 // instruction set and any number of threads.
 #include "core/native/canvas.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-
-#include "core/base/error.h"
 #include "core/view/regions.h"
 #include "offsets/offsets.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/canvas/lab.h"
-#include "tests/core/native/every_target.h"
-#include "tests/core/scene/scenes.h"
-#include "verify/kernel_cases.h"
+#include "tests/lab/lanes.h"
+#include "tests/lab/scenes.h"
 #include "verify/solid_lines.h"
+#include "verify/kernel_cases.h"
 
 namespace farcull {
 namespace {
@@ -68,15 +59,16 @@ void add_lines(rational::Draws& random, float cx, float cy, std::vector<float>& 
   }
 }
 
-TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
-  const SolidProgram program = obb_fattener().solid;
+/// On every instruction set lines through solids that `draw` makes are those of the scalar text;
+/// it says where a line is.
+template <class Draw>
+void expect_scalar_lines(const SolidProgram& program, std::uint64_t seed, const Draw& draw) {
   on_every_target([&] {
-    rational::Draws random(20261122);
+    rational::Draws random(seed);
     std::uint64_t lines = 0, different = 0;
     for (std::uint64_t n = 0; n < kTriangles; ++n) {
       float cx = 0, cy = 0;
-      Solid solid;
-      box_line::adversarial(random, solid, cx, cy);
+      const Solid solid = draw(random, n, cx, cy);
       std::vector<float> x, y;
       add_lines(random, cx, cy, x, y);
       lines += x.size();
@@ -87,24 +79,24 @@ TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
   });
 }
 
+TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
+  expect_scalar_lines(obb_fattener().solid, 20261122,
+                      [](rational::Draws& random, std::uint64_t, float& cx, float& cy) {
+                        Solid solid;
+                        box_line::adversarial(random, solid, cx, cy);
+                        return solid;
+                      });
+}
+
 TEST(NativeLanes, ExactOffsetsAreThoseOfTheScalarTextBitForBit) {
-  const SolidProgram program = minkowski_fattener().solid;
-  on_every_target([&] {
-    rational::Draws random(20261123);
-    std::uint64_t lines = 0, different = 0;
-    for (std::uint64_t n = 0; n < kTriangles; ++n) {
-      const auto t = minkowski_cases::random_triangle(
-          random, static_cast<int>(n % minkowski_cases::kKindCount));
-      const Solid solid = minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
-      std::vector<float> x, y;
-      const Vec3 p = (t[0] + t[1] + t[2]) / 3;
-      add_lines(random, static_cast<float>(p[0]), static_cast<float>(p[1]), x, y);
-      lines += x.size();
-      different += different_lines(program, solid, x, y);
-    }
-    EXPECT_EQ(different, 0u);
-    EXPECT_EQ(lines, kTriangles * kLines);
-  });
+  expect_scalar_lines(minkowski_fattener().solid, 20261123,
+                      [](rational::Draws& random, std::uint64_t n, float& cx, float& cy) {
+                        const auto t = minkowski_cases::random_triangle(
+                            random, static_cast<int>(n % minkowski_cases::kKindCount));
+                        const Vec3 p = (t[0] + t[1] + t[2]) / 3;
+                        cx = static_cast<float>(p[0]), cy = static_cast<float>(p[1]);
+                        return minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
+                      });
 }
 
 // ---- fattening ----
@@ -142,8 +134,8 @@ TEST(NativeLanes, FattenedTrianglesAreThoseOfTheScalarTextBitForBit) {
                                   .bounds = proxy_bounds(*window),
                                   .out = proxies.data(),
                                   .done = done.data()});
-          on_lanes += std::count(done.begin(), done.end(), 1);
-          left += std::count(done.begin(), done.end(), 0);
+          on_lanes += std::ranges::count(done, 1);
+          left += std::ranges::count(done, 0);
           EXPECT_EQ(std::memcmp(many.proxies.data(), one.proxies.data(),
                                 many.proxies.size() * sizeof(Proxy)),
                     0)
@@ -195,11 +187,10 @@ std::vector<std::uint8_t> plain_run(const Window& w, const Drawables& drawables,
             const float z = (step.verb == Verb::store ? entry : exit) * scale;
             place = held_as(std::min(std::max(0.5f + z, 0.25f), 0.75f));
           }
-          if (step.verb == Verb::store) {
+          if (step.verb == Verb::store)
             held = std::min(held, place);
-          } else if (reversed ? place < held : pass.touching ? place >= held : place > held) {
+          else if (reversed ? place < held : pass.touching ? place >= held : place > held)
             seen[pass.draws[d].slot] = 1;
-          }
         }
       }
     }
@@ -282,7 +273,7 @@ TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
             EXPECT_EQ(canvas.run(random.pass), wanted) << bits << " bits";
             EXPECT_EQ(canvas.run(many), wanted) << bits << " bits, " << threads << " threads";
           }
-          seen_in_all += static_cast<int>(std::count(wanted.begin(), wanted.end(), 1));
+          seen_in_all += static_cast<int>(std::ranges::count(wanted, 1));
           reversed_differs += run(bits, true) != wanted;
         }
       }
@@ -327,8 +318,8 @@ TEST(NativeCanvas, AnyNumberOfThreadsGivesTheSameBits) {
         EXPECT_EQ(depths, first_depths) << fattener.name << ", " << threads << " threads";
       }
     });
-    EXPECT_GT(std::count(first.begin(), first.end(), 0), 100);
-    EXPECT_GT(std::count(first.begin(), first.end(), 1), 100);
+    EXPECT_GT(std::ranges::count(first, 0), 100);
+    EXPECT_GT(std::ranges::count(first, 1), 100);
   }
 }
 
@@ -355,29 +346,10 @@ TEST(NativeCanvas, ElementsBesideTheWindowTakePartInNothing) {
 }
 
 TEST(NativeCanvas, HoldsTheSamplesUnderTheDepthMap) {
-  const Window w = lab::window(64, 100);
-  const std::vector<Patch> patches = {lab::patch({{-20, -20, -60}, {20, -10, 30}, {0, 25, 80}}),
-                                      lab::patch({{-5, 0, 2}, {28, 3, 9}, {10, 30, -99}})};
   const Fattener fattener = obb_fattener();
   for (const int bits : {32, 24}) {
     NativeCanvas canvas(fattener.mode, fattener.solid, {.depth_bits = bits});
-    const Drawables drawables = lab::fattened(w, fattener, 0.72, patches);
-    canvas.begin(w, drawables);
-    for (const Verb verb : {Verb::store, Verb::ask}) {
-      const std::vector<float> px = canvas.samples(verb, {{0, 0}, {1, 0}}),
-                               held = canvas.depths(verb, {{0, 0}, {1, 0}});
-      int covered = 0;
-      for (std::size_t i = 0; i < px.size(); ++i) {
-        if (std::isnan(px[i])) {
-          EXPECT_EQ(held[i], verb == Verb::store ? 1 : 0);
-          continue;
-        }
-        ++covered;
-        const double map = 0.5 + static_cast<double>(px[i]) * depth_scale(w);
-        EXPECT_LE(std::abs(held[i] - map) * 0x1p24, depth_rounding(bits));
-      }
-      EXPECT_GT(covered, 500);
-    }
+    lab::expect_held_under_map(canvas, fattener, bits, 0);
   }
 }
 
@@ -419,10 +391,9 @@ TEST(NativeTriangles, OfTrianglesThatShareEdgesOneOwnsEachPixel) {
             {middle, corners[turned ? (i + 1) % 4 : i], corners[turned ? i : (i + 1) % 4]}));
       }
       const std::vector<int> counts = coverage(w, fan);
-      for (int y = 1; y < 38; ++y) {
+      for (int y = 1; y < 38; ++y)
         for (int x = 1; x < 38; ++x)
           EXPECT_EQ(counts[static_cast<std::size_t>(y) * 40 + x], 1) << x << ", " << y;
-      }
       // The twin: with one triangle left out, pixels are left over.
       fan.pop_back();
       const std::vector<int> fewer = coverage(w, fan);
@@ -487,16 +458,13 @@ bool touches(const std::array<std::array<std::int64_t, 2>, 3>& t, std::int64_t x
     }
     return !(left && right) && (left || right);
   };
-  for (const Point& p : square) {
+  for (const Point& p : square)
     if (inside(t.data(), 3, p)) return true;
-  }
-  for (const Point& p : t) {
+  for (const Point& p : t)
     if (inside(square, 4, p)) return true;
-  }
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 4; ++k)
       if (meet(t[i], t[(i + 1) % 3], square[k], square[(k + 1) % 4])) return true;
-    }
   }
   return false;
 }

@@ -1,18 +1,9 @@
 // What a view of FAR pairs asks of a GL device: dispatches, and results that are read back.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <sstream>
-#include <string>
-
 #include "core/gl/pairs/pairs.h"
 #include "core/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/pairs/crowded_scenes.h"
-#include "tests/core/pairs/repeated_scenes.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {

@@ -3,29 +3,22 @@
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/pairs/pairs.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include <algorithm>
-#include <string>
-
-#include "core/base/error.h"
 #include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/cull/far_properties.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/pairs/crowded_scenes.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/core/pairs/repeated_scenes.h"
-#include "tests/core/pairs/stray_scenes.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/far.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/pairs.h"
+#include "tests/lab/strays.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using lab::crowded_scene;
+using lab::missed;
 using lab::mixed_scene;
 using lab::Random;
 using lab::random_scene;
@@ -57,9 +50,9 @@ class Both final : public PairBackend {
     large += counts.large;
     bands += counts.bands;
     wrong += found != expected;
-    missing += static_cast<std::size_t>(
-        std::count_if(expected.begin(), expected.end(), [&](const TrianglePair& pair) {
-          return !std::binary_search(found.begin(), found.end(), pair);
+    missing +=
+        static_cast<std::size_t>(std::ranges::count_if(expected, [&](const TrianglePair& pair) {
+          return !std::ranges::binary_search(found, pair);
         }));
     wrong_counts += counts.entries != on_cpu.entries || counts.crowded != on_cpu.crowded;
     return found;
@@ -147,18 +140,6 @@ TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
   }
 }
 
-// Every pair that counts and collides, neighbours included.
-std::size_t missed(const Scene& scene, const PairSettings& settings, PairBackend& backend) {
-  const ExactResult exact = all_colliding_pairs(scene, {.clearance = settings.clearance});
-  std::vector<TrianglePair> truth = exact.pairs;
-  truth.insert(truth.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-  const std::vector<TrianglePair> found = find_pairs(scene, settings, backend).candidates;
-  return static_cast<std::size_t>(
-      std::count_if(truth.begin(), truth.end(), [&](const TrianglePair& pair) {
-        return !std::binary_search(found.begin(), found.end(), pair);
-      }));
-}
-
 TEST(GlPairs, MissNothing) {
   for (std::uint64_t seed = 200; seed < 320; ++seed) {
     Scene scene = random_scene(seed);
@@ -237,9 +218,8 @@ TEST(GlPairs, DoNotDependOnMemoryOrStorageBlocks) {
   for (const GlPairOptions& options : few) {
     GlPairs tight(lab::context(), options);
     Both both(tight);
-    for (const Scene& scene : scenes) {
+    for (const Scene& scene : scenes)
       find_pairs(scene, {.views = parse_views("1:1:0.5,z"), .resolution = 40}, both);
-    }
     EXPECT_EQ(both.wrong, 0u);
     EXPECT_GT(both.bands, 2 * both.views) << "the window was never split";
   }

@@ -2,19 +2,10 @@
 // anywhere its float corners and the widening allow, clipped to a pixel with rationals.
 #include "core/pairs/grid.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/canvas/kernel_case.h"
 #include "tests/core/base/chance.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
-#include "tests/core/base/trials.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/kernel_cases.h"
 
 namespace farcull::lab {
@@ -43,7 +34,6 @@ using namespace farcull::glsl;
 #define float Chance
 namespace farcull::interval_bare_chance {
 using namespace farcull::glsl_chance;
-#include "core/pairs/interval.glsl"
 #undef float
 }  // namespace farcull::interval_bare_chance
 
@@ -52,7 +42,6 @@ using namespace farcull::glsl_chance;
 #define float Chance
 namespace farcull::interval_chance {
 using namespace farcull::glsl_chance;
-#include "core/pairs/interval.glsl"
 #undef float
 }  // namespace farcull::interval_chance
 
@@ -69,8 +58,7 @@ using rational::Random;
 using Evaluate = Answer (*)(const FloatTriangle&, float, int, int, float);
 
 struct Tally {
-  std::size_t checked = 0;
-  std::size_t failed = 0;
+  std::size_t checked = 0, failed = 0;
   std::string first;
 };
 
@@ -148,9 +136,8 @@ TEST(Interval, IsTight) {
   for (int n = 0; n < trials(3000); ++n) {
     const FloatTriangle t = interval_cases::random_triangle(random);
     float most = 0;
-    for (const auto& p : t) {
+    for (const auto& p : t)
       for (const float x : p) most = std::max(most, std::fabs(x));
-    }
     if (most > 4096) continue;
     std::vector<Q3> exact(3);
     for (int k = 0; k < 3; ++k) exact[k] = {Q(t[k][0]), Q(t[k][1]), Q(t[k][2])};

@@ -2,13 +2,8 @@
 // moved, and whatever happened in between. Each property has a twin that must fail.
 #include "core/pairs/regions.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/pairs/pairs_lab.h"
+#include "tests/lab/pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -57,9 +52,8 @@ void move(Random& random, Scene& scene) {
       const Object& object = scene.objects[random.below(scene.objects.size())];
       const Vec3 all = step();
       std::vector<std::uint32_t> own;
-      for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (std::uint32_t t = 0; t < object.triangle_count; ++t)
         for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) own.push_back(v);
-      }
       std::ranges::sort(own);
       own.erase(std::unique(own.begin(), own.end()), own.end());
       for (const std::uint32_t v : own) scene.vertices[v] += all;

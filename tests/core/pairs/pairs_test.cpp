@@ -3,20 +3,11 @@
 #include "core/pairs/pairs.h"
 #include "core/boxes/block.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <set>
-
 #include "core/boxes/join.h"
 #include "core/pairs/backend.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/seed.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/core/scene/minimize.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -30,11 +21,9 @@ using lab::with_self;
 std::vector<PairSettings> all_settings() {
   std::vector<PairSettings> out(1);  // all chosen by the scene
   out.push_back({.blocks = false});  // and decided by views
-  for (const char* views : {"x", "1:1:0.5", "x,y,z", "z,1:-2:0.5,0:1:1"}) {
-    for (const int resolution : {32, 200, 1024}) {
+  for (const char* views : {"x", "1:1:0.5", "x,y,z", "z,1:-2:0.5,0:1:1"})
+    for (const int resolution : {32, 200, 1024})
       out.push_back({.views = parse_views(views), .resolution = resolution});
-    }
-  }
   out.push_back({.resolution = 4096});
   return out;
 }
@@ -95,9 +84,8 @@ TEST(Pairs, MissNothingWithinAClearanceAtAnyScale) {
     std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
     objects[0].push_back({Vec3(0, 0, 0), Vec3(40, 0, 0), Vec3(0, 40, 0)});
     objects[1].push_back({Vec3(100, 100, 0), Vec3(60, 100, 0), Vec3(100, 60, 0)});
-    for (auto& object : objects) {
+    for (auto& object : objects)
       for (Vec3& corner : object[0]) corner *= scale;
-    }
     const Scene scene = lab::scene_of(objects);
     for (const int resolution : {0, 64, 4096}) {
       const PairSettings settings{
@@ -124,11 +112,9 @@ TEST(Pairs, MissNothingOnBuiltInScenes) {
 
 TEST(Pairs, MissNothingOfWhatAViewCannotShow) {
   const auto backend = cpu_pair_backend(2);
-  for (const Scene& scene : {lab::undrawable_scene(), with_self(lab::undrawable_scene())}) {
-    for (const PairSettings& settings : all_settings()) {
+  for (const Scene& scene : {lab::undrawable_scene(), with_self(lab::undrawable_scene())})
+    for (const PairSettings& settings : all_settings())
       EXPECT_EQ(missed(scene, settings, *backend), 0u);
-    }
-  }
   const Scene scene = lab::undrawable_scene();
   EXPECT_GT(truth_of(scene).size(), 0u);
   const PairResult result =
@@ -203,9 +189,8 @@ TEST(Pairs, LeaveOutWhatCannotMeet) {
   EXPECT_TRUE(apart.views.empty());
   for (const PairResult& result : {find_pairs(make_builtin_scene("crowd"), {}, *backend)}) {
     const Scene scene = make_builtin_scene("crowd");
-    for (const TrianglePair& pair : result.candidates) {
+    for (const TrianglePair& pair : result.candidates)
       ASSERT_TRUE(overlap(grown_box(scene, pair.a, 0), grown_box(scene, pair.b, 0)));
-    }
   }
 }
 
@@ -222,7 +207,7 @@ TEST(Pairs, LeaveOutNeighboursByIndexOnly) {
       if (owner[pair.a] != owner[pair.b]) return false;
       for (const std::uint32_t v : scene.triangles[pair.a]) {
         const auto& other = scene.triangles[pair.b];
-        if (std::find(other.begin(), other.end(), v) != other.end()) return true;
+        if (std::ranges::find(other, v) != other.end()) return true;
       }
       return false;
     });
@@ -236,9 +221,8 @@ Scene joined(Scene scene, const Scene& other, const Vec3& by) {
   const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
   const auto triangles = static_cast<std::uint32_t>(scene.triangles.size());
   for (const Vec3& v : other.vertices) scene.vertices.push_back(v + by);
-  for (const auto& [p, q, r] : other.triangles) {
+  for (const auto& [p, q, r] : other.triangles)
     scene.triangles.push_back({p + vertices, q + vertices, r + vertices});
-  }
   scene.source_face.insert(scene.source_face.end(), other.source_face.begin(),
                            other.source_face.end());
   for (Object object : other.objects) {

@@ -5,15 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <string>
-
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
-#include "tests/core/pairs/stray_scenes.h"
+#include "tests/lab/strays.h"
 
 namespace farcull {
 namespace {

@@ -1,18 +1,13 @@
 // FAR pairs takes no more work than `exact`, a constant factor apart, wherever triangles lie and
 // however large they are. Work is counted, so that a loaded machine changes nothing;
 // farcull_strays measures time and memory.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
+#include "tests/lab/strays.h"
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/core/pairs/stray_scenes.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -45,9 +40,8 @@ std::string wrong(const Scene& scene, const PairResult& result) {
   std::vector<TrianglePair> truth = exact.pairs;
   truth.insert(truth.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
   if (lab::missed(truth, result.candidates) > 0) return "missed a pair";
-  for (const TrianglePair& pair : result.candidates) {
+  for (const TrianglePair& pair : result.candidates)
     if (!boxes_meet(scene, pair, 0)) return "a candidate whose boxes are apart";
-  }
   const lab::PairWork work = lab::work_of(result);
   const lab::PairWork most = lab::most_work(scene.triangles.size(), exact.box_pairs);
   if (work.tests > most.tests) return "too many tests: " + std::to_string(work.tests / most.tests);
@@ -181,10 +175,9 @@ std::pair<std::size_t, std::uint64_t> pairs_and_blocks(const Scene& scene) {
 TEST(Strays, StandApartInATree) {
   const std::uint64_t even = pairs_and_blocks(stray_scene(1, kTriangles, {})).second;
   Scene needles = stray_scene(1, kTriangles, {});
-  for (std::uint32_t t = 0; t < needles.triangles.size(); t += 10) {
+  for (std::uint32_t t = 0; t < needles.triangles.size(); t += 10)
     for (const std::uint32_t v : needles.triangles[t])
       needles.vertices[v] = Vec3(v % 2 ? 2 : -2, needles.vertices[v].y(), needles.vertices[v].z());
-  }
   EXPECT_LE(pairs_and_blocks(needles).second, 3 * even);
   const Scene spread = stray_scene(1, kTriangles, {.decades = 300, .spread = true});
   EXPECT_LE(pairs_and_blocks(spread).second, 4 * even);
@@ -194,10 +187,9 @@ TEST(Strays, StandApartInATree) {
 TEST(Strays, SpoilNoTree) {
   for (const double far : {1e4, 1e30}) {
     Scene scene = make_builtin_scene("two-spheres"), other = scene;
-    for (const Object& object : scene.objects) {
+    for (const Object& object : scene.objects)
       for (const std::uint32_t v : scene.triangles[object.first_triangle + 77])
         scene.vertices[v] *= far;
-    }
     const auto [count, blocks] = pairs_and_blocks(other);
     const auto [more, more_blocks] = pairs_and_blocks(scene);
     // Each huge box meets all blocks, of which there are a fifteenth of the triangles at most.

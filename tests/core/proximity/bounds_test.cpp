@@ -2,11 +2,9 @@
 // without its slack, which must fail.
 #include "core/proximity/scene_trees.h"
 
-#include <gtest/gtest.h>
-
-#include "tests/core/base/rational.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/proximity/near_lab.h"
+#include "tests/lab/grid_distance.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -121,14 +119,7 @@ near_lab::Corners<Q> exact_corners(const Triangle& t) {
 }
 
 Scene scene_of(const std::array<Triangle, 2>& pair) {
-  Scene scene;
-  for (std::uint32_t o = 0; o < 2; ++o) {
-    scene.vertices.insert(scene.vertices.end(), pair[o].begin(), pair[o].end());
-    scene.triangles.push_back({3 * o, 3 * o + 1, 3 * o + 2});
-    scene.source_face.push_back(o);
-    scene.objects.push_back({.name = "", .first_triangle = o, .triangle_count = 1});
-  }
-  return scene;
+  return reference::scene_of({{pair[0]}, {pair[1]}});
 }
 
 TEST(NearBounds, EncloseTheDistanceOfTwoTriangles) {
@@ -159,9 +150,8 @@ TEST(NearBounds, EncloseTheDistanceOfTwoTriangles) {
     };
     wrong += !at_most(kept.upper) || !at_least(kept.lower);
     double most = 0;
-    for (const Triangle& t : pair) {
+    for (const Triangle& t : pair)
       for (const Vec3& p : t) most = std::max(most, (p - pair[0][0]).cwiseAbs().maxCoeff());
-    }
     most *= trees.scale();
     tight += kept.upper - kept.lower < 200 * near::kUnit * most;
     upper_twin += !at_most(kept.upper - near::kPoint * most);

@@ -2,17 +2,11 @@
 // comparing all with all exactly. Each property has a twin that must fail.
 #include "core/proximity/near_pairs.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
-#include "core/base/error.h"
 #include "core/native/lanes.h"
 #include "core/proximity/scene_trees.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/proximity/near_lab.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/grid_distance.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -35,12 +29,10 @@ std::string fault_of(const GridScene& grid, const Truth& truth, const NearPairs&
   if (!truth.any && !answer.pairs.empty()) return "pairs where there are none";
   if (!std::ranges::is_sorted(answer.pairs)) return "pairs are not sorted";
   if (std::ranges::adjacent_find(answer.pairs) != answer.pairs.end()) return "a pair twice";
-  if (answer.pairs.empty() != (answer.upper == kInfinite) && grid.unit < 1e290) {
+  if (answer.pairs.empty() != (answer.upper == kInfinite) && grid.unit < 1e290)
     return "a bound without a pair, or the reverse";
-  }
-  if (!answer.pairs.empty() && !near_lab::at_most(truth.squared, grid.unit, answer.upper)) {
+  if (!answer.pairs.empty() && !near_lab::at_most(truth.squared, grid.unit, answer.upper))
     return "the bound is below the distance";
-  }
   if (!asked) return "";
   if (truth.squared.numerator == 0) {
     if (!std::ranges::binary_search(answer.pairs, truth.pairs.front()))
@@ -68,9 +60,8 @@ GridScene random_scene(Random& random, int objects, int most) {
 std::vector<ObjectPair> all_questions(const GridScene& grid) {
   std::vector<ObjectPair> out;
   const auto n = static_cast<std::uint32_t>(grid.scene.objects.size());
-  for (std::uint32_t a = 0; a < n; ++a) {
+  for (std::uint32_t a = 0; a < n; ++a)
     for (std::uint32_t b = a; b < n; ++b) out.push_back({a, b});
-  }
   return out;
 }
 
@@ -164,14 +155,12 @@ std::string fault_of_nearest(const GridScene& grid, std::size_t k, double within
   const auto n = static_cast<std::uint32_t>(grid.scene.objects.size());
   if (!std::ranges::is_sorted(answers, {}, &NearPairs::objects)) return "not sorted";
   std::vector<std::vector<Truth>> truth(n, std::vector<Truth>(n));
-  for (std::uint32_t a = 0; a < n; ++a) {
+  for (std::uint32_t a = 0; a < n; ++a)
     for (std::uint32_t b = a + 1; b < n; ++b) truth[a][b] = truth[b][a] = truth_of(grid, a, b);
-  }
   for (std::uint32_t a = 0; a < n; ++a) {
     std::vector<Fraction> squares;
-    for (const Truth& t : truth[a]) {
+    for (const Truth& t : truth[a])
       if (t.any) squares.push_back(t.squared);
-    }
     std::ranges::sort(squares, [](const Fraction& x, const Fraction& y) { return x < y; });
     for (std::uint32_t b = 0; b < n; ++b) {
       const Truth& own = truth[a][b];
@@ -251,9 +240,8 @@ TEST(NearestObjects, HintsChangeNoAnswerAndSaveWork) {
     // Good ones: all triangles of each object are moved a little, and were nearest before.
     const ProximityTrees first(grid.scene, 1), second(grid.scene, 1);
     hints.clear();
-    for (const NearPairs& near : first.nearest_objects(most, kInfinite)) {
+    for (const NearPairs& near : first.nearest_objects(most, kInfinite))
       if (!near.pairs.empty()) hints.push_back({near.objects, near.pairs.front()});
-    }
     without.box_pairs += first.counts().box_pairs;
     without.triangle_pairs += first.counts().triangle_pairs;
     EXPECT_EQ(fault_of_nearest(grid, most, kInfinite,

@@ -1,11 +1,7 @@
 // Windows, triangles that make trouble for clipping, and the exact image of a triangle in a region.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <vector>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
 
 namespace farcull::clip_cases {
 

@@ -3,16 +3,9 @@
 // triangle. The claims: |p_i - q_i| <= error per axis; every point Q of the triangle that is one
 // pixel inside every plane is in a triangle of the fan of the q_i, as Q = sum l_i q_i; so Q' = sum
 // l_i p_i is in the drawn fan and within error per axis of Q.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iostream>
-#include <optional>
-
 #include "core/view/view.h"
-#include "tests/core/base/seed.h"
 #include "tests/core/view/clip_cases.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -73,9 +66,8 @@ std::optional<Q3> partner(const std::vector<Corner>& polygon, const Q3& point) {
   };
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     const Corner &a = polygon[0], &b = polygon[i - 1], &c = polygon[i];
-    for (const auto& found : {on_edge(a, b), on_edge(b, c), on_edge(c, a)}) {
+    for (const auto& found : {on_edge(a, b), on_edge(b, c), on_edge(c, a)})
       if (found) return found;
-    }
     const Q3 e = minus(b.q, a.q), f = minus(c.q, a.q), d = minus(point, a.q);
     const Q ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), de = dot(d, e), df = dot(d, f);
     const Q det = ee * ff - ef * ef;
@@ -180,8 +172,7 @@ Q most_of_cuts(std::uint64_t seed) {
     const double other_to = random.coin() ? -other : random.uniform(-m, m);
     const double plane = from + (to - from) * random.uniform(0, 1);
     if (plane == from || plane == to) continue;
-    const double t = (plane - from) / (to - from);
-    const double p = other + t * (other_to - other);
+    const double t = (plane - from) / (to - from), p = other + t * (other_to - other);
     const Q at = (Q(plane) - Q(from)) / (Q(to) - Q(from));
     const Q truth = Q(other) + at * (Q(other_to) - Q(other));
     const Q units = abs(Q(p) - truth) / (Q(0x1p-53) * Q(m));

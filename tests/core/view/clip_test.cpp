@@ -3,13 +3,8 @@
 // lie within `error` per axis of the patch's hull.
 #include "core/view/view.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cfloat>
-#include <cmath>
-
 #include "tests/core/view/clip_cases.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

@@ -1,13 +1,13 @@
 #include "core/view/view.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
-#include <cfloat>
-#include <cmath>
-#include <limits>
-
-#include "core/base/error.h"
-#include "tests/core/base/rational.h"
+#include "core/view/budget.h"
+#include "core/view/regions.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -21,23 +21,16 @@ TEST(View, RefusesWhatIsNoDirection) {
        {"",        "-",         "--x",    "w",        "X",      "xy",      "x ",
         " x",      "1",         "1:2",    "1:2:3:4",  "1:2:",   ":1:2",    "1::2",
         "::",      "1:2:z",     "+1:0:0", "1 :0:0",   "1:0:0 ", "0x1:0:0", "inf:0:0",
-        "1:nan:0", "1e400:0:0", "0:0:0",  "-0:0:0.0", "1:2:3x"}) {
+        "1:nan:0", "1e400:0:0", "0:0:0",  "-0:0:0.0", "1:2:3x"})
     EXPECT_THROW(parse_view(text), Error) << "'" << text << "'";
-  }
-  for (const char* text : {"", ",", "x,", ",x", "x,,y", "x,x", "1:1:1,z,1:1:1", "x;y"}) {
+  for (const char* text : {"", ",", "x,", ",x", "x,,y", "x,x", "1:1:1,z,1:1:1", "x;y"})
     EXPECT_THROW(parse_views(text), Error) << "'" << text << "'";
-  }
 }
 
 TEST(View, ErrorsNameTheOptionAndTheText) {
-  try {
-    parse_views("x,bogus");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.where, "--views");
-    EXPECT_NE(error.reason.find("bogus"), std::string::npos);
-    EXPECT_FALSE(error.remedy.empty());
-  }
+  const Error error = error_of([] { parse_views("x,bogus"); });
+  EXPECT_EQ(error.where, "--views");
+  EXPECT_TRUE(has_text(error.reason, "bogus"));
 }
 
 TEST(View, TellsANumberThatNoDoubleHoldsFromNoNumber) {
@@ -48,12 +41,7 @@ TEST(View, TellsANumberThatNoDoubleHoldsFromNoNumber) {
            {"inf:0:1", "no finite number"},
            {"1e-400x:0:1", "no finite number"},
            {"x:0:1", "no finite number"}}) {
-    try {
-      parse_view(text);
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
-    }
+    EXPECT_TRUE(has_text(error_of([&] { parse_view(text); }).reason, reason)) << text;
   }
   EXPECT_NO_THROW(parse_view("5e-324:0:0"));
 }
@@ -175,9 +163,8 @@ TEST(ToPixel, OverflowIsAnInfiniteErrorAndNeverANumber) {
   for (const char* name : {"z", "1:1:1"}) {
     const Window window = *fit_window(parse_view(name), region, 5000);
     for (const Vec3& x : {Vec3(DBL_MAX, 0, 0), Vec3(DBL_MAX, -DBL_MAX, DBL_MAX),
-                          Vec3(-DBL_MAX, DBL_MAX, 1), Vec3(1e306, 1e306, -1e306)}) {
+                          Vec3(-DBL_MAX, DBL_MAX, 1), Vec3(1e306, 1e306, -1e306)})
       EXPECT_EQ(to_pixel(window, x).error, HUGE_VAL) << name << ": " << x.transpose();
-    }
   }
 }
 
@@ -189,9 +176,8 @@ void expect_fits(const Window& w, std::span<const Box> regions, int resolution) 
   ASSERT_GE(w.width, 2);
   ASSERT_GE(w.height, 2);
   ASSERT_LE(std::max(w.width, w.height), resolution + 5);
-  for (int row = 0; row < 3; ++row) {
+  for (int row = 0; row < 3; ++row)
     for (int i = 0; i < 3; ++i) ASSERT_EQ(w.map(row, i), w.view.rows(row, i) / w.pixel_size);
-  }
   const int sides[2] = {w.width, w.height};
   for (int i = 0; i < 2; ++i) {
     ASSERT_LE(-0.5 * sides[i], w.lo[i]);
@@ -312,6 +298,235 @@ TEST(FitWindow, AtTheEndOfTheDoublesIsEmptyOrContains) {
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(empty, 0);
+}
+
+// ----
+
+using reference::Triangle;
+
+Box box_of(const std::vector<Triangle>& triangles) {
+  Box box = Box::empty();
+  for (const Triangle& t : triangles)
+    for (const Vec3& p : t) box.add(p);
+  return box;
+}
+
+bool meet(const Box& a, const Box& b) {
+  for (int i = 0; i < 3; ++i)
+    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
+  return true;
+}
+
+/// The plan recomputed from the definitions, over all objects and triangles.
+bool as_defined(const std::vector<std::vector<Triangle>>& objects) {
+  const Scene scene = reference::scene_of(objects);
+  const Regions plan = find_regions(scene);
+  std::vector<Box> boxes, regions;
+  for (const auto& triangles : objects) boxes.push_back(box_of(triangles));
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1; j < boxes.size(); ++j)
+      if (meet(boxes[i], boxes[j]))
+        regions.push_back({boxes[i].lo.cwiseMax(boxes[j].lo), boxes[i].hi.cwiseMin(boxes[j].hi)});
+  }
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t i = 0, t = 0; i < objects.size(); ++i) {
+    for (const Triangle& triangle : objects[i]) {
+      bool takes_part = false;
+      for (std::size_t j = 0; j < boxes.size(); ++j)
+        takes_part |= i != j && meet(box_of({triangle}), boxes[j]);
+      if (takes_part) triangles.push_back(static_cast<std::uint32_t>(t));
+      ++t;
+    }
+  }
+  const auto same = [](const Box& a, const Box& b) { return a.lo == b.lo && a.hi == b.hi; };
+  return plan.triangles == triangles &&
+         std::equal(plan.places.begin(), plan.places.end(), regions.begin(), regions.end(), same) &&
+         std::equal(plan.object_boxes.begin(), plan.object_boxes.end(), boxes.begin(), boxes.end(),
+                    same) &&
+         plan.triangle_boxes.size() == scene.triangles.size();
+}
+
+Triangle tile(double x, double y = 0, double z = 0) {
+  return {Vec3(x, y, z), Vec3(x + 1, y, z), Vec3(x, y + 1, z)};
+}
+
+TEST(Regions, OfNothingIsNothing) {
+  EXPECT_TRUE(as_defined({}));
+  EXPECT_TRUE(as_defined({{}, {}, {}}));
+  EXPECT_TRUE(as_defined({{}, {tile(0), tile(0)}, {}}));
+  const Regions alone = find_regions(reference::scene_of({{tile(0), tile(0)}}));
+  EXPECT_TRUE(alone.triangles.empty());  // an object is no partner of itself
+  EXPECT_TRUE(alone.places.empty());
+}
+
+TEST(Regions, TouchingCountsAndRegionsMayBePoints) {
+  const Regions plan = find_regions(reference::scene_of({{tile(0), tile(-9)}, {tile(1, 1)}}));
+  EXPECT_EQ(plan.triangles, (std::vector<std::uint32_t>{0, 2}));
+  ASSERT_EQ(plan.places.size(), 1u);
+  EXPECT_EQ(plan.places[0].lo, Vec3(1, 1, 0));
+  EXPECT_EQ(plan.places[0].hi, Vec3(1, 1, 0));
+}
+
+// The box of the partner decides, not the region of the pair: the region of 0 and 1 is met by the
+// first triangle of 0, and so is nothing else.
+TEST(Regions, KeepsOneTriangleOfAnObjectOnceWithManyPartners) {
+  EXPECT_TRUE(as_defined({{tile(0)}, {tile(0.5)}, {tile(0.25)}, {tile(0.1), tile(7)}}));
+  const Regions plan =
+      find_regions(reference::scene_of({{tile(0), tile(5)}, {tile(0)}, {tile(0)}}));
+  EXPECT_EQ(plan.triangles, (std::vector<std::uint32_t>{0, 2, 3}));
+  EXPECT_EQ(plan.places.size(), 3u);
+}
+
+RC_GTEST_PROP(PlanProperty, AsDefinedOnTheGrid, ()) {
+  const auto sizes =
+      *rc::gen::resize(7, rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 12)));
+  const auto extent = *rc::gen::inRange<unsigned>(1, 30);
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  std::vector<std::vector<Triangle>> objects;
+  for (const int size : sizes) {
+    auto& triangles = objects.emplace_back(size);
+    const Vec3 at(random() % extent, random() % extent, random() % 3);
+    for (Triangle& t : triangles) {
+      const Vec3 base = at + Vec3(random() % 4, random() % 4, random() % 2);
+      for (Vec3& p : t) p = base + Vec3(random() % 3, random() % 3, random() % 2);
+    }
+  }
+  RC_ASSERT(as_defined(objects));
+}
+
+// What culling relies on: of every pair of triangles that meet, both take part, and a common point
+// lies in a region.
+RC_GTEST_PROP(PlanProperty, EveryMeetingPairTakesPart, ()) {
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  std::vector<std::vector<Triangle>> objects(4);
+  for (auto& triangles : objects) {
+    triangles.resize(random() % 6);
+    for (Triangle& t : triangles)
+      for (Vec3& p : t) p = Vec3(random() % 6, random() % 6, random() % 6);
+  }
+  const Scene scene = reference::scene_of(objects);
+  const Regions plan = find_regions(scene);
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlapping) {
+    if (!overlapping || !reference::intersects(scene.corners(pair.a), scene.corners(pair.b)))
+      return;
+    for (const std::uint32_t t : {pair.a, pair.b})
+      RC_ASSERT(std::ranges::binary_search(plan.triangles, t));
+    const Box common = intersection(plan.triangle_boxes[pair.a], plan.triangle_boxes[pair.b]);
+    RC_ASSERT(std::ranges::any_of(plan.places, [&](const Box& region) {
+      return (region.lo.array() <= common.lo.array()).all() &&
+             (common.hi.array() <= region.hi.array()).all();
+    }));
+  });
+}
+
+// ---- Each term recomputed from the table of docs/budget.md with rationals; square roots by their
+// squares.
+
+const Q kU = Q(1) / Q(1 << 23);
+
+RasterLimits with_bits(int subpixel_bits) {
+  RasterLimits limits;
+  limits.subpixel_bits = subpixel_bits;
+  return limits;
+}
+
+/// Whether `value` is sqrt(dimension) * per_axis up to the rounding of a handful of doubles.
+void expect_root(double value, int dimension, const Q& per_axis) {
+  const Q square = Q(value) * Q(value), truth = dimension * per_axis * per_axis;
+  EXPECT_LE(abs(square - truth), truth * Q(0x1p-49)) << value;
+}
+
+TEST(Budget, TermsAreTheFormulasOfTheTable) {
+  for (const int bits : {4, 8, 16}) {
+    for (const int viewport : {8, 64, 1024, 16384, 32768}) {
+      const Budget b = budget_for(with_bits(bits), viewport);
+      const Q m = Q(viewport) / 2;  // the largest |coordinate|, and half the viewport's side
+      expect_root(b.sampling, 2, Q(1, 2));
+      expect_root(b.input, 2, kU * m);
+      // In the plane by e per axis, and along the depth to second order: e^2.
+      const Q e(1, 1 << 10);
+      EXPECT_GE(Q(b.double_), e * e);
+      expect_root(Q(Q(b.double_) - e * e).get_d(), 2, e);
+      // To normalized coordinates u M; division by w 2.5 u M; times half the viewport u M; plus its
+      // centre u (M + W/2); and less than 4 u of all for products of the errors.
+      expect_root(b.vertex, 2, kU * (1 + 4 * kU) * (m + Q(5, 2) * m + m + (m + m)));
+      expect_root(b.snap, 2, Q(1) / Q(1 << bits));
+      EXPECT_EQ(b.offset, 0);
+    }
+  }
+}
+
+TEST(Budget, TermsOfACanvasWithExactSamples) {
+  for (const int viewport : {8, 64, 1024, 16384}) {
+    RasterLimits limits = with_bits(8);
+    const Budget gl = budget_for(limits, viewport);
+    limits.exact_samples = true;
+    const Budget b = budget_for(limits, viewport);
+    // Corners rounded to float and the comparison of edges: 3.51 u M, charged as 4 u M.
+    expect_root(b.input, 2, 4 * kU * Q(viewport) / 2);
+    EXPECT_EQ(b.vertex, 0);
+    EXPECT_EQ(b.snap, 0);
+    EXPECT_EQ(b.sampling, gl.sampling);
+    EXPECT_EQ(b.double_, gl.double_);
+  }
+}
+
+TEST(Budget, TermsHaveTheirNamesInOrder) {
+  const Budget b{1, 2, 3, 4, 5, 6};
+  const char* const kNames[] = {"sampling", "input", "double", "vertex", "snap", "offset"};
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(b.terms()[i].name, kNames[i]);
+    EXPECT_EQ(b.terms()[i].px, i + 1);
+  }
+}
+
+RC_GTEST_PROP(BudgetProperty, RadiusIsStrictlyBeyondTheExactSum, ()) {
+  Budget b;
+  for (double* term : {&b.sampling, &b.input, &b.double_, &b.vertex, &b.snap, &b.offset}) {
+    const auto mantissa = *rc::gen::inRange<std::int64_t>(0, std::int64_t{1} << 53);
+    *term = std::ldexp(static_cast<double>(mantissa), *rc::gen::inRange(-80, -40));
+  }
+  b.sampling += 0x1p-30;  // of six zeros nothing is strictly greater
+  Q sum = 0;
+  for (const BudgetTerm& term : b.terms()) sum += Q(term.px);
+  RC_ASSERT(Q(b.radius()) > sum);
+  RC_ASSERT(Q(b.radius()) < sum * (1 + Q(0x1p-39)));  // and the ball is not blown up
+}
+
+TEST(Budget, RadiusGrowsWithTheViewportAndWithCoarserSnapping) {
+  for (int bits = 1; bits < 16; ++bits) {
+    for (int viewport = 8; viewport < 32768; viewport *= 2) {
+      const double radius = budget_for(with_bits(bits), viewport).radius();
+      EXPECT_GT(radius, budget_for(with_bits(bits + 1), viewport).radius());
+      EXPECT_LT(radius, budget_for(with_bits(bits), 2 * viewport).radius());
+      EXPECT_GT(radius, std::sqrt(0.5) + std::ldexp(1.0, -bits));
+    }
+  }
+}
+
+// What the measurements asked for: 1.006 of the published radius and more at 8 bits.
+TEST(Budget, RadiusIsBeyondTheMeasuredThreshold) {
+  const double radius = budget_for(with_bits(8), 1024).radius();
+  EXPECT_GT(radius, 1.006 * published_radius(0));
+  EXPECT_LT(radius, 1.02 * published_radius(0));
+}
+
+TEST(Budget, PublishedRadiusIsHalfTheDiagonalOfAPixel) {
+  EXPECT_NEAR(published_radius(0), std::sqrt(2.0) / 2, 0x1p-52);
+  EXPECT_NEAR(published_radius(1), std::sqrt(3.0) / 2, 0x1p-52);
+  EXPECT_NEAR(published_radius(std::sqrt(2.0)), 1, 0x1p-51);
+  EXPECT_NEAR(published_radius(1e6), 0.5e6, 1e-5);
+}
+
+TEST(Budget, ViewportIsAPowerOfTwoThatHoldsWindowAndBorder) {
+  for (int window = 1; window < 20'000; ++window) {
+    const int side = viewport_side(window);
+    ASSERT_TRUE(std::has_single_bit(static_cast<unsigned>(side)));
+    ASSERT_GE(side, window + 2 * kBorder);
+    ASSERT_LT(side / 2, window + 2 * kBorder);
+  }
+  EXPECT_EQ(viewport_side(60), 64);
+  EXPECT_EQ(viewport_side(61), 128);
 }
 
 }  // namespace

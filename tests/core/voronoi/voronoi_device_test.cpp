@@ -2,16 +2,8 @@
 // GLSL allows, against rationals; both forms against their definitions.
 #include "core/voronoi/voronoi.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "core/base/error.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/voronoi/voronoi_slices_lab.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 
@@ -66,7 +58,6 @@ class Float {
 
 namespace {
 
-using exact_distance::Corners;
 using lab::neighbours_scene;
 using rational::Q;
 
@@ -107,14 +98,7 @@ WrongBounds wrong_bounds(int count, float error_share) {
     GridPoint point;
     for (float& x : point) x = static_cast<float>(random.below(longest)) + 0.5f;
     const Bounds d = noisy_bounds(point, triangle, error_share * voronoi_bounds::error(longest));
-    Corners<Q> corners;
-    exact_distance::Point<Q> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = static_cast<double>(point[k]);
-      for (std::size_t c = 0; c < 3; ++c)
-        corners[c][k] = static_cast<double>(triangle.corners[c][k]);
-    }
-    const Q exact = exact_distance::to_triangle(p, corners);
+    const Q exact = lab::squared_distance(point, triangle);
     const Q lower = static_cast<double>(d.lower), upper = static_cast<double>(d.upper);
     out.wrong += lower * lower > exact || upper * upper < exact;
     out.roots += d.root_fails;

@@ -5,14 +5,12 @@
 // SCENES: of each kind, drawn with the seeds 0, 1, ...; LARGEST: cells along the longest side, from
 // 64 in doublings; NAME: of built-in scenes. Exits with 1 if the reliable form loses a neighbour.
 #include <cinttypes>
-#include <cstdio>
-#include <cstdlib>
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/voronoi/voronoi_lab.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {

@@ -2,21 +2,12 @@
 // against all cells one by one, the reliable form against all pairs in rationals.
 #include "core/voronoi/voronoi.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-
 #include "core/base/error.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/voronoi/voronoi_lab.h"
-#include "tests/core/voronoi/voronoi_slices_lab.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {
 
-using exact_distance::Corners;
 using lab::neighbours_scene;
 using rational::Q;
 
@@ -100,14 +91,7 @@ int wrong_bounds(int count, float error_share) {
     GridPoint point;
     for (float& x : point) x = static_cast<float>(random.below(2 * longest) + 1) * 0.5f;
     const GridDistance d = distance_of(point, triangle, error_share * voronoi_error(longest));
-    Corners<Q> corners;
-    exact_distance::Point<Q> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = static_cast<double>(point[k]);
-      for (std::size_t c = 0; c < 3; ++c)
-        corners[c][k] = static_cast<double>(triangle.corners[c][k]);
-    }
-    const Q exact = exact_distance::to_triangle(p, corners);
+    const Q exact = lab::squared_distance(point, triangle);
     wrong += squared(Q(static_cast<double>(d.lower))) > exact ||
              squared(Q(static_cast<double>(d.upper))) < exact;
   }
@@ -140,7 +124,7 @@ std::vector<ObjectPair> by_all_cells(const Scene& scene, int resolution) {
           const float d = distance_of(centre, t, voronoi_error(grid.longest())).computed;
           near[t.object].first = std::min(near[t.object].first, d);
         }
-        std::sort(near.begin(), near.end());
+        std::ranges::sort(near);
         if (near.size() < 2 || near[1].first == HUGE_VALF) continue;
         out.insert(
             {std::min(near[0].second, near[1].second), std::max(near[0].second, near[1].second)});
@@ -187,7 +171,7 @@ double lead_of(const Scene& scene, std::uint32_t object) {
           std::min(squared[owner[b]], exact_distance::between(corners(a), corners(b)));
     }
   }
-  std::sort(squared.begin(), squared.end());
+  std::ranges::sort(squared);
   return std::sqrt(squared[1]) - std::sqrt(squared[0]);
 }
 
@@ -234,7 +218,7 @@ Faults faults_of_reliable(std::uint64_t scenes, double widening) {
       out.upper += squared(Q(found.upper[o])) < truth[o].squared;
       for (const TrianglePair& pair : truth[o].pairs) {
         ++out.pairs;
-        out.lost += !std::binary_search(found.triangles.begin(), found.triangles.end(), pair);
+        out.lost += !std::ranges::binary_search(found.triangles, pair);
         out.objects += !lab::holds(found.objects, owner[pair.a], owner[pair.b]);
       }
     }

@@ -1,26 +1,44 @@
+// `farcull check` of certificates of pairs and of distances, of lists and of frames: what it
+// prints, its status, and what it refuses.
 #include "experiments/command/command.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "experiments/measure/frames.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
-#include "tests/experiments/command/check_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/certificates.h"
+#include "tests/lab/test.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
+
+/// The command's status and what it printed.
+struct ProgramAnswer {
+  int status = -1;
+  std::string text;
+  std::string line() const { return text.substr(0, text.find('\n')); }
+};
+
+ProgramAnswer check(const CheckArguments& arguments) {
+  testing::internal::CaptureStdout();
+  ProgramAnswer answer;
+  try {
+    answer.status = run_check(arguments);
+  } catch (...) {
+    testing::internal::GetCapturedStdout();
+    throw;
+  }
+  answer.text = testing::internal::GetCapturedStdout();
+  return answer;
+}
 
 class Check : public testing::Test {
  protected:
@@ -28,6 +46,12 @@ class Check : public testing::Test {
     record.options.method = Method::exact;
     record.collisions.pairs = all_colliding_pairs(scene).pairs;
     certificate = certificate_of(scene, record);
+  }
+  TrianglePair pair_of(const nlohmann::json& named) const {
+    const auto triangle = [&](const nlohmann::json& one) {
+      return scene.objects[one["object"]].first_triangle + one["triangle"].get<std::uint32_t>();
+    };
+    return {triangle(named["a"]), triangle(named["b"])};
   }
   std::string written() { return folder.write("certificate.json", to_text(certificate)); }
 
@@ -43,10 +67,10 @@ TEST_F(Check, ProvedIsStatus0) {
   EXPECT_EQ(answer.text.substr(0, answer.text.find('\n')),
             "proved: these " + grouped(record.collisions.pairs.size()) +
                 " pairs of the scene meet, and no others");
-  EXPECT_NE(answer.text.find("unattested"), std::string::npos);
-  EXPECT_NE(answer.text.find("about the scene and not about the run"), std::string::npos);
-  EXPECT_NE(answer.text.find("  which pairs the run kept"), std::string::npos);
-  EXPECT_NE(answer.text.find("ns per pair"), std::string::npos);
+  EXPECT_TRUE(has_text(answer.text, "unattested"));
+  EXPECT_TRUE(has_text(answer.text, "about the scene and not about the run"));
+  EXPECT_TRUE(has_text(answer.text, "  which pairs the run kept"));
+  EXPECT_TRUE(has_text(answer.text, "ns per pair"));
 }
 
 TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
@@ -61,13 +85,7 @@ TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
   const nlohmann::json json = nlohmann::json::parse(answer.text);
   EXPECT_EQ(json["verdict"], "refuted");
   EXPECT_EQ(json["culled_meeting"], 1);
-  const TrianglePair first = record.collisions.pairs.front();
-  EXPECT_EQ(scene.objects[json["pair"]["a"]["object"]].first_triangle +
-                json["pair"]["a"]["triangle"].get<std::uint32_t>(),
-            first.a);
-  EXPECT_EQ(scene.objects[json["pair"]["b"]["object"]].first_triangle +
-                json["pair"]["b"]["triangle"].get<std::uint32_t>(),
-            first.b);
+  EXPECT_EQ(pair_of(json["pair"]), record.collisions.pairs.front());
 }
 
 // The list that a run wrote is proved with the certificate, or shown not to be the one.
@@ -114,18 +132,10 @@ TEST_F(Check, ComparesTheListThatIsGiven) {
       EXPECT_EQ(json["list"]["wrong"]["lines"], wrong);
       EXPECT_EQ(json["list"]["missing"]["pairs"], missing);
       EXPECT_TRUE(json["proves"].is_null());
-      EXPECT_NE(json["reason"].get<std::string>().find(reason), std::string::npos)
-          << json["reason"];
+      EXPECT_TRUE(has_text(json["reason"].get<std::string>(), reason));
       if (missing == 0) continue;
-      const TrianglePair first = record.collisions.pairs.front();
-      for (const auto& pair : {json["pair"], json["list"]["missing"]["first"]}) {
-        EXPECT_EQ(scene.objects[pair["a"]["object"]].first_triangle +
-                      pair["a"]["triangle"].get<std::uint32_t>(),
-                  first.a);
-        EXPECT_EQ(scene.objects[pair["b"]["object"]].first_triangle +
-                      pair["b"]["triangle"].get<std::uint32_t>(),
-                  first.b);
-      }
+      for (const auto& pair : {json["pair"], json["list"]["missing"]["first"]})
+        EXPECT_EQ(pair_of(pair), record.collisions.pairs.front());
     }
     EXPECT_EQ(error_of([&] { check_list("", with); }).where, folder.path("pairs.csv"));
     EXPECT_EQ(error_of([&] { check_list(list + "9,9,9,9\n", with); }).line,
@@ -151,9 +161,8 @@ TEST_F(Check, NamesEachPairThatIsDropped) {
       const Object& object = scene.objects[owner[t]];
       return object.name + " triangle " + std::to_string(t - object.first_triangle);
     };
-    EXPECT_NE(answer.text.find("\n  pair: " + place(dropped.a) + " and " + place(dropped.b) + "\n"),
-              std::string::npos)
-        << answer.text;
+    EXPECT_TRUE(
+        has_text(answer.text, "\n  pair: " + place(dropped.a) + " and " + place(dropped.b) + "\n"));
   }
 }
 
@@ -181,8 +190,7 @@ TEST_F(Check, ListsAndCertificatesOfAClearance) {
   const ProgramAnswer other =
       check({.certificate = near, .scene = soup, .clearance = std::nextafter(clearance, 1)});
   EXPECT_EQ(other.status, 1);
-  EXPECT_NE(other.text.find("another clearance: 0.01, not 0.01000"), std::string::npos)
-      << other.text;
+  EXPECT_TRUE(has_text(other.text, "another clearance: 0.01, not 0.01000"));
   EXPECT_EQ(check({.certificate = plain, .scene = soup, .clearance = clearance}).status, 1);
   const ProgramAnswer none = check({.certificate = "", .scene = soup, .pairs = list});
   EXPECT_EQ(none.status, 1);
@@ -221,12 +229,11 @@ class CheckFrames : public testing::Test {
 TEST_F(CheckFrames, EachIsProved) {
   const ProgramAnswer answer = check(arguments());
   EXPECT_EQ(answer.status, 0);
-  EXPECT_NE(answer.text.find("\nproved: in each of 4 frames these pairs of the scene meet, and no "
-                             "others: "),
-            std::string::npos)
-      << answer.text;
+  EXPECT_TRUE(has_text(answer.text,
+                       "\nproved: in each of 4 frames these pairs of the scene meet, and no "
+                       "others: "));
   for (const char* row : {"\n      3  proved ", "\n      6  proved "})
-    EXPECT_NE(answer.text.find(row), std::string::npos) << answer.text;
+    EXPECT_TRUE(has_text(answer.text, row));
 
   CheckArguments with_list = arguments();
   with_list.pairs = pairs;
@@ -254,11 +261,9 @@ TEST_F(CheckFrames, OfAnotherFrameIsNotProved) {
   folder.write("c_005.json", of_4);
   const ProgramAnswer answer = check(arguments());
   EXPECT_EQ(answer.status, 1);
-  EXPECT_NE(answer.text.find("\n      5  not proved "), std::string::npos) << answer.text;
-  EXPECT_NE(answer.text.find("of another scene"), std::string::npos);
-  EXPECT_NE(answer.text.find("\nnot proved: 1 of 4 frames, the first is frame 5\n"),
-            std::string::npos)
-      << answer.text;
+  EXPECT_TRUE(has_text(answer.text, "\n      5  not proved "));
+  EXPECT_TRUE(has_text(answer.text, "of another scene"));
+  EXPECT_TRUE(has_text(answer.text, "\nnot proved: 1 of 4 frames, the first is frame 5\n"));
 }
 
 TEST_F(CheckFrames, APairThatIsDroppedIsNamedWithItsFrame) {
@@ -300,9 +305,8 @@ TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
   const std::string list = folder.write("pairs.csv", pairs_csv(scene, missed));
   certificate = certificate_of(scene, missed);
   EXPECT_EQ(check({written(), {"random-soup"}}).text.substr(0, 8), "refuted:");
-  for (std::uint8_t& byte : certificate.evidence) {
+  for (std::uint8_t& byte : certificate.evidence)
     if (byte == kMeets) byte |= kKept;
-  }
   certificate.claims.kept += record.collisions.pairs.size();
   certificate.claims.culled -= record.collisions.pairs.size();
   certificate.run.method = "far";
@@ -313,8 +317,7 @@ TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
   certificate.list_sha256 = pair_list_hash(scene, record.collisions.pairs);
   const ProgramAnswer of_the_scene = check({written(), {"random-soup"}});
   EXPECT_EQ(of_the_scene.status, 0);
-  EXPECT_NE(of_the_scene.text.find("  that the method was far\n  which pairs the run kept"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(of_the_scene.text, "  that the method was far\n  which pairs the run kept"));
   EXPECT_EQ(check({.certificate = written(), .scene = {"random-soup"}, .pairs = list}).status, 1);
 }
 
@@ -324,8 +327,8 @@ TEST_F(Check, SaysWhatWasNotAsked) {
   EXPECT_EQ(unasked["objects"], scene.objects.size());
   EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
   EXPECT_GT(certificate.not_asked.pairs, 0u);
-  EXPECT_NE(check({written(), {"random-soup"}}).text.find("\nnot asked  whether an object meets"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has_text(check({written(), {"random-soup"}}).text, "\nnot asked  whether an object meets"));
 }
 
 TEST_F(Check, AnotherSceneIsStatus1) {
@@ -368,12 +371,122 @@ TEST_F(Check, CertificateOfARunTellsWhatDrew) {
   for (std::size_t a = 0; a < 10; ++a)
     EXPECT_TRUE(run.assumptions[a].starts_with("A" + std::to_string(a + 1) + ": "))
         << run.assumptions[a];
-  EXPECT_EQ(run.assumptions.back().find("thread"), std::string::npos);
+  EXPECT_FALSE(has_text(run.assumptions.back(), "thread"));
   record.found.device.gl->kind = "software";
   const std::string last = certificate_of(scene, record).run.assumptions.back();
   EXPECT_TRUE(last.ends_with("; it drew in 0 threads of its own")) << last;
   EXPECT_FALSE(certificate.run.device.has_value());  // of the method exact
   EXPECT_EQ(certificate.run.resolution, 0u);
+}
+
+using distance_case::Distances;
+using Pairs = DistanceCertificate::Pairs;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Two triangles 2 apart, and a third one that is 3 above them.
+class CheckDistances : public testing::Test {
+ protected:
+  CheckDistances() {
+    const std::string face = "f 1 2 3\n";
+    files = {folder.write("low.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + face),
+             folder.write("middle.obj", "v 0 0 2\nv 1 0 2\nv 0 1 2\n" + face),
+             folder.write("high.obj", "v 0 0 5\nv 1 0 5\nv 0 1 5\n" + face)};
+    scene = load_scene(files);
+  }
+  ProgramAnswer answer(const DistanceCertificate& c, const std::string& json = "") {
+    return check({folder.write("d.json", to_text(c)), files, json});
+  }
+  DistanceCertificate certificate(Pairs pairs, double within = kInfinity, std::uint64_t k = 0) {
+    return Distances(scene).certificate(pairs, within, k);
+  }
+
+  ScratchFolder folder;
+  std::vector<std::string> files;
+  Scene scene;
+};
+
+TEST_F(CheckDistances, ProvedIsStatus0AndSaysWhat) {
+  const auto says = [&](const DistanceCertificate& c, const std::string& line) {
+    const ProgramAnswer found = answer(c);
+    EXPECT_EQ(found.status, 0);
+    EXPECT_EQ(found.line(), "proved: " + line);
+    EXPECT_TRUE(has_text(found.text, "in integers"));
+  };
+  says(certificate(Pairs::objects),
+       "these 3 pairs of objects are at exactly these distances, and there are no others");
+  says(
+      certificate(Pairs::objects, 3),
+      "these 2 pairs of objects are at exactly these distances, and no others are at distance 3 or "
+      "less");
+  says(certificate(Pairs::objects, 2),
+       "this pair of objects is at exactly this distance, and no other is at distance 2 or less");
+  says(certificate(Pairs::objects, 1), "no two objects are at distance 1 or less");
+  says(certificate(Pairs::nearest, kInfinity, 1),
+       "these 2 pairs of objects are at exactly these distances, and they are each object's "
+       "nearest, and no others");
+  says(certificate(Pairs::nearest, 2.5, 2),
+       "this pair of objects is at exactly this distance, and it is each object's 2 nearest at "
+       "distance 2.5 or less, and no other");
+  says(certificate(Pairs::all, 3),
+       "these 2 pairs of triangles are at exactly these distances, and no others are at distance 3 "
+       "or less");
+}
+
+TEST_F(CheckDistances, RefutedIsStatus1AndNamesThePairWithItsDistance) {
+  DistanceCertificate c = certificate(Pairs::objects);
+  c.distances[0].squared = "5/1";
+  const ProgramAnswer found = answer(c);
+  EXPECT_EQ(found.status, 1);
+  EXPECT_EQ(found.line(),
+            "refuted: the square of the distance in distances[0] is not that of its triangles");
+  EXPECT_TRUE(has_text(found.text, "  pair: low triangle 0 and middle triangle 0\n"));
+  EXPECT_TRUE(has_text(found.text, "  the exact square of its distance: 4/1, so about 2\n"));
+  const nlohmann::json json = nlohmann::json::parse(answer(c, "-").text);
+  EXPECT_EQ(json["verdict"], "refuted");
+  EXPECT_EQ(json["proves"], nullptr);
+  EXPECT_EQ(json["squared"], "4/1");
+  EXPECT_EQ(json["distance"], 2);
+  EXPECT_EQ(json["pair"]["b"]["name"], "middle");
+  EXPECT_EQ(json["query"]["pairs"], "objects");
+
+  DistanceCertificate shorter = certificate(Pairs::objects);
+  shorter.distances.pop_back();
+  EXPECT_EQ(answer(shorter).line(), "refuted: the objects of these triangles are not listed");
+}
+
+TEST_F(CheckDistances, NotProvedIsStatus1) {
+  DistanceCertificate c = certificate(Pairs::objects);
+  c.distances[0].features = {0, 6};
+  const ProgramAnswer found = answer(c);
+  EXPECT_EQ(found.status, 1);
+  EXPECT_EQ(found.line(),
+            "not proved: distances[0] does not say where the nearest points lie: vertex 0 and "
+            "vertex 0 hold the first two");
+  EXPECT_EQ(nlohmann::json::parse(answer(c, "-").text)["verdict"], "not proved");
+}
+
+// As a certificate of pairs.
+TEST_F(CheckDistances, AnotherSceneIsNotProved) {
+  const std::string file = folder.write("d.json", to_text(certificate(Pairs::objects)));
+  const ProgramAnswer other = check({file, {files[0], files[1]}, ""});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_EQ(other.line(), "not proved: the certificate is of another scene: objects 3, given 2");
+  EXPECT_FALSE(has_text(other.text, "decided"));
+  // `self` is part of the scene.
+  const ProgramAnswer self = check({file, files, "", true});
+  EXPECT_EQ(self.status, 1);
+  EXPECT_TRUE(has_text(self.line(), "which objects are self"));
+}
+
+TEST_F(CheckDistances, BadInputIsAnError) {
+  const std::string file = folder.write("d.json", to_text(certificate(Pairs::objects)));
+  CheckArguments arguments{file, files, ""};
+  arguments.clearance = 1;
+  EXPECT_EQ(error_of([&] { check(arguments); }).where, "--clearance");
+  const std::string half =
+      folder.write("half.json", to_text(certificate(Pairs::objects)).substr(0, 200));
+  EXPECT_TRUE(has_text(error_of([&] { check({half, files, ""}); }).reason, "not JSON"));
 }
 
 }  // namespace

@@ -1,13 +1,7 @@
 // `farcull help` explains what the tables print: every stage, column, line and method.
 #include "experiments/command/command.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <regex>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "core/base/stage.h"
 #include "experiments/measure/bench.h"
@@ -15,14 +9,14 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
 std::string text_of(const std::string& name) {
-  for (const HelpTopic& topic : help_topics()) {
+  for (const HelpTopic& topic : help_topics())
     if (name == topic.name) return topic.text;
-  }
   ADD_FAILURE() << "no topic " << name;
   return "";
 }
@@ -46,25 +40,23 @@ std::vector<std::string> terms_of(const std::string& text) {
 
 bool explains(const std::string& text, const std::string& word) {
   const std::vector<std::string> terms = terms_of(text);
-  return std::find(terms.begin(), terms.end(), word) != terms.end();
+  return std::ranges::find(terms, word) != terms.end();
 }
 
 // The cells of a line of a table: two blanks or more lie between them.
 std::vector<std::string> cells_of(const std::string& line) {
   static const std::regex gap(" {2,}");
   std::vector<std::string> out;
-  for (std::sregex_token_iterator at(line.begin(), line.end(), gap, -1), end; at != end; ++at) {
+  for (std::sregex_token_iterator at(line.begin(), line.end(), gap, -1), end; at != end; ++at)
     if (at->length() > 0) out.push_back(*at);
-  }
   return out;
 }
 
 // The line of the text that begins so, blanks aside.
 std::string line_with(const std::string& text, const std::string& begin) {
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
+  for (std::string line; std::getline(lines, line);)
     if (!line.empty() && line.find_first_not_of(' ') == line.find(begin)) return line;
-  }
   ADD_FAILURE() << "no line begins with " << begin << " in\n" << text;
   return "";
 }
@@ -117,9 +109,9 @@ TEST(Help, ExplainsEveryLineAndColumnOfATable) {
   }
   expect_explained(lines);
   expect_explained(cells_of(line_with(table, "stage ")));
-  EXPECT_NE(table.find("\nverified: no colliding pair was culled, 26,214,400 pairs accounted for\n"
-                       "accounted  26,214,400 pairs = "),
-            std::string::npos);
+  EXPECT_TRUE(has_text(table,
+                       "\nverified: no colliding pair was culled, 26,214,400 pairs accounted for\n"
+                       "accounted  26,214,400 pairs = "));
 
   for (Object& object : scene.objects) object.self = true;
   const Record pairs = record_of(scene, Method::far_pairs), exact = record_of(scene, Method::exact);
@@ -151,8 +143,8 @@ TEST(Help, ExplainsEveryColumnOfFramesAndBench) {
 TEST(Help, NamesEveryMethodAndTheDefault) {
   const std::string methods = text_of("methods");
   for (const Method method : all_methods()) EXPECT_TRUE(explains(methods, to_string(method)));
-  EXPECT_NE(line_with(methods, to_string(kDefaultMethod)).find("The default."), std::string::npos);
-  EXPECT_EQ(line_with(methods, "far ").find("The default."), std::string::npos);
+  EXPECT_TRUE(has_text(line_with(methods, to_string(kDefaultMethod)), "The default."));
+  EXPECT_FALSE(has_text(line_with(methods, "far "), "The default."));
 }
 
 TEST(Help, LinesFitATerminal) {

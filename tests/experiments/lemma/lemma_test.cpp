@@ -2,16 +2,11 @@
 #include "experiments/lemma/lemma.h"
 #include "offsets/offsets.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/run_studies.h"
+#include "tests/lab/test.h"
 #include "verify/exact_point.h"
 #include "verify/worst_canvas.h"
 

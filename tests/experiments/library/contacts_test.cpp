@@ -1,13 +1,9 @@
 // What the library says of contacts, and what it leaves out when it is told to: ignored objects,
 // and pairs beyond a limit. Each is held against the answer without that option.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "core/base/random.h"
 #include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/library/flat.h"
+#include "tests/lab/flat.h"
 #include "verify/contact.h"
 
 namespace farcull {
@@ -82,10 +78,9 @@ TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
           contact_shape(scene.corners(pairs[k].a), scene.corners(pairs[k].b));
       EXPECT_EQ(to_string(contacts[k].kind), name_of(shape.kind));
       EXPECT_EQ(contacts[k].dimension, shape.dimension);
-      for (int end = 0; end < 2; ++end) {
+      for (int end = 0; end < 2; ++end)
         for (int axis = 0; axis < 3; ++axis)
           EXPECT_EQ(contacts[k].ends[end][axis], shape.ends[end][axis]);
-      }
     }
   };
   expect(found.pairs, found.contacts);
@@ -97,7 +92,7 @@ std::vector<ColliderPair> without(const Scene& scene, std::vector<ColliderPair> 
                                   const std::vector<std::array<std::uint32_t, 2>>& ignored) {
   const std::vector<std::uint32_t> owner = owners(scene);
   std::erase_if(pairs, [&](const ColliderPair& pair) {
-    return std::any_of(ignored.begin(), ignored.end(), [&](const auto& two) {
+    return std::ranges::any_of(ignored, [&](const auto& two) {
       return std::minmax(owner[pair.a], owner[pair.b]) == std::minmax(two[0], two[1]);
     });
   });
@@ -149,14 +144,10 @@ TEST(LibraryLimit, GivesTheFirstPairsAndDecidesNoMoreThanItNeeds) {
 TEST(LibraryIgnore, RefusesObjectsThatThereAreNot) {
   const auto refused = [](const std::vector<std::array<std::uint32_t, 2>>& ignored) {
     Collider collider({.ignore = ignored});
-    try {
-      collider.find(kFour);
-    } catch (const ColliderError& error) {
-      return error.where + ": " + error.reason;
-    }
-    return std::string("nothing was thrown");
+    const auto [where, reason] = refusal([&] { collider.find(kFour); });
+    return where + ": " + reason;
   };
-  EXPECT_EQ(refused({{0, 1}}), "nothing was thrown");
+  EXPECT_EQ(refused({{0, 1}}), "nothing was thrown: nothing was thrown");
   EXPECT_EQ(refused({{0, 4}}), "ignore: names objects 0 and 4 of 4, numbered from 0");
   EXPECT_EQ(refused({{2, 2}}), "ignore: names objects 2 and 2, which are one");
 }

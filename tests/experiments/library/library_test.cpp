@@ -1,13 +1,11 @@
 // The library as its users see it, held against the method `exact`.
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <utility>
-
+#include "core/base/random.h"
 #include "experiments/library/farcull.h"
+#include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/library/flat.h"
+#include "tests/lab/distances.h"
+#include "tests/lab/flat.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -39,9 +37,8 @@ void expect_exact(Collider& collider, const Scene& scene, double clearance = 0) 
 TEST(Library, OneColliderGivesTheExactPairsOfSceneAfterScene) {
   Collider collider;
   for (const char* name : {"two-spheres", "degenerate", "far-apart", "needles", "random-soup",
-                           "crowd", "two-spheres@tiny", "two-spheres"}) {
+                           "crowd", "two-spheres@tiny", "two-spheres"})
     expect_exact(collider, make_builtin_scene(name));
-  }
 }
 
 TEST(Library, SelfCollisionWithNeighboursApart) {
@@ -112,15 +109,7 @@ TEST(Library, NothingIsNothing) {
 
 template <class Call>
 std::string refused(const Call& call) {
-  try {
-    call();
-  } catch (const ColliderError& error) {
-    EXPECT_FALSE(error.reason.empty());
-    EXPECT_FALSE(error.remedy.empty());
-    EXPECT_NE(std::string(error.what()).find(error.reason), std::string::npos);
-    return error.where;
-  }
-  return "nothing was thrown";
+  return refusal(call)[0];
 }
 
 TEST(Library, RefusesBadInputAndGoesOn) {
@@ -175,13 +164,8 @@ TEST(Library, NamesTheFirstBadNumberAtEachPlace) {
   const Flat good(make_builtin_scene("two-spheres"));
   const std::vector<std::int64_t> wide(good.triangles.begin(), good.triangles.end());
   Collider collider;
-  const auto reason = [&](const ColliderInput& input) -> std::string {
-    try {
-      collider.find(input);
-    } catch (const ColliderError& error) {
-      return error.reason;
-    }
-    return "nothing was thrown";
+  const auto reason = [&](const ColliderInput& input) {
+    return refusal([&] { collider.find(input); })[1];
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto vertices = static_cast<std::uint32_t>(good.vertices.size() / 3);
@@ -220,6 +204,181 @@ TEST(Library, RefusesBadOptions) {
   EXPECT_EQ(with({.resolution = -1}), "resolution");
   EXPECT_EQ(with({.resolution = kMostPairResolution + 1}), "resolution");
   EXPECT_EQ(with({.threads = 1025}), "threads");
+}
+
+// ---- Pairs that are streamed are those of Collider::find(), in order, whatever the options.
+
+/// What find() answers, as a stream would give it.
+std::vector<ColliderFound> found_by(const ColliderOptions& options, const ColliderInput& input) {
+  const ColliderResult result = Collider(options).find(input);
+  std::vector<ColliderFound> out;
+  const auto append = [&](const auto& pairs, const auto& contacts, bool neighbours) {
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      out.push_back({pairs[k], neighbours, contacts.empty() ? ColliderContact() : contacts[k]});
+  };
+  append(result.pairs, result.contacts, false);
+  append(result.neighbour_pairs, result.neighbour_contacts, true);
+  std::ranges::sort(out, {}, &ColliderFound::pair);
+  return out;
+}
+
+struct Streamed {
+  std::vector<ColliderFound> pairs;
+  std::size_t largest = 0;  // part
+  std::uint64_t decided = 0;
+  bool complete = false;
+};
+Streamed streamed(const ColliderOptions& options, const ColliderInput& input) {
+  ColliderStream stream(input, options);
+  Streamed out;
+  for (std::vector<ColliderFound> part; stream.next(part);) {
+    out.largest = std::max(out.largest, part.size());
+    out.pairs.insert(out.pairs.end(), part.begin(), part.end());
+  }
+  out.decided = stream.decided();
+  out.complete = stream.complete();
+  return out;
+}
+
+TEST(LibraryStream, GivesThePairsOfFindInOrder) {
+  for (const char* name : {"two-spheres", "degenerate", "random-soup", "crowd", "far-apart"}) {
+    const Flat flat(make_builtin_scene(name));
+    for (const ColliderOptions& options :
+         {ColliderOptions{}, ColliderOptions{.threads = 3, .self = true},
+          ColliderOptions{.self = true, .neighbours = false},
+          ColliderOptions{.clearance = 0.01, .contacts = ColliderContacts::kinds},
+          ColliderOptions{.self = true, .ignore = {{0, 1}}}}) {
+      const Streamed found = streamed(options, flat.input());
+      EXPECT_EQ(found.pairs, found_by(options, flat.input())) << name;
+      EXPECT_TRUE(found.complete);
+    }
+  }
+}
+
+TEST(LibraryStream, EndsAtTheLimit) {
+  const Flat flat(make_builtin_scene("random-soup"));
+  const Streamed all = streamed({}, flat.input());
+  ASSERT_GT(all.pairs.size(), 100u);
+  for (const std::size_t limit : {std::size_t{1}, std::size_t{50}, all.pairs.size() + 1}) {
+    const Streamed some = streamed({.limit = limit}, flat.input());
+    const std::size_t count = std::min(limit, all.pairs.size());
+    EXPECT_EQ(some.pairs, std::vector<ColliderFound>(all.pairs.begin(),
+                                                     all.pairs.begin() + static_cast<long>(count)));
+    EXPECT_EQ(some.complete, limit > all.pairs.size());
+    if (limit == 1) {
+      EXPECT_LT(some.decided, all.decided / 2);
+    }
+  }
+}
+
+/// Many triangles in one place: each collides with every other one.
+TEST(LibraryStream, HoldsAPartOfThePairsAtATime) {
+  RandomNumbers random(631);
+  std::vector<double> points;
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t k = 0; k < 3 * 1200; ++k) {
+    for (int axis = 0; axis < 3; ++axis)
+      points.push_back((axis == static_cast<int>(k % 3) ? 1.0 : -0.5) + 0.1 * random.between(0, 1));
+    triangles.push_back(k);
+  }
+  const ColliderInput input{points, triangles, {}};
+  const ColliderOptions options{.threads = 2, .self = true};
+  const Streamed found = streamed(options, input);
+  EXPECT_EQ(found.pairs, found_by(options, input));
+  EXPECT_GT(found.pairs.size(), 300'000u);
+  EXPECT_LT(found.largest, 80'000u);
+}
+
+TEST(LibraryStream, RefusesWhatTheColliderRefuses) {
+  const auto refused = [](const ColliderOptions& options, const ColliderInput& input) {
+    return refusal([&] { ColliderStream stream(input, options); })[0];
+  };
+  const std::vector<double> points = {0, 0, 0};
+  const std::vector<std::uint32_t> triangles = {0, 0, 1};
+  EXPECT_EQ(refused({}, {points, triangles, {}}), "triangles");
+  EXPECT_EQ(refused({.device = ColliderDevice::gl}, {}), "device");
+  EXPECT_EQ(refused({.clearance = -1}, {}), "clearance");
+  EXPECT_EQ(refused({.ignore = {{0, 1}}}, {}), "ignore");
+  EXPECT_EQ(refused({}, {}), "nothing was thrown");
+}
+
+// ---- Distances as users of the library see them, held against those of the method.
+
+void expect_same(const std::vector<DistanceAnswer>& found, const DistanceRecord& record) {
+  ASSERT_EQ(found.size(), record.distances.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const DistanceAnswer& x = found[k];
+    const Distance& y = record.distances[k];
+    EXPECT_EQ((ObjectPair{x.object_a, x.object_b}), y.objects);
+    EXPECT_EQ((TrianglePair{x.triangle_a, x.triangle_b}), y.triangles);
+    EXPECT_EQ(x.distance, y.closest.distance);
+    EXPECT_EQ(x.squared, y.closest.squared.text());
+    EXPECT_EQ(x.feature_a, to_string(y.closest.features[0]));
+    EXPECT_EQ(x.feature_b, to_string(y.closest.features[1]));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(x.point_a[axis], y.closest.points[0][axis]);
+      EXPECT_EQ(x.point_b[axis], y.closest.points[1][axis]);
+    }
+    EXPECT_EQ(static_cast<int>(x.inside), static_cast<int>(y.inside));
+  }
+}
+
+TEST(LibraryDistances, AreThoseOfTheMethodSceneAfterScene) {
+  rational::Draws random(1);
+  DistanceFinder all_pairs;
+  DistanceFinder near({.kind = DistanceKind::nearest, .k = 2});
+  DistanceFinder within({.kind = DistanceKind::all, .within = 3, .threads = 2});
+  for (int k = 0; k < 20; ++k) {
+    Scene scene = distance_lab::random_scene(random, 4, 12);
+    for (Object& object : scene.objects) object.self = false;
+    if (!nothing_asked(scene, {}).empty()) {
+      EXPECT_TRUE(all_pairs.find(Flat(scene).input()).empty());
+      continue;
+    }
+    expect_same(all_pairs.find(Flat(scene).input()), distances(scene, {}));
+    expect_same(near.find(Flat(scene).input()),
+                distances(scene, {.pairs = DistancePairs::nearest, .k = 2}));
+    expect_same(within.find(Flat(scene).input()),
+                distances(scene, {.pairs = DistancePairs::all, .within = 3}));
+  }
+}
+
+TEST(LibraryDistances, OfObjectsThatAreAskedAboutByThemselves) {
+  Scene scene = make_builtin_scene("degenerate");
+  scene.objects[1].self = true;
+  DistanceFinder finder({.self_objects = {false, true}});
+  expect_same(finder.find(Flat(scene).input()), distances(scene, {}));
+  EXPECT_THROW(DistanceFinder({.self_objects = {true}}).find(Flat(scene).input()), ColliderError);
+}
+
+TEST(LibraryDistances, OfACallerThatRoundsUpwardAreTheSame) {
+  const Scene scene = make_builtin_scene("degenerate");
+  const Flat flat(scene);
+  const auto expected = distances(flat.input());
+  std::fesetround(FE_UPWARD);
+  const auto found = distances(flat.input());
+  EXPECT_EQ(std::fegetround(), FE_UPWARD);
+  std::fesetround(FE_TONEAREST);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].distance, expected[0].distance);
+  EXPECT_EQ(found[0].squared, expected[0].squared);
+}
+
+TEST(LibraryDistances, RefuseWhatIsBad) {
+  const auto where = [](const auto& call) { return refusal(call)[0]; };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = HUGE_VAL;
+  EXPECT_EQ(where([&] { DistanceFinder({.within = nan}); }), "within");
+  EXPECT_EQ(where([] { DistanceFinder({.kind = DistanceKind::all}); }), "within");
+  EXPECT_EQ(where([&] { DistanceFinder({.kind = DistanceKind::all, .within = infinite}); }),
+            "within");
+  EXPECT_EQ(where([] { DistanceFinder({.kind = DistanceKind::nearest, .k = 0}); }), "k");
+  EXPECT_EQ(where([] { DistanceFinder({.threads = 1025}); }), "threads");
+  const std::vector<double> vertices = {0, 0, nan};
+  const std::vector<std::uint32_t> triangles = {0, 0, 0}, wrong = {0, 0, 7};
+  EXPECT_EQ(where([&] { distances({vertices, triangles, {}}); }), "vertices");
+  const std::vector<double> good = {0, 0, 0};
+  EXPECT_EQ(where([&] { distances({good, wrong, {}}); }), "triangles");
+  EXPECT_TRUE(distances({good, triangles, {}}).empty());
 }
 
 }  // namespace

@@ -1,19 +1,12 @@
 // Objects of the library called by two threads at once, and objects that were moved from. A call
 // gives the right answer or an error that says so.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <barrier>
-#include <functional>
-#include <future>
-#include <mutex>
-#include <thread>
 
 #include "core/base/stopwatch.h"
 #include "experiments/library/farcull.h"
 #include "experiments/library/input.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/library/flat.h"
+#include "tests/lab/flat.h"
 
 namespace farcull {
 namespace {
@@ -21,17 +14,6 @@ namespace {
 constexpr const char* kBusy = "is in use by another thread or call";
 constexpr const char* kMoved = "was moved from";
 
-// The reason and the object of the ColliderError that the call throws.
-template <class Call>
-std::array<std::string, 2> refusal(const Call& call) {
-  try {
-    call();
-  } catch (const ColliderError& error) {
-    EXPECT_FALSE(error.remedy.empty());
-    return {error.where, error.reason};
-  }
-  return {"nothing", "was thrown"};
-}
 std::array<std::string, 2> busy(const char* object) { return {object, kBusy}; }
 std::array<std::string, 2> moved(const char* object) { return {object, kMoved}; }
 
@@ -76,8 +58,7 @@ void race(const char* object, const std::function<bool()>& call) {
   const auto work = [&] {
     while (true) {
       start.arrive_and_wait();
-      const bool seen = right > 0 && refused > 0;
-      const bool last = seen || wrong > 0 || late;
+      const bool seen = right > 0 && refused > 0, last = seen || wrong > 0 || late;
       start.arrive_and_wait();  // both have read the same
       if (last) return;
       try {

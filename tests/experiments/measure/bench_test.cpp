@@ -1,15 +1,10 @@
 #include "experiments/measure/bench.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <thread>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/scenes.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -34,31 +29,22 @@ std::vector<TrianglePair> brute_force(const Scene& scene) {
   const std::vector<std::uint32_t> owner = owners(scene);
   std::vector<TrianglePair> all;
   for (std::uint32_t a = 0; a < owner.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
+    for (std::uint32_t b = a + 1; b < owner.size(); ++b)
       if (owner[a] != owner[b] || scene.objects[owner[a]].self) all.push_back({a, b});
-    }
   }
   return decide(scene, all, {.neighbours = false}).pairs;
 }
 
 // Sheets, each crossed by every blade: more candidates than any part that is decided at once.
 Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
-  Scene scene;
-  scene.name = "sheets";
-  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {a, b, c});
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
-  };
-  for (std::uint32_t i = 0; i < sheets; ++i) add({0, 0, i + .5}, {1, 0, i + .5}, {0, 1, i + .5});
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::uint32_t i = 0; i < sheets; ++i)
+    objects[0].push_back({Vec3(0, 0, i + .5), Vec3(1, 0, i + .5), Vec3(0, 1, i + .5)});
   for (std::uint32_t i = 0; i < blades; ++i) {
     const double x = 0.1 + 1e-4 * i;
-    add({x, 0.1, 0}, {x, 0.1, sheets + 1.}, {x, 0.3, sheets / 2.});
+    objects[1].push_back({Vec3(x, 0.1, 0), Vec3(x, 0.1, sheets + 1.), Vec3(x, 0.3, sheets / 2.)});
   }
-  scene.objects = {{"sheets", 0, sheets}, {"blades", sheets, blades}};
-  validate(scene, scene.name);
-  return scene;
+  return lab::scene_of(objects);
 }
 
 // Whether CGAL's self_intersections() takes the scene, but for degenerate triangles.
@@ -89,9 +75,8 @@ BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
     EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
   for (const char* name : {"far-pairs", "exact", "cgal-boxes", "cgal-boxes-2000",
-                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"}) {
+                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"})
     EXPECT_TRUE(ran.contains(name)) << name;
-  }
   EXPECT_TRUE(result.fastest_peer);
   return result;
 }
@@ -145,21 +130,13 @@ TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
 // the origin. FCL's oriented boxes lose a third (docs/bench.md), so they are not asked.
 TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
   const std::uint32_t pairs = 500;
-  Scene scene;
-  scene.name = "touching";
-  for (std::uint32_t object = 0; object < 2; ++object) {
-    for (std::uint32_t i = 0; i < pairs; ++i) {
-      const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-      const Vec3 at = {1e6 + i * 0.37, 1e6 + i * 0.11, 1e6};
-      const double away = object == 0 ? -1e-5 : 1e-5;
-      scene.vertices.insert(scene.vertices.end(),
-                            {at, at + Vec3(away, 1e-5, 0), at + Vec3(away, 0, 1e-5)});
-      scene.triangles.push_back({first, first + 1, first + 2});
-      scene.source_face.push_back(0);
-    }
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::uint32_t i = 0; i < pairs; ++i) {
+    const Vec3 at = {1e6 + i * 0.37, 1e6 + i * 0.11, 1e6};
+    for (const double away : {-1e-5, 1e-5})
+      objects[away > 0].push_back({at, at + Vec3(away, 1e-5, 0), at + Vec3(away, 0, 1e-5)});
   }
-  scene.objects = {{"left", 0, pairs}, {"right", pairs, pairs}};
-  validate(scene, scene.name);
+  const Scene scene = lab::scene_of(objects);
   const std::vector<TrianglePair> all = brute_force(scene);
   ASSERT_EQ(all.size(), pairs);
   for (const Peer& peer : all_peers(2)) {
@@ -211,13 +188,13 @@ TEST(Bench, CatchesACorruptedPeer) {
       EXPECT_EQ(result.disagreement->lacks, "bad");
       EXPECT_EQ(result.disagreement->pair, right[at]);
       EXPECT_TRUE(result.disagreement->collides);
-      EXPECT_NE(describe(scene, *result.disagreement).find("bad lacks; "), std::string::npos);
+      EXPECT_TRUE(has_text(describe(scene, *result.disagreement), "bad lacks; "));
     }
   }
 
   std::vector<TrianglePair> more = right;
   const TrianglePair wrong = {0, right[0].a == 0 && right[0].b == 1 ? 2u : 1u};
-  more.insert(std::lower_bound(more.begin(), more.end(), wrong), wrong);
+  more.insert(std::ranges::lower_bound(more, wrong), wrong);
   const BenchResult invented = bench(scene, {good, says("bad", [=] { return more; })}, options);
   ASSERT_TRUE(invented.disagreement);
   EXPECT_EQ(invented.disagreement->has, "bad");
@@ -226,7 +203,7 @@ TEST(Bench, CatchesACorruptedPeer) {
 
   const TrianglePair nowhere = {0, 1'000'000'000};
   std::vector<TrianglePair> outside = right;
-  outside.insert(std::lower_bound(outside.begin(), outside.end(), nowhere), nowhere);
+  outside.insert(std::ranges::lower_bound(outside, nowhere), nowhere);
   const BenchResult beyond = bench(scene, {good, says("bad", [=] { return outside; })}, options);
   ASSERT_TRUE(beyond.disagreement);
   EXPECT_FALSE(beyond.disagreement->collides);
@@ -249,8 +226,7 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
   BenchOptions options = quick();
   options.repeat = 3;
   options.limit_s = 0.02;
-  int fast_runs = 0;
-  int slow_runs = 0;
+  int fast_runs = 0, slow_runs = 0;
   const std::vector<BenchContestant> both = {
       says("fast", [&] { return ++fast_runs, std::vector<TrianglePair>{}; }), says("slow", [&] {
         ++slow_runs;
@@ -266,7 +242,7 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
   EXPECT_EQ(result.rows[1].total_ms.median, result.rows[1].cold_ms);
   EXPECT_GE(result.rows[1].cold_ms, 30);
   EXPECT_EQ(result.fastest_peer, 0u);
-  EXPECT_NE(bench_table(scene, options, result).find("slow (once)"), std::string::npos);
+  EXPECT_TRUE(has_text(bench_table(scene, options, result), "slow (once)"));
 }
 
 TEST(Bench, MemoryIsThePeakBeyondWhatWasThere) {
@@ -343,8 +319,8 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   for (const BenchContestant& contestant : result.left_out) {
     out.insert(contestant.name);
     EXPECT_FALSE(contestant.left_out.empty());
-    EXPECT_NE(bench_table(scene, options, result).find("left out: " + contestant.name + ": "),
-              std::string::npos);
+    EXPECT_TRUE(
+        has_text(bench_table(scene, options, result), "left out: " + contestant.name + ": "));
   }
   EXPECT_FALSE(out.contains("far")) << "the native canvas draws on the CPU";
   EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";
@@ -391,6 +367,173 @@ TEST(Bench, ConfinesThreadsToTheirCores) {
   }).join();
   EXPECT_EQ(own, 1u);
   EXPECT_EQ(inherited, 1u);
+}
+
+// ----
+
+// Two triangles in each object, so that no tree is a single leaf; objects stand one above the
+// other, each twice as far from the one below as that is from its own.
+Scene tower() {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects;
+  for (const double z : {0.0, 1.0, 3.0, 7.0}) {
+    objects.push_back({{Vec3(0, 0, z), Vec3(1, 0, z), Vec3(0, 1, z)},
+                       {Vec3(1, 1, z), Vec3(1, 0, z), Vec3(0, 1, z)}});
+  }
+  return lab::scene_of(objects);
+}
+
+using Distances = std::vector<PeerDistance>;
+
+Distances rounded_to_float(Distances all) {
+  for (PeerDistance& d : all) d.distance = static_cast<float>(d.distance);
+  return all;
+}
+
+TEST(DistancePeers, FindWhatCanBeReadOffATower) {
+  const Distances all = {{0, 1, 1}, {0, 2, 3}, {0, 3, 7}, {1, 2, 2}, {1, 3, 6}, {2, 3, 4}};
+  const Distances near = {{0, 1, 1}, {1, 2, 2}, {0, 2, 3}};
+  const Distances nearest = {{0, 1, 1}, {1, 0, 1}, {2, 1, 2}, {3, 2, 4}};
+  const auto sorted = [](Distances some) {
+    std::ranges::sort(some, [](const PeerDistance& x, const PeerDistance& y) {
+      return std::tie(x.a, x.b) < std::tie(y.a, y.b);
+    });
+    return some;
+  };
+  for (const DistancePeer& peer : distance_peers()) {
+    if (!peer.missing.empty()) continue;
+    for (const unsigned threads : {1u, 3u}) {
+      SCOPED_TRACE(peer.name + ", threads " + std::to_string(threads));
+      const auto ask = [&](DistanceTask task, double within) {
+        return peer.run(tower(), {.task = task, .within = within}, threads).distances;
+      };
+      constexpr double kAll = std::numeric_limits<double>::infinity();
+      EXPECT_TRUE(rounded_to_float(ask(DistanceTask::objects, kAll)) == all);
+      EXPECT_TRUE(rounded_to_float(ask(DistanceTask::objects, 3.5)) == sorted(near));
+      EXPECT_TRUE(rounded_to_float(ask(DistanceTask::nearest, kAll)) == nearest);
+      EXPECT_EQ(ask(DistanceTask::nearest, 1.5).size(), 2u);
+    }
+  }
+}
+
+bool from_vertices_alone(const DistancePeer& peer) { return peer.name == "embree-points"; }
+
+TEST(DistancePeers, CallObjectsThatMeetZero) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  for (const DistancePeer& peer : distance_peers()) {
+    if (!peer.missing.empty() || from_vertices_alone(peer)) continue;
+    const PeerDistances answer = peer.run(scene, {}, 1);
+    ASSERT_EQ(answer.distances.size(), 1u) << peer.name;
+    EXPECT_EQ(answer.distances[0].distance, 0) << peer.name;
+  }
+}
+
+// Where the nearest points are inside two edges that cross at a distance of 1, and where triangles
+// pierce each other, the distance from vertices is larger. Where a vertex is nearest it is right.
+TEST(DistancePeers, FromVerticesAloneTheyBoundFromAbove) {
+  const auto wedge = [](double z, double up, bool turned) {
+    const auto at = [turned](double x, double y, double w) {
+      return turned ? Vec3(y, x, w) : Vec3(x, y, w);
+    };
+    return std::vector<std::array<Vec3, 3>>{{at(-2, 0, z), at(2, 0, z), at(0, 0, z + up)},
+                                            {at(-2, 0, z), at(0, 0, z + up), at(-2, 0, z + up)}};
+  };
+  const Scene edges = lab::scene_of({wedge(0, -3, false), wedge(1, 3, true)});
+  const Scene pierced = lab::scene_of({wedge(0, 3, false), wedge(1, -3, true)});
+  const Scene vertex = lab::scene_of({wedge(0, 3, false), wedge(7, -3, true)});
+  for (const DistancePeer& peer : distance_peers()) {
+    if (!peer.missing.empty()) continue;
+    SCOPED_TRACE(peer.name);
+    const auto asked = [&peer](const Scene& scene) {
+      const Distances all = peer.run(scene, {}, 1).distances;
+      return all.size() == 1 ? static_cast<float>(all[0].distance) : -1.0F;
+    };
+    EXPECT_EQ(asked(vertex), 1);
+    if (from_vertices_alone(peer)) {
+      EXPECT_EQ(asked(edges), std::sqrt(5.0F)) << "from an end of one edge to the other edge";
+      EXPECT_GT(asked(pierced), 0);
+      EXPECT_FALSE(peer.comparable);
+    } else {
+      EXPECT_EQ(asked(edges), 1);
+      EXPECT_EQ(asked(pierced), 0);
+    }
+  }
+}
+
+// The fastest peer is one that answers the same question in doubles.
+TEST(DistanceBench, ABoundOrFloatsAreNotCalledTheFastestPeer) {
+  const auto fastest = [](const char* peers) {
+    const DistanceBenchResult result = bench_distances(tower(), {.peers = peers, .repeat = 1});
+    return result.fastest_peer ? result.rows[*result.fastest_peer].name : "none";
+  };
+  EXPECT_EQ(fastest("embree-points,fcl-float"), "none");
+  EXPECT_EQ(fastest("embree-points,cgal-aabb,fcl-float"), "cgal-aabb");
+}
+
+TEST(DistancePeers, RefuseDegenerateTriangles) {
+  const Scene scene = make_builtin_scene("degenerate");
+  for (const DistancePeer& peer : distance_peers()) {
+    if (!peer.missing.empty()) continue;
+    EXPECT_NE(peer.refuses(scene), "") << peer.name;
+  }
+}
+
+TEST(DistanceBench, EachErrorIsCountedAsWhatItIs) {
+  const Distances exact = {{0, 1, 1}, {0, 2, 0}, {1, 2, 4}, {1, 3, 8}};
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, exact).exact, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, exact).largest_relative, 0);
+  // One lacks, one is not asked for, one is called apart, one is off by an eighth.
+  const Distances answer = {{0, 2, 1e-9}, {0, 3, 5}, {1, 2, 4.5}, {1, 3, 8}};
+  const DistanceErrors errors = errors_of(DistanceTask::objects, answer, exact);
+  EXPECT_EQ(errors.answers, 4u);
+  EXPECT_EQ(errors.lacking, 1u);
+  EXPECT_EQ(errors.beyond, 1u);
+  EXPECT_EQ(errors.other_zero, 1u);
+  EXPECT_EQ(errors.exact, 1u);
+  EXPECT_EQ(errors.largest_relative, 0.125);
+  EXPECT_EQ(errors_of(DistanceTask::objects, {}, exact).lacking, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, {}).beyond, 4u);
+}
+
+TEST(DistanceBench, AnotherNearestObjectIsAnErrorIfItIsNotAsNear) {
+  const Distances exact = {{0, 1, 1}, {1, 0, 1}, {2, 1, 2}};
+  EXPECT_EQ(errors_of(DistanceTask::nearest, {{0, 1, 1}, {1, 0, 1}, {2, 0, 2}}, exact).other_object,
+            0u);
+  const DistanceErrors errors =
+      errors_of(DistanceTask::nearest, {{0, 1, 1}, {1, 0, 1}, {2, 0, 2.5}}, exact);
+  EXPECT_EQ(errors.other_object, 1u);
+  EXPECT_EQ(errors.largest_relative, 0.25);
+}
+
+TEST(DistanceBench, OursIsExactAndTheFastestPeerIsNamed) {
+  DistanceBenchOptions options{.repeat = 1};
+  for (const DistanceTask task : {DistanceTask::objects, DistanceTask::nearest}) {
+    options.question.task = task;
+    const DistanceBenchResult result = bench_distances(tower(), options);
+    ASSERT_FALSE(result.rows.empty());
+    EXPECT_FALSE(result.rows[0].peer);
+    for (const DistanceBenchRow& row : result.rows) {
+      EXPECT_EQ(row.errors.answers, task == DistanceTask::objects ? 6u : 4u) << row.name;
+      EXPECT_EQ(row.errors.lacking, 0u) << row.name;
+    }
+    EXPECT_EQ(result.rows[0].errors.exact, result.rows[0].errors.answers);
+    const auto json = to_json(tower(), options, result);
+    EXPECT_EQ(json["rows"].size(), result.rows.size());
+    EXPECT_TRUE(has_text(distance_bench_table(tower(), options, result), "farcull"));
+  }
+}
+
+TEST(DistanceBench, AsksNobodyAboutAnObjectAndItself) {
+  Scene scene = tower();
+  for (Object& object : scene.objects) object.self = true;
+  for (const DistanceBenchRow& row : bench_distances(scene, {.repeat = 1}).rows)
+    EXPECT_EQ(row.errors.answers, 6u) << row.name;
+}
+
+TEST(DistanceBench, RefusesWhatItCannotMeasure) {
+  DistanceBenchOptions options{.peers = "nope"};
+  EXPECT_EQ(error_of([&] { bench_distances(tower(), options); }).where, "--peers");
+  options = {.repeat = 0};
+  EXPECT_EQ(error_of([&] { bench_distances(tower(), options); }).where, "--repeat");
 }
 
 }  // namespace

@@ -1,18 +1,11 @@
 #include "experiments/measure/frames.h"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
-
-#include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <set>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -22,11 +15,6 @@ constexpr const char* kFloor = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 std::string falling(double z) {
   const std::string h = std::to_string(z), l = std::to_string(z - 0.25);
   return "v 0.1 0.1 " + h + "\nv 0.9 0.1 " + h + "\nv 0.1 0.1 " + l + "\nf 1 2 3\n";
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 FramesQuestion question(Method method, FrameRange range) {
@@ -129,19 +117,19 @@ TEST(Frames, ARecordIsWholeAfterEachFrame) {
   const FramesResult result =
       run_frames({"two-spheres"}, asked, {}, [&](const FrameReport& report) {
         record.add(report);
-        const auto json = nlohmann::json::parse(text_of(path));
+        const auto json = nlohmann::json::parse(read_text(path));
         EXPECT_EQ(json["frames"].size(), ++frames);
         EXPECT_EQ(json["frames"].back()["frame"], frames - 1);
         EXPECT_EQ(json["summary"]["frames"], frames);
         EXPECT_EQ(json["summary"]["wanted"], 5);
         EXPECT_EQ(json["method"], "far-pairs");
         // The first frame comes with a heading; a later one where a column grows wider.
-        EXPECT_GE(std::count(report.rows.begin(), report.rows.end(), '\n'), frames == 1 ? 2 : 1);
+        EXPECT_GE(std::ranges::count(report.rows, '\n'), frames == 1 ? 2 : 1);
         csv += report.pairs_csv;
       });
   record.finish();
   EXPECT_EQ(frames, 5u);
-  const std::string text = text_of(path);
+  const std::string text = read_text(path);
   EXPECT_EQ(text, nlohmann::ordered_json::parse(text).dump(2) + "\n");
   EXPECT_FALSE(result.json.contains("frames"));
   const FramesResult whole = run_frames({"two-spheres"}, asked);
@@ -161,7 +149,7 @@ TEST(Frames, AMissingMeshLeavesTheFramesBeforeIt) {
     };
     EXPECT_EQ(error_of(run).where, folder.path("m_2.obj"));
   }
-  const auto json = nlohmann::json::parse(text_of(path));
+  const auto json = nlohmann::json::parse(read_text(path));
   EXPECT_EQ(json["frames"].size(), 2u);
   EXPECT_EQ(json["summary"]["frames"], 2);
   EXPECT_EQ(json["summary"]["wanted"], 4);
@@ -176,18 +164,18 @@ TEST(GrowingOutput, AFullDiskLeavesWhatWasWhole) {
   output.add("[1", "]");
   output.add(",2", " ] ");
   output.add(",3", "]");
-  EXPECT_EQ(text_of(path), "[1,2,3]");
+  EXPECT_EQ(read_text(path), "[1,2,3]");
   rlimit before = {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit full = {.rlim_cur = 100, .rlim_max = before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
   const std::string long_text = "," + std::string(200, '4');
   EXPECT_EQ(error_of([&] { output.add(long_text, "]"); }).where, path);
-  EXPECT_EQ(text_of(path), "[1,2,3]");
+  EXPECT_EQ(read_text(path), "[1,2,3]");
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   output.add(long_text, "]");
   output.finish();
-  EXPECT_EQ(text_of(path), "[1,2,3" + long_text + "]");
+  EXPECT_EQ(read_text(path), "[1,2,3" + long_text + "]");
 }
 
 // A frame is what its file says, triangles included.
@@ -217,7 +205,7 @@ TEST(Frames, MeshesMayChangeTheirTopology) {
     EXPECT_EQ(result.json["summary"]["topology_changes"], 3);
     EXPECT_EQ(result.json["summary"]["missed"], 0);
     EXPECT_EQ(result.json["scene"]["triangles"], 2);
-    EXPECT_NE(result.table.find("topology  changed 3 times"), std::string::npos);
+    EXPECT_TRUE(has_text(result.table, "topology  changed 3 times"));
   }
   folder.write("m_1.obj", high + "f 1 2 9\n");  // and each is validated
   FrameSource source(scene, {0, 4}, false);
@@ -242,8 +230,8 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
     EXPECT_EQ(frame["warning"], nullptr);
   }
   for (const char* column : {"fps", "PCS objects", "PCS triangles"})
-    EXPECT_NE(result.table.find(column), std::string::npos) << column;
-  EXPECT_EQ(result.table.find("draws"), std::string::npos);
+    EXPECT_TRUE(has_text(result.table, column)) << column;
+  EXPECT_FALSE(has_text(result.table, "draws"));
 }
 
 TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {

@@ -1,8 +1,7 @@
 #include "experiments/measure/harness.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -43,6 +42,114 @@ TEST(Harness, TakesTheMeanOfTwoMiddleValuesAndTheFasterOfTwoMiddleRuns) {
   EXPECT_EQ(spread_of({}).median, 0);
   EXPECT_EQ(median_run({4, 1, 2, 9}), 2u);
   EXPECT_EQ(median_run({7}), 0u);
+}
+
+TEST(Lab, ReadsAMotionAnewWhereItHasOtherFrames) {
+  Lab lab("cpu");
+  const auto hash = [&](long frames) { return scene_hash(lab.scene("crowd:30", 1, frames)); };
+  const std::string of4 = hash(4), of12 = hash(12);
+  EXPECT_EQ(hash(4), of4);
+  Lab fresh("cpu");
+  EXPECT_EQ(scene_hash(fresh.scene("crowd:30", 1, 12)), of12);
+  EXPECT_NE(of4, of12) << "else it would not matter";
+}
+
+TEST(Lab, TheTruthIsWithoutWhatTheSceneIgnores) {
+  Lab lab("cpu");
+  Scene scene = make_builtin_scene("two-tori");
+  lab.scene("whole", [&] { return scene; });
+  EXPECT_GT(lab.truth().pairs.size(), 0u);
+  scene.ignored = {{0, 1}};
+  lab.scene("ignored", [&] { return scene; });
+  EXPECT_EQ(lab.truth().pairs.size(), 0u);
+}
+
+// ---- Intervals by the bootstrap against what combinatorics says about them.
+
+std::vector<double> up_to(int n) {
+  std::vector<double> out;
+  for (int i = 1; i <= n; ++i) out.push_back(i);
+  return out;
+}
+
+double choose(int n, int k) {
+  double out = 1;
+  for (int i = 0; i < k; ++i) out = out * (n - i) / (i + 1);
+  return out;
+}
+
+// The least rank k with which a drawn median of 1 .. n (n odd) is at most k with more than 2.5 %.
+int lower_rank(int n) {
+  for (int k = 1;; ++k) {
+    double below = 0;
+    for (int j = (n + 1) / 2; j <= n; ++j)
+      below += choose(n, j) * std::pow(double(k) / n, j) * std::pow(1 - double(k) / n, n - j);
+    if (below > 0.025) return k;
+  }
+}
+
+// How often the interval from the k-th least to the k-th largest of n contains the true median.
+double coverage(int n, int k) {
+  double outside = 0;
+  for (int j = 0; j < k; ++j) outside += choose(n, j);
+  return 1 - 2 * outside * std::pow(0.5, n);
+}
+
+TEST(Statistics, BootstrapEndsWhereCombinatoricsPutThem) {
+  for (const int n : {3, 5, 7, 9, 15}) {
+    const Estimate e = median_estimate(up_to(n));
+    EXPECT_EQ(e.value, (n + 1) / 2) << n;
+    EXPECT_EQ(e.low, lower_rank(n)) << n;
+    EXPECT_EQ(e.high, n + 1 - lower_rank(n)) << n;
+    EXPECT_EQ(e.n, static_cast<std::size_t>(n));
+  }
+}
+
+// What the header says of it; the twin: five runs are too few.
+TEST(Statistics, NineRunsAreTheFewestOddNumberThatGives95PerCent) {
+  EXPECT_NEAR(coverage(3, lower_rank(3)), 0.75, 1e-12);
+  EXPECT_NEAR(coverage(5, lower_rank(5)), 0.9375, 1e-12);
+  EXPECT_LT(coverage(7, lower_rank(7)), 0.95);
+  EXPECT_GT(coverage(9, lower_rank(9)), 0.95);
+}
+
+TEST(Statistics, TheSameValuesInAnyOrderGiveTheSameInterval) {
+  std::vector<double> values = {4, 1.5, 2, 9, 3, 3.5, 8};
+  const Estimate first = median_estimate(values);
+  std::ranges::reverse(values);
+  const Estimate again = median_estimate(values);
+  EXPECT_EQ(first.low, again.low);
+  EXPECT_EQ(first.high, again.high);
+  // The twin: another value, another interval.
+  values[0] = 0.5;
+  values[1] = 0.6;
+  EXPECT_NE(median_estimate(values).low, first.low);
+}
+
+TEST(Statistics, FewValues) {
+  EXPECT_EQ(median_estimate({}).n, 0u);
+  const Estimate one = median_estimate({7});
+  EXPECT_EQ(one.low, 7);
+  EXPECT_EQ(one.high, 7);
+  EXPECT_EQ(median_estimate({1, 3}).value, 2);
+  EXPECT_EQ(middle({4, 1, 2, 9}), 3);
+  EXPECT_EQ(middle({}), 0);
+}
+
+TEST(Statistics, ARatioContainsTheTrueOneAndExcludesAnother) {
+  const Estimate e = ratio_estimate({20, 21, 19, 20.5, 20.1, 19.7, 20.3, 19.9, 20.2},
+                                    {10, 10.2, 9.9, 10.1, 9.8, 10.05, 10, 9.95, 10.1});
+  EXPECT_LT(e.low, 2);
+  EXPECT_GT(e.high, 2);
+  EXPECT_GT(e.low, 1.9);
+  EXPECT_LT(e.high, 2.1);
+}
+
+TEST(Statistics, StudentIsThatOfTheTables) {
+  // Printed tables have three decimals.
+  EXPECT_NEAR(student_t95(1), 12.706, 5e-4);
+  EXPECT_NEAR(student_t95(4), 2.776, 5e-4);
+  EXPECT_NEAR(student_t95(30), 2.042, 5e-4);
 }
 
 }  // namespace

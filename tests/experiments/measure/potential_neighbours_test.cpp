@@ -2,13 +2,10 @@
 // diagrams leave, on small random scenes.
 #include "experiments/measure/neighbour_sets.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "tests/core/base/trials.h"
-#include "tests/core/voronoi/voronoi_lab.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -51,12 +48,10 @@ void check(const Scene& scene, const DiagramOptions& options) {
     for (const std::uint32_t other : nearest) lost += !others.contains(other);
     if (reliable) {
       EXPECT_GE(of.lost, lost);
-    } else {
+    } else
       EXPECT_EQ(of.lost, lost);
-    }
-    for (std::uint32_t t = 0; t < owner.size(); ++t) {
+    for (std::uint32_t t = 0; t < owner.size(); ++t)
       if (owner[t] != o && others.contains(owner[t]) && !reliable) triangles.insert(t);
-    }
     for (const TrianglePair& pair : kept.triangles) {
       if (!reliable) break;
       if (owner[pair.a] == o) triangles.insert(pair.b);
@@ -107,8 +102,7 @@ TEST(PotentialNeighbours, RecordsAddUp) {
   EXPECT_EQ(json["totals"]["lost"], totals.lost);
   EXPECT_EQ(json["objects"].size(), scene.objects.size());
   const std::string csv = diagram_csv(scene, record);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
-            scene.objects.size() + 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), scene.objects.size() + 1);
 }
 
 TEST(PotentialNeighbours, ObjectsWithoutTrianglesHaveNone) {
@@ -119,6 +113,128 @@ TEST(PotentialNeighbours, ObjectsWithoutTrianglesHaveNone) {
   EXPECT_EQ(record.objects[1].objects, 0u);
   EXPECT_EQ(record.objects[0].nearest, (std::vector<std::uint32_t>{2}));
   EXPECT_TRUE(diagram_json(scene, record)["objects"][1]["distance"].is_null());
+}
+
+// ---- Sets of neighbours: sizes that can be counted by hand, nothing lost by methods that promise
+// it, and spoiled sets, whose losses are counted.
+
+// Objects of one, two and one triangles at the heights 0, 1 and 3.
+Scene tower() {
+  const auto at = [](double z, double x) {
+    return std::array{Vec3(x, 0, z), Vec3(x + 1, 0, z), Vec3(x, 1, z)};
+  };
+  return lab::scene_of({{at(0, 0)}, {at(1, 0), at(1, 10)}, {at(3, 0)}});
+}
+
+NeighbourSets sets_with(std::vector<ObjectPair> objects, std::vector<TrianglePair> pairs) {
+  return {.objects = std::move(objects), .has_pairs = true, .pairs = std::move(pairs)};
+}
+
+TEST(NeighbourSets, HaveTheSizesThatCanBeCounted) {
+  const Scene scene = tower();
+  const std::vector<NearestObjects> truth = nearest_objects(scene);
+  // Triangle 0 is object 0, triangles 1 and 2 are object 1, triangle 3 is object 2.
+  const NeighbourSizes all =
+      sizes_of(scene, sets_with({{0, 1}, {1, 2}}, {{0, 1}, {0, 2}, {1, 3}}), truth);
+  EXPECT_EQ(all.with_nearest, 3u);
+  EXPECT_EQ(all.missed, 0u);
+  EXPECT_EQ(all.nearest_pairs, 3u) << "of 0 and 1 each other's, of 2 that of 1";
+  EXPECT_EQ(all.missed_pairs, 0u);
+  EXPECT_EQ(all.object_pairs, 2u);
+  EXPECT_EQ(all.triangle_pairs, 3u);
+  EXPECT_EQ(all.set_objects, 4u) << "1, 2 and 1";
+  EXPECT_EQ(all.median_objects, 1u);
+  EXPECT_EQ(all.most_objects, 2u);
+  EXPECT_EQ(all.set_triangles, 5u) << "{1, 2}, {0, 3} and {1}";
+  EXPECT_EQ(all.median_triangles, 2u);
+  // The twin: what is not there is counted as lost.
+  const NeighbourSizes less = sizes_of(scene, sets_with({{0, 1}}, {{0, 2}}), truth);
+  EXPECT_EQ(less.missed, 1u) << "object 2";
+  EXPECT_EQ(less.missed_pairs, 3u) << "the pair of triangles 0 and 1, twice, and 1 and 3";
+}
+
+TEST(NeighbourSets, OfWholeObjectsHaveAllTheirTriangles) {
+  const Scene scene = tower();
+  const NeighbourSets named{.objects = {{0, 1}, {1, 2}}, .left = {{1, 2}, {2, 1}}};
+  const NeighbourSizes sizes = sizes_of(scene, named, nearest_objects(scene));
+  EXPECT_EQ(sizes.triangle_pairs, 4u);
+  EXPECT_EQ(sizes.set_triangles, 6u) << "2, 1 + 1 and 2";
+  EXPECT_EQ(sizes.missed + sizes.missed_pairs, 0u);
+}
+
+// Against sets of sets.
+TEST(NeighbourSets, CountEachTriangleOnce) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scene scene = lab::neighbours_scene(seed);
+    lab::Random random(seed);
+    const std::vector<std::uint32_t> owner = owners(scene);
+    NeighbourSets sets = sets_with({}, {});
+    std::map<std::uint32_t, std::set<std::uint32_t>> triangles, objects;
+    for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
+        if (owner[a] == owner[b] || random.below(3) > 0) continue;
+        sets.pairs.push_back({a, b});
+        triangles[owner[a]].insert(b);
+        triangles[owner[b]].insert(a);
+        objects[owner[a]].insert(owner[b]);
+      }
+    }
+    for (const auto& [a, others] : objects)
+      for (const std::uint32_t b : others) sets.objects.push_back({a, b});
+    std::uint64_t expected = 0;
+    for (const auto& [object, of] : triangles) expected += of.size();
+    EXPECT_EQ(sizes_of(scene, sets, nearest_objects(scene)).set_triangles, expected);
+  }
+}
+
+// Boxes and trees promise it for any finite scene; the truth is computed in rationals, by code that
+// shares nothing with either.
+TEST(NeighbourSets, OfBoxesAndTreesLoseNothing) {
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Scene scene = lab::neighbours_scene(seed);
+    const auto truth = exact_distance::nearest_neighbours(scene);
+    // A power of two changes no other digit, so the truth stays.
+    if (seed % 3 == 1)
+      for (Vec3& v : scene.vertices) v = v * 0x1p-520;  // squares are below the normal numbers
+    else if (seed % 3 == 2)
+      for (Vec3& v : scene.vertices) v = v * 0x1p510;
+    for (const NeighbourMethod method : {NeighbourMethod::boxes, NeighbourMethod::trees}) {
+      const NeighbourSets sets = neighbour_sets(scene, {.method = method});
+      lab::Losses losses;
+      lab::count_losses(scene, truth, sets.objects, losses);
+      EXPECT_EQ(losses.lost, 0u) << to_string(method);
+    }
+  }
+}
+
+TEST(NeighbourSets, DoNotDependOnThreads) {
+  const Scene scene = make_builtin_scene("crowd:30");
+  for (const NeighbourMethod method :
+       {NeighbourMethod::trees, NeighbourMethod::voronoi, NeighbourMethod::voronoi_reliable}) {
+    const NeighbourSets one =
+        neighbour_sets(scene, {.method = method, .resolution = 32, .threads = 1});
+    const NeighbourSets three =
+        neighbour_sets(scene, {.method = method, .resolution = 32, .threads = 3});
+    EXPECT_EQ(one.objects, three.objects) << to_string(method);
+    EXPECT_EQ(one.pairs, three.pairs) << to_string(method);
+    EXPECT_EQ(one.left, three.left) << to_string(method);
+  }
+}
+
+TEST(NeighbourSets, SayWhyThereAreNone) {
+  const Scene scene = make_builtin_scene("ground@tiny");
+  const NeighbourOptions options{
+      .method = NeighbourMethod::voronoi_reliable, .resolution = 64, .most_pairs = 1};
+  const NeighbourSets none = neighbour_sets(scene, options);
+  EXPECT_TRUE(has_text(none.left_out, "too many pairs"));
+  EXPECT_THROW(sizes_of(scene, none, nearest_objects(scene)), std::logic_error);
+  // The twin: an option that is out of range is no reason of the scene.
+  EXPECT_EQ(error_of([&] {
+              neighbour_sets(scene, {.method = NeighbourMethod::voronoi, .resolution = 0});
+            }).where,
+            "resolution");
 }
 
 }  // namespace

@@ -1,17 +1,12 @@
 // What a run is asked about pairs: which objects it ignores, how many pairs it gives, how they
 // meet. For every kind of method, against the run that is asked for all.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -103,9 +98,8 @@ TEST(AskedPairs, FramesMayIgnoreOtherObjects) {
     RunOptions options = on_cpu(Method::far_pairs);
     // Objects 0 .. 19 are ignored with each other in the frames 4 to 7, and in some after.
     if (frame % 8 >= 4) {
-      for (std::uint32_t b = 1; b < 20; ++b) {
+      for (std::uint32_t b = 1; b < 20; ++b)
         for (std::uint32_t a = 0; a < b; ++a) options.ignored.push_back({a, b});
-      }
       options.ignored = in_order(std::move(options.ignored));
     }
     const Record kept = run(scene, options, session);
@@ -166,7 +160,7 @@ TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
   EXPECT_EQ(rows, record.contacts.size() + 1);
   // Twelve commas in each row, whatever is empty.
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, ',')), 12 * rows);
-  EXPECT_NE(csv.find(",coplanar,,,,,,,"), std::string::npos);
+  EXPECT_TRUE(has_text(csv, ",coplanar,,,,,,,"));
 
   const auto of = [&](std::vector<ContactKind> kinds) {
     return pairs_csv(scene, record, {.contacts = true, .kinds = std::move(kinds)});
@@ -174,7 +168,7 @@ TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
   const std::string crossing = of({ContactKind::crossing});
   EXPECT_EQ(static_cast<std::uint64_t>(std::ranges::count(crossing, '\n')),
             json["contacts"]["crossing"].get<std::uint64_t>() + 1);
-  EXPECT_EQ(crossing.find("touch"), std::string::npos);
+  EXPECT_FALSE(has_text(crossing, "touch"));
   EXPECT_EQ(of({kContactKinds.begin(), kContactKinds.end()}), of({}));
 }
 

@@ -1,16 +1,14 @@
 // Which canvas draws, by --device and without one, and that the native canvas says what it is. That
 // GL is drawn with where it is asked for: gl_methods_test.cpp.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/native/lanes.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/store.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -81,8 +79,8 @@ TEST(CanvasDevice, QueryModesAndDepthFormatsWorkOnTheNativeCanvasAndAreSaid) {
     EXPECT_EQ(json["query"], nullptr);
     EXPECT_EQ(json["depth_format"], bits24 ? "24" : "32f");
     const std::string table = run_table(scene, record);
-    EXPECT_NE(table.find("lanes of " + lane_target()), std::string::npos) << table;
-    EXPECT_EQ(table.find("occlusion queries"), std::string::npos) << table;
+    EXPECT_TRUE(has_text(table, "lanes of " + lane_target()));
+    EXPECT_FALSE(has_text(table, "occlusion queries"));
   }
   RunOptions both = coarse;
   both.query = QueryMode::flags;

@@ -2,20 +2,15 @@
 // the file is damaged, foreign or about something else. No device is opened here.
 #include "experiments/method/device_verdict.h"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
 #include "core/gl/probe/probe.h"
-#include "tests/experiments/method/cache_lab.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
-
-using lab::CacheFolder;
-using lab::read_text;
-using lab::write_text;
 
 GlInfo device() {
   GlInfo out;
@@ -63,9 +58,9 @@ TEST(DeviceVerdict, IsMadeOnceAndKept) {
   EXPECT_TRUE(first.holds);
   EXPECT_FALSE(first.remembered);
   EXPECT_EQ(first.probes, 2u);
-  EXPECT_TRUE(first.file.starts_with(folder.path().string() + "/farcull/device-"));
+  EXPECT_TRUE(first.file.starts_with(folder.path("farcull/device-")));
   ASSERT_EQ(ask.said.size(), 1u);
-  EXPECT_NE(ask.said[0].find("once for this device"), std::string::npos);
+  EXPECT_TRUE(has_text(ask.said[0], "once for this device"));
   const DeviceVerdict again = ask(device());
   EXPECT_TRUE(again.holds);
   EXPECT_TRUE(again.remembered);
@@ -169,8 +164,7 @@ TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
   const CacheFolder folder;
   Asked ask;
   ask.results[0].pass = false;
-  const std::string file = ask(device()).file;
-  const std::string good = read_text(file);
+  const std::string file = ask(device()).file, good = read_text(file);
   ASSERT_GT(good.size(), 200u);
   for (std::size_t i = 0; i < good.size(); ++i) {
     std::string bad = good;
@@ -183,9 +177,8 @@ TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
     // White space outside of strings may become something that breaks the text, never a verdict.
     if (ask.runs == runs) {
       EXPECT_TRUE(verdict.remembered && verdict.failed.size() == 1) << i;
-    } else {
-      EXPECT_NE(verdict.note.find(file), std::string::npos) << i;
-    }
+    } else
+      EXPECT_TRUE(has_text(verdict.note, file)) << i;
   }
   for (std::size_t length = 0; length < good.size() - 2; length += 7) {
     write_text(file, good.substr(0, length));
@@ -207,7 +200,7 @@ TEST(DeviceVerdict, AFileOfAnotherDeviceInItsPlaceIsMadeAnew) {
   write_text(file, read_text(others));
   const DeviceVerdict verdict = ask(device());
   EXPECT_FALSE(verdict.remembered);
-  EXPECT_NE(verdict.note.find("about something else"), std::string::npos);
+  EXPECT_TRUE(has_text(verdict.note, "about something else"));
   EXPECT_EQ(ask.runs, 3);
   EXPECT_TRUE(ask(device()).remembered);
 }
@@ -225,7 +218,7 @@ TEST(DeviceVerdict, ALinkIsNotFollowed) {
 
 TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
   const CacheFolder folder;
-  write_text(folder.path() / "farcull", "a file where the folder should be");
+  folder.write("farcull", "a file where the folder should be");
   Asked ask;
   for (int run = 1; run <= 2; ++run) {
     const DeviceVerdict verdict = ask(device());
@@ -235,7 +228,7 @@ TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
     EXPECT_EQ(ask.runs, run);
   }
   ASSERT_EQ(ask.said.size(), 2u);
-  EXPECT_NE(ask.said[0].find("cannot be kept, so every run does it"), std::string::npos);
+  EXPECT_TRUE(has_text(ask.said[0], "cannot be kept, so every run does it"));
 }
 
 TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
@@ -323,7 +316,7 @@ TEST(DeviceVerdict, NothingIsLeftBeside) {
   ask(device());
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry :
-       std::filesystem::directory_iterator(folder.path() / "farcull"))
+       std::filesystem::directory_iterator(folder.path("farcull")))
     ++files;
   EXPECT_EQ(files, 1u);
 }

@@ -9,10 +9,6 @@
 #include <unistd.h>
 
 #include <cinttypes>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <string>
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
@@ -59,12 +55,10 @@ void compare(const Nearest& truth, const ObjectPair& objects, const Distance* an
 
 void spoil_first(Spoil spoil, const ObjectPair& objects, const Nearest& truth,
                  DistanceRecord& record, std::vector<NearPairs>& near) {
-  for (Distance& d : record.distances) {
+  for (Distance& d : record.distances)
     if (spoil == Spoil::bit && d.objects == objects) d.closest.distance = next(d.closest.distance);
-  }
-  for (NearPairs& of : near) {
+  for (NearPairs& of : near)
     if (spoil == Spoil::pair && of.objects == objects) std::erase(of.pairs, truth.pairs.front());
-  }
 }
 
 Row run_scene(const Scene& scene, DistancePairs pairs, Spoil spoil) {
@@ -96,9 +90,8 @@ Row run_scene(const Scene& scene, DistancePairs pairs, Spoil spoil) {
   if (!expected.empty())
     spoil_first(spoil, objects_of(expected.front()), expected.front(), record, near);
   std::vector<const Distance*> answer_of(scene.objects.size());  // with `nearest`
-  for (const NearestOfObject& of : nearest_of_objects(scene, record.distances, 1)) {
+  for (const NearestOfObject& of : nearest_of_objects(scene, record.distances, 1))
     if (!of.distances.empty()) answer_of[of.object] = &record.distances[of.distances[0]];
-  }
   for (const Nearest& n : expected) {
     const ObjectPair objects = objects_of(n);
     const Distance* answer = answer_of[n.objects.a];
@@ -125,10 +118,9 @@ Scene small_scene(std::uint64_t seed) {
   for (Vec3& p : scene.vertices) {
     if (kind == 1) p = random.cube(1);
     if (kind == 2) p = random.scaled3(-40, 1);
-    for (int k = 0; k < 3 && kind == 3; ++k) {
+    for (int k = 0; k < 3 && kind == 3; ++k)
       for (int steps = random.below(4); steps > 0; --steps)
         p[k] = std::nextafter(p[k], random.coin() ? 1e300 : -1e300);
-    }
   }
   return scene;
 }

@@ -7,19 +7,12 @@
 // pairs that are left, the projections of both triangles onto some direction may be farther apart
 // than that, which is decided in cells as well. For the rest the distance is computed, as a
 // quotient of integers of any length (tests/core/proximity/near_lab.h).
-// tests/experiments/method/distance_truth_test.cpp compares all this with code that leaves out
+// tests/experiments/method/distances_test.cpp compares all this with code that leaves out
 // nothing but triangles with boxes too far apart.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "core/proximity/near_pairs.h"
-#include "core/scene/scene.h"
-#include "tests/experiments/method/distance_lab.h"
+#include "tests/lab/distances.h"
 
 namespace farcull::distance_truth {
 
@@ -130,8 +123,7 @@ class Truth {
   struct Node {
     CellBox box;
     std::uint32_t left = kNone, right = kNone;
-    std::uint32_t triangle = kNone;
-    std::uint32_t object = kNone;
+    std::uint32_t triangle = kNone, object = kNone;
   };
 
   // A power of two changes no digit, except far below 1: so a point lies in its cell or beside it,
@@ -241,9 +233,8 @@ class Truth {
       std::swap(square[0], square[1]);
       std::swap(below[0], below[1]);
     }
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < 2; ++k)
       if (square[k] <= limit()) walk(i, below[k], self, limit, visit);
-    }
   }
 
   // The least squared distance of an object's triangles to those below the node.
@@ -339,27 +330,28 @@ class Truth {
     const std::array<Cell, 3>& origin = cells_[scene_.triangles[i][0]];
     const auto converted = [&]<class T>(std::uint32_t t, T) {
       near_lab::Corners<T> out;
-      for (std::size_t corner = 0; corner < 3; ++corner) {
+      for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t k = 0; k < 3; ++k)
           out[corner][k] = static_cast<T>(cells_[scene_.triangles[t][corner]][k] - origin[k]);
-      }
       return out;
     };
     const auto a = converted(i, 0.0), b = converted(j, 0.0);
     near_lab::Triple<double> best{};
     double largest = 0;
-    near_lab::each_direction(a, b, [&](const near_lab::Triple<double>& d) {
-      const double gap = near_lab::gap_along(d, a, b), squared = near_lab::dot(d, d);
-      if (!(gap > 0) || !(gap * gap > largest * squared)) return;
-      largest = gap * gap / squared;
-      best = d;
+    reference::any_direction(a, b, [&](const near_lab::Triple<double>& d) {
+      const double gap = reference::gap(a, b, d), squared = near_lab::dot(d, d);
+      if (gap > 0 && gap * gap > largest * squared) {
+        largest = gap * gap / squared;
+        best = d;
+      }
+      return false;
     });
     if (!(largest > static_cast<double>(limit))) return false;
     const double most = std::max({std::abs(best[0]), std::abs(best[1]), std::abs(best[2])});
     near_lab::Triple<Integer> d;
     for (std::size_t k = 0; k < 3; ++k) d[k] = std::llround(best[k] / most * 0x1p20);
     // Each of the two points is less than two cells from its cell's lower corner.
-    Integer gap = near_lab::gap_along(d, converted(i, Integer{}), converted(j, Integer{}));
+    Integer gap = reference::gap(converted(i, Integer{}), converted(j, Integer{}), d);
     for (const Integer x : d) gap -= 4 * (x < 0 ? -x : x);
     // Below 2^63, so the square is below 2^126.
     return gap > 0 && gap * gap > limit * near_lab::dot(d, d);

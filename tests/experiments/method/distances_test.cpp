@@ -1,12 +1,10 @@
 // Distances against comparing all triangles with all in rational numbers, bit for bit.
+// The truth that large scenes are compared with is compared with one that leaves out less.
 #include "experiments/method/distances.h"
 
-#include <gtest/gtest.h>
-
-#include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
-#include "tests/experiments/method/distance_lab.h"
+#include "tests/experiments/method/distance_truth.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -165,17 +163,13 @@ TEST(Distances, RefuseBadOptions) {
 // would leave each object to be compared with all others.
 TEST(Distances, NearestOfObjectsWithACornerInCommonTakesFewSearches) {
   for (const bool equal : {true, false}) {
-    Scene scene;
     constexpr std::uint32_t kObjects = 200;
+    std::vector<std::vector<reference::Triangle>> objects;
     for (std::uint32_t k = 0; k < kObjects; ++k) {
       const double x = equal ? 1 : 1 + k;
-      for (const Vec3& p : {Vec3(0, 0, 0), Vec3(x, 1, 0), Vec3(x, 1, 1)})
-        scene.vertices.push_back(p);
-      scene.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
-      scene.source_face.push_back(0);
-      scene.objects.push_back(
-          {.name = std::to_string(k), .first_triangle = k, .triangle_count = 1});
+      objects.push_back({{Vec3(0, 0, 0), Vec3(x, 1, 0), Vec3(x, 1, 1)}});
     }
+    const Scene scene = reference::scene_of(objects);
     const DistanceRecord record = distances(scene, {.pairs = nearest, .verify = true});
     EXPECT_LT(record.counts.triangle_pairs, 8 * kObjects);
     EXPECT_TRUE(record.verification->holds());
@@ -189,14 +183,10 @@ TEST(Distances, NearestOfObjectsWithACornerInCommonTakesFewSearches) {
 
 TEST(Distances, AnswerWhatIsNearestOfEachObject) {
   // Points on a line at 0, 1, 3, 4: of 1 and 3 as seen from 4 the nearest is 3, and so on.
-  Scene scene;
-  for (const double x : {0.0, 1.0, 3.0, 4.0}) {
-    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.push_back({x, 0, 0});
-    scene.objects.push_back({.name = "", .first_triangle = v, .triangle_count = 1});
-    scene.triangles.push_back({v, v, v});
-    scene.source_face.push_back(0);
-  }
+  std::vector<std::vector<reference::Triangle>> points;
+  for (const double x : {0.0, 1.0, 3.0, 4.0})
+    points.push_back({{Vec3(x, 0, 0), Vec3(x, 0, 0), Vec3(x, 0, 0)}});
+  const Scene scene = reference::scene_of(points);
   const DistanceRecord record = distances(scene, {.pairs = nearest, .k = 2});
   const auto of = nearest_of_objects(scene, record.distances, 2);
   ASSERT_EQ(of.size(), 4u);
@@ -212,6 +202,73 @@ TEST(Distances, AnswerWhatIsNearestOfEachObject) {
   EXPECT_EQ(neighbours(1), (std::vector<std::uint32_t>{0, 2}));
   EXPECT_EQ(neighbours(2), (std::vector<std::uint32_t>{3, 1}));
   EXPECT_EQ(neighbours(3), (std::vector<std::uint32_t>{2, 1}));
+}
+
+using distance_truth::Nearest;
+
+// Of each object the first of its nearest others, from the distances of all objects.
+std::vector<Answer> nearest_answers(const Scene& scene, const distance_lab::Truth& truth) {
+  std::vector<Answer> out;
+  const std::vector<Answer> all = truth.answers({.pairs = objects});
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Answer* best = nullptr;
+    for (const Answer& x : all) {
+      const bool names = (x.objects.a == o) != (x.objects.b == o);
+      if (names && (best == nullptr || x.squared < best->squared)) best = &x;
+    }
+    if (best != nullptr) out.push_back(*best);
+  }
+  return out;
+}
+
+void expect_same(const Scene& scene, const std::string& where) {
+  const distance_lab::Truth slow(scene);
+  distance_truth::Truth fast(scene);
+  std::vector<Answer> answers;
+  const auto count = static_cast<std::uint32_t>(scene.objects.size());
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a; b < count; ++b) {
+      if (a == b && !scene.objects[a].self) continue;
+      const auto found = fast.nearest({a, b});
+      if (!found) continue;
+      answers.push_back({{a, b}, found->pairs.front(), found->squared});
+      ASSERT_TRUE(std::ranges::is_sorted(found->pairs)) << where;
+    }
+  }
+  EXPECT_EQ(answers, slow.answers({.pairs = objects})) << where;
+  answers.clear();
+  for (const Nearest& n : fast.nearest_of_each()) {
+    const auto [a, b] = std::minmax(n.objects.a, n.objects.b);
+    answers.push_back({{a, b}, n.pairs.front(), n.squared});
+  }
+  EXPECT_EQ(answers, nearest_answers(scene, slow)) << where;
+}
+
+TEST(DistanceTruth, IsThatOfComparingAllWithAll) {
+  rational::Draws random(11);
+  for (int k = 0; k < trials(60); ++k)
+    expect_same(distance_lab::random_scene(random, 1 + random.below(5), 14), std::to_string(k));
+  for (const char* name : {"degenerate", "slivers:12", "gap:12", "mixed:4"})
+    for (const double diagonals : {0.0, 1e-12, 1.0, 1e3})
+      expect_same(distance_lab::moved_apart(make_builtin_scene(name), diagonals), name);
+}
+
+// All pairs that are as near: two rows of four squares at the distance 1.
+TEST(DistanceTruth, HoldsAllPairsThatAreAsNear) {
+  near_lab::GridScene grid;
+  for (const int z : {0, 1}) {
+    std::vector<near_lab::Corners<near_lab::Integer>> row;
+    for (int x = 0; x < 8; x += 2) row.push_back({{{x, 0, z}, {x + 1, 0, z}, {x, 1, z}}});
+    near_lab::add_object(grid, row);
+  }
+  near_lab::finish(grid, 0.25, 3, [] { return false; });
+  distance_truth::Truth truth(grid.scene);
+  const auto found = truth.nearest({0, 1});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->squared, distance_lab::Q(1, 16));
+  EXPECT_EQ(found->pairs, (std::vector<TrianglePair>{{0, 4}, {1, 5}, {2, 6}, {3, 7}}));
+  // Most pairs are left out.
+  EXPECT_LT(truth.computed(), 16u);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Answers in every floating-point environment that a caller may have, from all that decides,
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/pairs/backend.h"
@@ -10,7 +8,7 @@
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "tests/core/base/floating_point_lab.h"
+#include "tests/lab/floating_point.h"
 #include "verify/certificate/certificate.h"
 #include "verify/exact.h"
 
@@ -149,10 +147,9 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
       EXPECT_EQ(json["used"]["rounding"], "to nearest");
       EXPECT_EQ(json["used"]["flushes_results"], false);
       EXPECT_EQ(json["used"]["flushes_operands"], false);
-      EXPECT_NE(run_table(sample.scene, record)
-                    .find("arithmetic rounds to nearest, keeps subnormals; the caller " +
-                          to_string(environment.found)),
-                std::string::npos);
+      EXPECT_TRUE(has_text(run_table(sample.scene, record),
+                           "arithmetic rounds to nearest, keeps subnormals; the caller " +
+                               to_string(environment.found)));
     }
   });
 }
@@ -163,7 +160,7 @@ TEST(FloatingPointAnswers, AnOrdinaryCallerIsNotMentionedInText) {
   RunOptions options;
   options.method = Method::exact;
   const Record record = run(scene, options, session);
-  EXPECT_EQ(run_table(scene, record).find("arithmetic"), std::string::npos);
+  EXPECT_FALSE(has_text(run_table(scene, record), "arithmetic"));
   EXPECT_EQ(to_json(scene, record)["floating_point"]["callers"]["rounding"], "to nearest");
 }
 

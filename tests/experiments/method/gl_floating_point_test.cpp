@@ -1,12 +1,10 @@
 // What draws, in every floating-point environment that a caller may have; and drivers that change
 // it.
-#include <gtest/gtest.h>
-
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
-#include "tests/core/base/floating_point_lab.h"
+#include "tests/lab/floating_point.h"
 
 // As epoxy declares it: an entry point that can be replaced.
 extern "C" void (*epoxy_glDispatchCompute)(unsigned, unsigned, unsigned);
@@ -32,9 +30,8 @@ TEST(GlFloatingPoint, EveryMethodThatPromises) {
     {
       const Disturbed disturbed(environment);
       Session session("software");  // its context is opened in this environment
-      for (const Scene& scene : {lab::tiny_scene(4), lab::huge_scene(4), lab::subnormal_scene(4)}) {
+      for (const Scene& scene : {lab::tiny_scene(4), lab::huge_scene(4), lab::subnormal_scene(4)})
         for (const RunOptions& options : ways) records.push_back(run(scene, options, session));
-      }
       after = floating_point();
     }
     EXPECT_EQ(after, environment.found) << environment.name;
@@ -93,7 +90,7 @@ TEST(GlFloatingPoint, ADriverThatChangesItDuringACallEndsTheCall) {
     what = error.what();
   }
   epoxy_glDispatchCompute = dispatch;
-  EXPECT_NE(what.find("this thread rounds upward"), std::string::npos) << what;
+  EXPECT_TRUE(has_text(what, "this thread rounds upward"));
   EXPECT_EQ(floating_point(), kProved);
   EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
 }

@@ -1,7 +1,5 @@
 // The methods that draw, end to end on a GL device: the planner changes no answer, both query modes
 // give the same, and the CULLIDE family is ordered as it should be.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/family.h"
@@ -10,8 +8,8 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/scene/scenes.h"
-#include "tests/experiments/method/plan_lab.h"
+#include "tests/lab/plan.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -35,9 +33,8 @@ constexpr Method kDrawing[] = {Method::far, Method::cullide, Method::quick_culli
 
 Scene scene_for(const std::string& name, Method method) {
   Scene scene = make_builtin_scene(name);
-  if (tests_self_alone(method)) {
+  if (tests_self_alone(method))
     for (Object& object : scene.objects) object.self = true;
-  }
   return scene;
 }
 
@@ -104,7 +101,7 @@ TEST(GlMethods, FullFindsTheSamePairsByFarWithEitherOffset) {
 }
 
 bool ran(const Record& record, const std::string& part) {
-  return std::any_of(record.trace.begin(), record.trace.end(), [&](const Stage& s) {
+  return std::ranges::any_of(record.trace, [&](const Stage& s) {
     return s.ran && name_of(s).find(part) != std::string::npos;
   });
 }
@@ -153,8 +150,8 @@ TEST(GlMethods, BoxesComeFirstOnlyWhereTheyCannotMiss) {
   options.verify = false;
   const auto setups = [&] {
     const Record record = run(scene, options, session());
-    return std::count_if(record.trace.begin(), record.trace.end(),
-                         [](const Stage& s) { return s.kind == StageKind::setup; });
+    return std::ranges::count_if(record.trace,
+                                 [](const Stage& s) { return s.kind == StageKind::setup; });
   };
   EXPECT_EQ(setups(), 2);
   options.radius.factor = 0.9;
@@ -167,9 +164,8 @@ TEST(GlMethods, ExactOffsetsAreLeftOutWhereFewTrianglesAreLeft) {
   const Scene scene = make_builtin_scene("degenerate");
   const Record record = run(scene, options, session());
   EXPECT_FALSE(ran(record, "offset exact"));
-  const bool said = std::any_of(record.trace.begin(), record.trace.end(), [](const Stage& s) {
-    return name_of(s) == "offset exact" && !s.ran;
-  });
+  const bool said = std::ranges::any_of(
+      record.trace, [](const Stage& s) { return name_of(s) == "offset exact" && !s.ran; });
   EXPECT_TRUE(said);
   EXPECT_LE(record.found.triangle_count, kFewTriangles);
 }
@@ -220,7 +216,7 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
         EXPECT_GT(*work.known_ms(), 0);
         EXPECT_LT(*work.known_ms(), record.ms.setup + record.ms.cull);
       }
-      EXPECT_NE(run_table(scene, record, "").find("\nwork "), std::string::npos);
+      EXPECT_TRUE(has_text(run_table(scene, record, ""), "\nwork "));
     }
   }
   // On the cores of the CPU there is no device to ask.
@@ -230,7 +226,7 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
   const Scene scene = make_builtin_scene("degenerate");
   const Record record = run(scene, options, native);
   EXPECT_TRUE(to_json(scene, record)["device_work"].is_null());
-  EXPECT_EQ(run_table(scene, record, "").find("\nwork "), std::string::npos);
+  EXPECT_FALSE(has_text(run_table(scene, record, ""), "\nwork "));
 }
 
 TEST(GlMethods, BothQueryModesGiveTheSame) {

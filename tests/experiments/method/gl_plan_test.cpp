@@ -1,7 +1,5 @@
 // Runs of the methods that draw follow their plans, on every built-in scene.
-#include <gtest/gtest.h>
-
-#include "tests/experiments/method/plan_lab.h"
+#include "tests/lab/plan.h"
 
 namespace farcull {
 namespace {

@@ -1,6 +1,4 @@
 // FAR pairs as a method of farcull run, and the library, on a GL device.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "experiments/library/farcull.h"
@@ -8,6 +6,7 @@
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

@@ -1,8 +1,5 @@
 // Threads of a software device are named, and no promise rests on them. Each test runs twice: as
 // all others, without such threads, and with LP_NUM_THREADS=2, where it is its own twin.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/gl/base/context.h"
@@ -12,7 +9,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/method/cache_lab.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -42,7 +39,7 @@ class GlThreads : public testing::Test {
   }
 
   const GlContext& context = opened();
-  const lab::CacheFolder folder;                               // for the verdicts
+  const CacheFolder folder;                                    // for the verdicts
   const int asked = std::atoi(std::getenv("LP_NUM_THREADS"));  // tests/environment.cpp
   const std::string words =
       asked == 1 ? "draws in 1 thread " : "draws in " + std::to_string(asked) + " threads ";

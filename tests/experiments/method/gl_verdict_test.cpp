@@ -1,17 +1,15 @@
 // What a run and the library promise on a device: what the verdict about it allows. Twins: the same
 // run where a probe has failed.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/gl/probe/probe.h"
 #include "experiments/library/farcull.h"
+#include "experiments/method/device_verdict.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/experiments/method/cache_lab.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {
@@ -52,13 +50,13 @@ TEST(GlVerdict, RunsPromiseWhereTheProbesPass) {
     EXPECT_EQ(json["promises"], true);
     EXPECT_EQ(json["verdict"]["holds"], true);
     const std::string table = run_table(scene(), record);
-    EXPECT_NE(table.find("; promises to miss nothing\n"), std::string::npos);
-    EXPECT_NE(table.find(" pass on this device ("), std::string::npos);
+    EXPECT_TRUE(has_text(table, "; promises to miss nothing\n"));
+    EXPECT_TRUE(has_text(table, " pass on this device ("));
   }
 }
 
 TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
-  const lab::CacheFolder folder;
+  const CacheFolder folder;
   for (const Method method : {Method::far, Method::far_pairs}) {
     const Reliance reliance = method == Method::far ? Reliance::drawing : Reliance::pairs;
     keep_verdict(software(), reliance, kFailed, 1);
@@ -71,9 +69,8 @@ TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
     EXPECT_EQ(json["promise_reason"], "a probe fails on this device: A4 a probe: 3 lost, bound 1");
     EXPECT_EQ(json["verdict"]["failed"][0], "A4 a probe: 3 lost, bound 1");
     const std::string table = run_table(scene(), record);
-    EXPECT_EQ(table.find("promises to miss nothing"), std::string::npos);
-    EXPECT_NE(table.find("\npromise    none: a probe fails on this device: A4 a probe"),
-              std::string::npos);
+    EXPECT_FALSE(has_text(table, "promises to miss nothing"));
+    EXPECT_TRUE(has_text(table, "\npromise    none: a probe fails on this device: A4 a probe"));
     // A miss still counts as one: the exit status asks the method, not the device. The twin: a
     // method that promises nothing by itself.
     EXPECT_FALSE(broken(record, false));
@@ -87,7 +84,7 @@ TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
 
 // The twin: without a failure the session keeps what it knows.
 TEST(GlVerdict, ASessionThatForgetsItsDeviceForgetsItsVerdict) {
-  const lab::CacheFolder folder;
+  const CacheFolder folder;
   Session session("software");
   EXPECT_TRUE(session.verdict(Reliance::pairs).holds);
   keep_verdict(software(), Reliance::pairs, kFailed, 1);
@@ -98,7 +95,7 @@ TEST(GlVerdict, ASessionThatForgetsItsDeviceForgetsItsVerdict) {
 
 // FAR pairs does not rely on the rasterizer.
 TEST(GlVerdict, FarPairsDoesNotAskForWhatFarReliesOn) {
-  const lab::CacheFolder folder;
+  const CacheFolder folder;
   keep_verdict(software(), Reliance::drawing, kFailed, 1);
   Session session("software");
   EXPECT_TRUE(run(scene(), on_software(Method::far_pairs), session).promise.holds);
@@ -106,7 +103,7 @@ TEST(GlVerdict, FarPairsDoesNotAskForWhatFarReliesOn) {
 }
 
 TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
-  const lab::CacheFolder folder;
+  const CacheFolder folder;
   Session session("software"), cpu("cpu");
   EXPECT_FALSE(run(scene(), on_software(Method::cullide), session).promise.verdict);
   RunOptions published = on_software(Method::far);
@@ -119,7 +116,7 @@ TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
   const Record on_cpu = run(scene(), pairs, cpu);
   EXPECT_FALSE(on_cpu.promise.verdict);
   EXPECT_TRUE(on_cpu.promise.holds);
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "farcull"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path("farcull")));
 }
 
 ColliderReport report_of(ColliderDevice device) {
@@ -133,7 +130,7 @@ ColliderReport report_of(ColliderDevice device) {
 }
 
 TEST(GlVerdict, TheLibraryReportsWhatItPromises) {
-  const lab::CacheFolder folder;
+  const CacheFolder folder;
   const ColliderReport cpu = report_of(ColliderDevice::cpu);
   EXPECT_TRUE(cpu.promises);
   EXPECT_EQ(cpu.promises_reason, "on the CPU nothing rests on a device");
@@ -143,6 +140,47 @@ TEST(GlVerdict, TheLibraryReportsWhatItPromises) {
   const ColliderReport failed = report_of(ColliderDevice::gl);
   EXPECT_FALSE(failed.promises);
   EXPECT_EQ(failed.promises_reason, "a probe fails on this device: A4 a probe: 3 lost, bound 1");
+}
+
+std::vector<ProbeResult> run(const KernelProbeOptions& options) {
+  std::vector<ProbeResult> out = pair_kernel_probes(lab::context(), options);
+  for (ProbeResult& r : solid_kernel_probes(lab::context(), options)) out.push_back(std::move(r));
+  return out;
+}
+
+std::set<std::string> failures(const KernelProbeOptions& options) {
+  std::set<std::string> out;
+  for (const ProbeResult& r : run(options))
+    if (!r.pass) out.insert(r.name);
+  return out;
+}
+
+using Names = std::set<std::string>;
+
+TEST(GlKernelProbe, ShippedKernelsHoldTheRationalBounds) {
+  for (const std::uint64_t seed : {1u, 5u}) {
+    std::set<std::string> probed;
+    for (const ProbeResult& r : run({.seed = seed})) {
+      EXPECT_TRUE(r.pass) << r.name << ": " << r.measured << " of " << r.samples << " lost; "
+                          << r.note;
+      EXPECT_GT(r.samples, 10'000u) << r.name;
+      EXPECT_EQ(r.assumption, "A4");
+      probed.insert(r.name);
+    }
+    EXPECT_EQ(probed, (Names{"intervals of FAR pairs", "depth slices, float to int",
+                             "oriented boxes", "exact offsets"}));
+  }
+}
+
+TEST(GlKernelProbe, KernelsWithoutWideningAreRejected) {
+  EXPECT_EQ(failures({.brief = true, .bare = true}),
+            (Names{"intervals of FAR pairs", "oriented boxes", "exact offsets"}));
+}
+
+// And solids that are not seen, since what is stored is another one.
+TEST(GlKernelProbe, ReversedSlicesAreRejected) {
+  EXPECT_EQ(failures({.brief = true, .reversed_slices = true, .late_stores = true}),
+            (Names{"depth slices, float to int", "oriented boxes", "exact offsets"}));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // The table of options: every row can be read, refused and written, whoever adds one.
 #include "experiments/method/options.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -10,7 +8,7 @@
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -41,7 +39,7 @@ TEST(Options, MethodsRefuseWhatTheyDoNotHave) {
       if (option.serves(traits(method))) continue;
       const Error error = error_of([&] { read_options(given); });
       EXPECT_EQ(error.where, option_word(option.name)) << to_string(method);
-      EXPECT_NE(error.remedy.find("leave " + error.where + " out"), std::string::npos);
+      EXPECT_TRUE(has_text(error.remedy, "leave " + error.where + " out"));
     }
   }
 }
@@ -83,7 +81,9 @@ TEST(Options, RecordsHoldThem) {
   const Scene scene = make_builtin_scene("far-apart");
   const nlohmann::ordered_json json = to_json(scene, run(scene, options, session));
   for (const Option& option : run_options()) {
-    if (option.value) EXPECT_TRUE(json.contains(option.name)) << option.name;
+    if (option.value) {
+      EXPECT_TRUE(json.contains(option.name)) << option.name;
+    }
     EXPECT_NE(option.help, "") << option.name;
   }
 }

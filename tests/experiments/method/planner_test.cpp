@@ -11,9 +11,8 @@
 #include "experiments/measure/compare.h"
 #include "experiments/measure/family.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/scene/scenes.h"
-#include "tests/experiments/method/plan_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/plan.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -34,9 +33,8 @@ Record run(const Scene& scene, const RunOptions& options) {
 }
 
 Stage stage_named(const Plan& plan, const std::string& name) {
-  for (const Stage& stage : plan.stages()) {
+  for (const Stage& stage : plan.stages())
     if (name_of(stage) == name) return stage;
-  }
   ADD_FAILURE() << name << " is not in the plan";
   return {};
 }
@@ -47,8 +45,7 @@ std::string decision(const Plan& plan, const std::string& name) {
 
 bool has(const Plan& plan, StageKind kind) {
   const std::vector<Stage> stages = plan.stages();
-  return std::any_of(stages.begin(), stages.end(),
-                     [&](const Stage& stage) { return stage.kind == kind; });
+  return std::ranges::any_of(stages, [&](const Stage& stage) { return stage.kind == kind; });
 }
 
 TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
@@ -336,7 +333,7 @@ TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
     }
   }
   const std::string csv = family_csv(cells);
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 13);
   // far-pairs first, frame 0: i-collide keeps at least as much.
   const std::string row = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1));
   EXPECT_TRUE(row.starts_with("two-spheres,far-pairs,,0,"));
@@ -344,7 +341,7 @@ TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
   EXPECT_GE(boxes.pcs_triangles, ours.pcs_triangles);
   EXPECT_GE(boxes.candidate_pairs, ours.candidate_pairs);
   EXPECT_EQ(family_json(cells, arguments)["cells"].size(), 3u);
-  EXPECT_NE(family_table(cells).find("i-collide"), std::string::npos);
+  EXPECT_TRUE(has_text(family_table(cells), "i-collide"));
 }
 
 TEST(Family, FactorsAreWhatBoxesKeepOverWhatTheMethodKeeps) {
@@ -365,12 +362,8 @@ TEST(Family, FactorsAreWhatBoxesKeepOverWhatTheMethodKeeps) {
                          .missed_contacts = ContactCounts{.touching = 2, .penetrating = 0},
                          .broken = true});
   const std::string csv = family_csv({boxes, ours});
-  EXPECT_NE(csv.find("\n\"a,b\",far,obb,0,0.000,0,10,30,0,0,0,0,0,0,2,2,0,60,4,3\n"),
-            std::string::npos)
-      << csv;
-  EXPECT_NE(csv.find("\n\"a,b\",i-collide,,0,0.000,0,40,90,0,0,0,0,0,0,,,,15,1,1\n"),
-            std::string::npos)
-      << csv;
+  EXPECT_TRUE(has_text(csv, "\n\"a,b\",far,obb,0,0.000,0,10,30,0,0,0,0,0,0,2,2,0,60,4,3\n"));
+  EXPECT_TRUE(has_text(csv, "\n\"a,b\",i-collide,,0,0.000,0,40,90,0,0,0,0,0,0,,,,15,1,1\n"));
   EXPECT_EQ(broken({boxes, ours}), "a,b: far, obb missed 2 pairs");
   ours.frames[0].broken = false;
   EXPECT_EQ(broken({boxes, ours}), "");
@@ -393,8 +386,7 @@ TEST(Methods, NamesGoBothWaysAndUnknownOnesAreRefused) {
   for (const Method method : all_methods()) EXPECT_EQ(parse_method(to_string(method)), method);
   const Error error = error_of([] { parse_method("nope"); });
   EXPECT_EQ(error.where, "--method");
-  for (const Method method : all_methods())
-    EXPECT_NE(error.remedy.find(to_string(method)), std::string::npos);
+  for (const Method method : all_methods()) EXPECT_TRUE(has_text(error.remedy, to_string(method)));
 }
 
 }  // namespace

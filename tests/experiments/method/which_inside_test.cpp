@@ -1,9 +1,7 @@
 // Which of two objects lies inside the other.
 #include "experiments/method/distances.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -11,9 +9,8 @@ namespace {
 /// A box as 12 triangles; without its lid where `open`.
 void add_box(Scene& scene, const Vec3& middle, double half, bool open = false) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < 8; ++k)
     scene.vertices.push_back(middle + half * Vec3((k & 1) * 2 - 1, (k & 2) - 1, (k & 4) / 2 - 1));
-  }
   for (const auto& [a, b, c, d] :
        {std::array{0u, 1u, 3u, 2u}, std::array{4u, 5u, 7u, 6u}, std::array{0u, 1u, 5u, 4u},
         std::array{2u, 3u, 7u, 6u}, std::array{0u, 2u, 6u, 4u}, std::array{1u, 3u, 7u, 5u}}) {

@@ -2,14 +2,9 @@
 // study "libraries".
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <string>
-#include <vector>
-
 #include "experiments/peers/runner.h"
 #include "experiments/suite/reader.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 

@@ -2,8 +2,6 @@
 // oracles do, and the textbook tests, which are of this repository, still err at theirs.
 #include "tests/experiments/peers/library_examples.h"
 
-#include <sstream>
-
 #include "experiments/suite/reader.h"
 
 namespace farcull {

@@ -1,48 +1,29 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
 
 #include "experiments/measure/harness.h"
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/scenes.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
+using lab::scene_of;
 using Corners = std::array<Vec3, 3>;
-
-Scene scene_of(const std::vector<std::vector<Corners>>& objects) {
-  Scene scene;
-  scene.name = "made";
-  for (const std::vector<Corners>& object : objects) {
-    scene.objects.push_back({"object", static_cast<std::uint32_t>(scene.triangles.size()),
-                             static_cast<std::uint32_t>(object.size())});
-    for (const Corners& corners : object) {
-      const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-      scene.vertices.insert(scene.vertices.end(), corners.begin(), corners.end());
-      scene.triangles.push_back({first, first + 1, first + 2});
-      scene.source_face.push_back(0);
-    }
-  }
-  validate(scene, scene.name);
-  return scene;
-}
 
 std::vector<TrianglePair> truth_of(const Scene& scene) { return all_colliding_pairs(scene).pairs; }
 
 class NarrowPeers : public testing::Test {
  protected:
   void SetUp() override {
-    for (const Peer& peer : narrow_peers()) {
+    for (const Peer& peer : narrow_peers())
       if (peer.name.starts_with("fcl") && !peer.missing.empty()) GTEST_SKIP() << peer.missing;
-    }
   }
   static std::vector<TrianglePair> found(const std::string& name, const Scene& scene,
                                          unsigned threads = 2) {
-    for (const Peer& peer : narrow_peers()) {
+    for (const Peer& peer : narrow_peers())
       if (peer.name == name) return peer.set_up(threads)(scene).pairs;
-    }
     ADD_FAILURE() << name << " is not there";
     return {};
   }
@@ -53,9 +34,8 @@ TEST_F(NarrowPeers, FindTheObviousPairAndNothingElse) {
       scene_of({{{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, {{{9, 9, 9}, {9, 8, 9}, {8, 9, 9}}}},
                 {{{{1, 1, -1}, {1, 1, 1}, {2, 2, 1}}}}});
   ASSERT_EQ(truth_of(scene), (std::vector<TrianglePair>{{0, 2}}));
-  for (const char* name : {"fcl-float", "fcl-double"}) {
+  for (const char* name : {"fcl-float", "fcl-double"})
     EXPECT_EQ(found(name, scene), truth_of(scene)) << name;
-  }
 }
 
 TEST_F(NarrowPeers, AreRightWhereNothingIsClose) {

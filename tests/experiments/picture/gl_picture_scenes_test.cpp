@@ -1,19 +1,12 @@
 // farcull picture on scenes: what is missed is seen, what is not is not claimed, and the file says
 // where it came from.
-#include <gtest/gtest.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <fstream>
-#include <sstream>
 
-#include "core/base/error.h"
 #include "experiments/command/command.h"
 #include "experiments/picture/picture.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/gl/gl_lab.h"
 #include "tests/experiments/picture/png_read.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/gl.h"
 
 namespace farcull {
 namespace {
@@ -40,9 +33,8 @@ PictureResult made(const std::string& words) {
 std::size_t pixels(const PictureResult& result, std::size_t panel, const Rgba& colour) {
   const PanelResult& p = result.panels[panel];
   std::size_t count = 0;
-  for (int y = p.top; y < p.top + p.height; ++y) {
+  for (int y = p.top; y < p.top + p.height; ++y)
     for (int x = p.left; x < p.left + p.width; ++x) count += result.image.at(x, y) == colour;
-  }
   return count;
 }
 
@@ -83,11 +75,8 @@ struct Hidden {
     window = picture_window(parse_view("-1:-1:-1"), boxes, 300, 300, 0.04, "two-tori");
     const double s = 0.1 * window.pixel_size;
     const Vec3 at = 0.5 * boxes[0].lo + 0.5 * boxes[0].hi;
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {at, at + Vec3(s, 0, 0), at + Vec3(0, s, 0)});
     tiny = static_cast<std::uint32_t>(scene.triangles.size());
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
+    add_triangle(scene, {at, at + Vec3(s, 0, 0), at + Vec3(0, s, 0)});
     ++scene.objects.back().triangle_count;
   }
 };
@@ -97,15 +86,14 @@ TEST(GlPictureScenes, ASingleTinyMissIsSeenAndRinged) {
   const GlContext& context = shared_lab().session().context();
   Image image(300, 300, {255, 255, 255});
   EXPECT_EQ(draw_missed(context, hidden.scene, hidden.window, {hidden.tiny}, image), 1u);
-  EXPECT_GE(std::count(image.pixels.begin(), image.pixels.end(), kMissedColour), 1);
+  EXPECT_GE(std::ranges::count(image.pixels, kMissedColour), 1);
   const auto red = [](const Rgba& p) { return p.r > 200 && p.g < 140 && p.b < 190; };
-  EXPECT_GE(std::count_if(image.pixels.begin(), image.pixels.end(), red), 30);  // most of a ring
+  EXPECT_GE(std::ranges::count_if(image.pixels, red), 30);  // most of a ring
   // The twin: as the scene is drawn, without outline and ring, nobody would see it.
   const Image plain =
       painted(context, hidden.scene, hidden.window,
               {{.triangle = hidden.tiny, .colour = kMissedColour, .shaded = false}});
-  EXPECT_TRUE(std::none_of(plain.pixels.begin(), plain.pixels.end(),
-                           [](const Rgba& p) { return p.a > 128; }));
+  EXPECT_TRUE(std::ranges::none_of(plain.pixels, [](const Rgba& p) { return p.a > 128; }));
 }
 
 TEST(GlPictureScenes, ManyMissesInOnePlaceHaveNoRing) {
@@ -135,15 +123,12 @@ TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
       picture_arguments(
           "two-spheres --method far --resolution 64 --radius published --size 200x160"),
       shared_lab(), path);
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  const PngContent back = png_content(bytes.str());
+  const PngContent back = png_content(read_text(path));
   EXPECT_EQ(back.image.pixels, r.image.pixels);
   EXPECT_EQ(back.texts, r.texts);
   const auto text = [&](const std::string& key) {
-    const auto found = std::find_if(back.texts.begin(), back.texts.end(),
-                                    [&](const auto& entry) { return entry.first == key; });
+    const auto found =
+        std::ranges::find_if(back.texts, [&](const auto& entry) { return entry.first == key; });
     return found == back.texts.end() ? "absent" : found->second;
   };
   EXPECT_EQ(text("Scene hash"), r.scene_hash);
@@ -151,9 +136,8 @@ TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
       text("Command"),
       "farcull picture two-spheres --method far --resolution 64 --radius published --size 200x160");
   EXPECT_NE(text("Commit"), "absent");
-  EXPECT_NE(text("Drawn by").find(shared_lab().session().context().info().version),
-            std::string::npos);
-  EXPECT_NE(text("Panel 1").find("radius published"), std::string::npos);
+  EXPECT_TRUE(has_text(text("Drawn by"), shared_lab().session().context().info().version));
+  EXPECT_TRUE(has_text(text("Panel 1"), "radius published"));
 }
 
 TEST(GlPictureScenes, TheCommandInTheFileAsksForTheSame) {

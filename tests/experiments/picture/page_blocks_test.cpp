@@ -3,15 +3,12 @@
 #include "experiments/picture/picture.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <stdexcept>
-
 #include "core/base/bytes.h"
+#include "experiments/picture/paper.h"
 #include "experiments/scenes/mesh/text.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -56,9 +53,8 @@ TEST(PageBlocks, NumbersOfAMeshBecomeSmall) {
 
 RC_GTEST_PROP(PageBlocks, BitsAreThoseOfTheNumbers, (const std::vector<bool>& wanted)) {
   std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < wanted.size(); ++i) {
+  for (std::uint32_t i = 0; i < wanted.size(); ++i)
     if (wanted[i]) numbers.push_back(i);
-  }
   const std::string bits = unpacked(packed_bytes(bits_of(numbers, wanted.size())));
   RC_ASSERT(bits.size() == (wanted.size() + 7) / 8);
   for (std::size_t i = 0; i < 8 * bits.size(); ++i) {
@@ -99,6 +95,100 @@ TEST(PageBlocks, PositionsOfTheLargestDoublesAndOfPoints) {
   EXPECT_EQ(
       quantized(std::vector<Vec3>{Vec3(9, -9, 3)}, {.lo = Vec3(0, 0, 3), .hi = Vec3(1, 1, 4)}),
       (std::vector<std::uint32_t>{65535, 0, 0}));
+}
+
+RunOptions of(Method method, int resolution = 0) {
+  RunOptions out;
+  out.method = method;
+  out.resolution = resolution;
+  return out;
+}
+
+std::vector<std::string> titles(const std::vector<RunOptions>& steps) {
+  std::vector<std::string> out;
+  for (const RunOptions& options : steps) out.push_back(panel_title(options));
+  return out;
+}
+
+TEST(PageSteps, AMethodThatDrawsHasEveryResolutionOnceAscending) {
+  const std::vector<std::string> expected = {"cullide at 32 px", "cullide at 128 px",
+                                             "far at 32 px", "far at 128 px"};
+  EXPECT_EQ(titles(at_resolutions({of(Method::cullide, 512), of(Method::far)}, {128, 32, 128})),
+            expected);
+}
+
+TEST(PageSteps, PanelsOfOneMethodAreItsStepsOnce) {
+  EXPECT_EQ(at_resolutions({of(Method::cullide, 64), of(Method::cullide, 128)}, {64, 128}).size(),
+            2u);
+}
+
+TEST(PageSteps, MethodsWithoutAChoiceStayAsTheyAre) {
+  EXPECT_EQ(titles(at_resolutions({of(Method::exact), of(Method::far_pairs)}, {32, 64})),
+            (std::vector<std::string>{"exact", "far-pairs"}));
+}
+
+// The radius makes another method of it.
+TEST(PageSteps, FormsOfFarAreApart) {
+  RunOptions published = of(Method::far);
+  published.radius = parse_radius("published");
+  EXPECT_EQ(at_resolutions({of(Method::far), published}, {32, 64}).size(), 4u);
+}
+
+// ---- The figures of the paper are those that the program draws today.
+
+const std::string kPair =
+    std::string(FARCULL_TEST_DIR) + "/cases/published-far-loses-this-pair.obj";
+
+std::size_t count_of(const std::string& word, const std::string& text) {
+  std::size_t count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+// Where this fails, bash experiments/paper.sh draws them anew; look at them before they are
+// committed.
+TEST(PaperFigures, AreThoseOfThePages) {
+  const std::vector<PaperFigure> figures = paper_figures(kPair);
+  EXPECT_EQ(figures.size(), 6u);
+  for (const PaperFigure& figure : figures) {
+    EXPECT_EQ(figure.svg,
+              read_text(std::string(FARCULL_TEST_DIR) + "/../docs/figures/" + figure.name + ".svg"))
+        << figure.name;
+  }
+}
+
+// Theorem 9, as the figure shows it: each triangle misses two of the four centres, and no centre is
+// hit by both.
+TEST(PaperFigures, OfThePublishedRadiusShowsNoCentreThatBothHit) {
+  const std::string svg = published_figure(kPair).svg;
+  EXPECT_EQ(count_of(": hit", svg), 4u);
+  EXPECT_EQ(count_of(": miss", svg), 4u);
+  EXPECT_TRUE(has_text(svg, "least miss: 0.00138 px"));
+}
+
+TEST(PaperFiguresTwin, OfAPairFartherFrom45DegreesShowsNoMiss) {
+  std::string text = read_text(kPair);
+  for (auto at = text.find("0.99375"); at != std::string::npos; at = text.find("0.99375"))
+    text.replace(at, 7, "0.5");
+  const std::string other = testing::TempDir() + "other_pair.obj";
+  std::ofstream(other) << text;
+  EXPECT_EQ(count_of(": hit", published_figure(other).svg), 8u);
+}
+
+TEST(PaperFigures, OfAMissingCaseIsAnError) {
+  const Error error = error_of([] { published_figure(kPair + "none.obj"); });
+  EXPECT_TRUE(has_text(error.what(), "none.obj"));
+}
+
+// Two pairs cross: their four triangles have one bit at the end, and so has the one behind them.
+TEST(PaperFigures, OfThePassesKeepsWhatCrosses) {
+  const std::string svg = passes_figure().svg;
+  const std::string end = svg.substr(svg.find("At the end"));
+  EXPECT_EQ(count_of("stroke=\"#b30\" stroke-width=\"4\"", end), 1u) << "the legend alone";
+  EXPECT_EQ(count_of("stroke=\"#bbb\" stroke-width=\"4\"", end), 7u + 1u);
+  EXPECT_EQ(count_of("stroke=\"#07a\" stroke-width=\"4\"", end) +
+                count_of("stroke=\"#283\" stroke-width=\"4\"", end),
+            5u + 2u);
 }
 
 }  // namespace

@@ -2,13 +2,10 @@
 // texts.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <png.h>
 
-#include <cstring>
-#include <string>
-
 #include "experiments/picture/panel.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 

@@ -1,12 +1,6 @@
 // PNG there and back, and the lettering.
 #include "experiments/picture/panel.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <set>
-
 #include "tests/experiments/picture/png_read.h"
 
 namespace farcull {
@@ -50,8 +44,8 @@ TEST(Lettering, LettersDifferAndStandOnTheBaseline) {
     std::string ink;
     for (const Rgba& pixel : image.pixels) ink.push_back(static_cast<char>(pixel.r));
     EXPECT_TRUE(seen.insert(ink).second) << c << " looks like another";
-    EXPECT_EQ(c == ' ', std::all_of(ink.begin(), ink.end(),
-                                    [](char v) { return v == static_cast<char>(255); }));
+    EXPECT_EQ(c == ' ',
+              std::ranges::all_of(ink, [](char v) { return v == static_cast<char>(255); }));
   }
   // A capital is as high as the style says: rows 10 to 23, and nothing above or below them.
   Image image(50, 40, {255, 255, 255});
@@ -87,7 +81,7 @@ TEST(Lettering, IsTheSameInEveryRunAndSaysWhatItDependsOn) {
   };
   EXPECT_EQ(drawn(), drawn());
   EXPECT_TRUE(lettering_version().starts_with("DejaVu Sans 2.")) << lettering_version();
-  EXPECT_NE(lettering_version().find("FreeType 2."), std::string::npos);
+  EXPECT_TRUE(has_text(lettering_version(), "FreeType 2."));
 }
 
 TEST(Lettering, ReadsUtf8AndMarksWhatIsNone) {
@@ -111,7 +105,7 @@ TEST(Lettering, CutsWhatDoesNotFit) {
         "\xc3\xb6\xc3\xb6\xc3\xb6\xc3\xb6\xc3\xb6\xc3\xb6 \xc3\xb6\xc3\xb6", style, width);
     EXPECT_EQ(part.find('?'), std::string::npos);
     EXPECT_EQ((part.size() - part.ends_with("\xe2\x80\xa6") * 3) % 2,
-              static_cast<std::size_t>(std::count(part.begin(), part.end(), ' ')))
+              static_cast<std::size_t>(std::ranges::count(part, ' ')))
         << part;
   }
   EXPECT_EQ(text_that_fits("abc", style, 0), "\xe2\x80\xa6");

@@ -6,19 +6,11 @@ import threading
 import farcull
 import numpy as np
 import pytest
+from lab import error_of
 
 V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1], [9, 9, 9]], float)
 F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
 OBJECTS = [0, 1, 2]
-
-
-def error_of(call, *arguments, **options):
-    with pytest.raises(farcull.Error) as caught:
-        call(*arguments, **options)
-    error = caught.value
-    assert error.where and error.reason and error.remedy
-    assert str(error) == f"{error.where}: {error.reason}; {error.remedy}"
-    return error
 
 
 def test_pairs_are_sorted_rows():
@@ -122,83 +114,32 @@ def bad_arguments():
     huge[2, 2] = math.inf
     far = F.astype(np.uint64)
     far[1, 1] = 2**64 - 1
-    return [
-        ("vertices", dict(V=nan)),
-        ("vertices", dict(V=huge)),
-        ("vertices", dict(V=V[:, :2])),
-        ("vertices", dict(V=V.ravel())),
-        ("vertices", dict(V=V[0, 0])),
-        ("vertices", dict(V=V[None])),
-        ("vertices", dict(V=V.astype(complex))),
-        ("vertices", dict(V=V.astype(np.longdouble))),
-        ("vertices", dict(V=V.astype(object))),
-        ("vertices", dict(V=V.astype(bool))),
-        ("vertices", dict(V=V.astype(str))),
-        ("vertices", dict(V=np.full((7, 3), 2**60))),
-        ("vertices", dict(V=np.ma.masked_less(V, 0))),
-        ("vertices", dict(V=[[0, 0, 0], [1]])),
-        ("vertices", dict(V=None)),
-        ("vertices", dict(V=[])),
-        ("triangles", dict(F=F - 1)),
-        ("triangles", dict(F=F + 1)),
-        ("triangles", dict(F=far)),
-        ("triangles", dict(F=F.astype(float))),
-        ("triangles", dict(F=F.astype(bool))),
-        ("triangles", dict(F=F[:, :2])),
-        ("triangles", dict(F="triangles")),
-        ("objects", dict(objects=[1, 2])),
-        ("objects", dict(objects=[0, 2, 1])),
-        ("objects", dict(objects=[0, 4])),
-        ("objects", dict(objects=[0, -1])),
-        ("objects", dict(objects=[0, 2**40])),
-        ("objects", dict(objects=np.array([0, 2**63], np.uint64))),
-        ("objects", dict(objects=[0.0, 1.0])),
-        ("objects", dict(objects=[[0, 1]])),
-        ("objects", dict(objects=None)),
-        ("objects", dict(objects=[])),
-        ("self", dict(self=[True])),
-        ("self", dict(self=1)),
-        ("self", dict(self="yes")),
-        ("clearance", dict(clearance=-1)),
-        ("clearance", dict(clearance=math.inf)),
-        ("clearance", dict(clearance=math.nan)),
-        ("clearance", dict(clearance="0")),
-        ("clearance", dict(clearance=10**400)),
-        ("neighbours", dict(neighbours=1)),
-        ("kinds", dict(kinds=1)),
-        ("kinds", dict(kinds="crossing")),
-        ("ignore", dict(ignore=[(0, 3)])),
-        ("ignore", dict(ignore=[(0, 1), (1, 1)])),
-        ("ignore", dict(ignore=[(-1, 0)])),
-        ("ignore", dict(ignore=[(0, 2**32)])),
-        ("ignore", dict(ignore=[(0, 2**70)])),
-        ("ignore", dict(ignore=[(0.0, 1.0)])),
-        ("ignore", dict(ignore=[(0, 1, 2)])),
-        ("ignore", dict(ignore=[(0, 1), (2,)])),
-        ("ignore", dict(ignore=[("base", "hand")])),
-        ("ignore", dict(ignore="0:1")),
-        ("ignore", dict(ignore=True)),
-        ("limit", dict(limit=0)),
-        ("limit", dict(limit=-1)),
-        ("limit", dict(limit=2**64)),
-        ("limit", dict(limit=1.0)),
-        ("limit", dict(limit=True)),
-        ("device", dict(device="toaster")),
-        ("device", dict(device=0)),
-        ("threads", dict(threads=-1)),
-        ("threads", dict(threads=1025)),
-        ("threads", dict(threads=2**70)),
-        ("threads", dict(threads=1.0)),
-    ]
+    values = dict(
+        V=[nan, huge, V[:, :2], V.ravel(), V[0, 0], V[None], V.astype(complex), V.astype(np.longdouble),
+           V.astype(object), V.astype(bool), V.astype(str), np.full((7, 3), 2**60), np.ma.masked_less(V, 0),
+           [[0, 0, 0], [1]], None, []],
+        F=[F - 1, F + 1, far, F.astype(float), F.astype(bool), F[:, :2], "triangles"],
+        objects=[[1, 2], [0, 2, 1], [0, 4], [0, -1], [0, 2**40], np.array([0, 2**63], np.uint64), [0.0, 1.0],
+                 [[0, 1]], None, []],
+        self=[[True], 1, "yes"],
+        clearance=[-1, math.inf, math.nan, "0", 10**400],
+        neighbours=[1],
+        kinds=[1, "crossing"],
+        ignore=[[(0, 3)], [(0, 1), (1, 1)], [(-1, 0)], [(0, 2**32)], [(0, 2**70)], [(0.0, 1.0)], [(0, 1, 2)],
+                [(0, 1), (2,)], [("base", "hand")], "0:1", True],
+        limit=[0, -1, 2**64, 1.0, True],
+        device=["toaster", 0],
+        threads=[-1, 1025, 2**70, 1.0])
+    return [(name, value) for name, all_values in values.items() for value in all_values]
 
 
-@pytest.mark.parametrize("where, change", bad_arguments())
-def test_an_argument_that_is_wrong_is_named(where, change):
-    arguments = dict(V=V, F=F, objects=OBJECTS)
-    error = error_of(farcull.collide, **{**arguments, **change})
+@pytest.mark.parametrize("name, value", bad_arguments())
+def test_an_argument_that_is_wrong_is_named(name, value):
+    error = error_of(farcull.collide, **{**dict(V=V, F=F, objects=OBJECTS), name: value})
     assert isinstance(error, farcull.InputError) and isinstance(error, ValueError)
     # An index beyond no vertices at all is the triangles' fault.
-    assert error.where == where or ("V" in change and error.where == "triangles")
+    assert error.where == {"V": "vertices", "F": "triangles"}.get(name, name) or (
+        name == "V" and error.where == "triangles")
 
 
 def test_nothing_at_all_is_an_answer():
@@ -224,26 +165,12 @@ def test_what_only_claims_to_be_an_array_is_refused():
 def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
     from farcull import _farcull
 
-    question = {
-        "threads": 0,
-        "all_objects": False,
-        "self_objects": [],
-        "clearance": 0.0,
-        "neighbours": True,
-        "kinds": False,
-        "ignore": [],
-        "limit": 0,
-    }
+    question = dict(threads=0, all_objects=False, self_objects=[], clearance=0.0, neighbours=True, kinds=False,
+                    ignore=[], limit=0)
     collider = _farcull.Collider(question, device="cpu", views="auto", resolution=0)
     starts = np.zeros(1, np.int64)
-    for vertices, triangles in (
-        (V.astype(object), F),
-        (V, F.astype(object)),
-        (V.astype(">f8"), F),
-        (V[:, :1], F),
-        (V, F.ravel()),
-        (np.zeros((0, 3), "V8"), F),
-    ):
+    for vertices, triangles in ((V.astype(object), F), (V, F.astype(object)), (V.astype(">f8"), F), (V[:, :1], F),
+                                (V, F.ravel()), (np.zeros((0, 3), "V8"), F)):
         error_of(collider.find, vertices, triangles, starts)
     with pytest.raises(TypeError):
         collider.find(None, None)
@@ -368,20 +295,9 @@ def test_distances():
     assert len(farcull.distances(apart, F, OBJECTS, within=1)) == 1
     assert len(farcull.distances(apart, F, OBJECTS, kind="all", within=100)) == 3
     assert len(farcull.distances(apart, F, OBJECTS, kind="nearest", k=1)) == 2
-    for change in (
-        dict(kind="far"),
-        dict(k=0),
-        dict(k=-1),
-        dict(within=-1),
-        dict(within=math.nan),
-        dict(kind="all"),
-        dict(k=7),
-        dict(self=True, kind="nearest"),
-        dict(inside="no"),
-        dict(threads=-1),
-        dict(objects=None),
-        dict(V=V * math.nan),
-    ):
+    for change in (dict(kind="far"), dict(k=0), dict(k=-1), dict(within=-1), dict(within=math.nan), dict(kind="all"),
+                   dict(k=7), dict(self=True, kind="nearest"), dict(inside="no"), dict(threads=-1), dict(objects=None),
+                   dict(V=V * math.nan)):
         arguments = {**dict(V=apart, F=F, objects=OBJECTS), **change}
         where = error_of(farcull.distances, **arguments).where
         named = next(iter(change))

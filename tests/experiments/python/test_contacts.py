@@ -1,20 +1,15 @@
-"""Kinds of contact, ignored objects and limits, against the program's own answers.
-
-FARCULL_PROGRAM names the program.
-"""
+"""Kinds of contact, ignored objects and limits, against the program's own answers."""
 
 import csv
 import json
-import os
 import subprocess
 
 import farcull
 import numpy as np
 import pytest
+from lab import ALL, PROGRAM, error_of, refused
 
-PROGRAM = os.environ["FARCULL_PROGRAM"]
 OBJECTS = [0, 40, 80, 120]
-ALL = dict(self=True, kinds=True)
 
 
 def tangled(seed):
@@ -41,10 +36,7 @@ class Program:
         out = subprocess.run(
             [PROGRAM, "run", *sorted(self.folder.glob("*.off")), "--self", "--contacts"]
             + ["--pairs", pairs, "--json", "-", "--no-verify", *words],
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
+            capture_output=True, text=True, check=True).stdout
         rows = []
         for row in csv.DictReader(pairs.read_text().splitlines()):
             a, b = (OBJECTS[int(row[f"object_{x}"])] + int(row[f"triangle_{x}"]) for x in "ab")
@@ -61,10 +53,8 @@ def scene(tmp_path_factory):
 def rows_of(result, names=None):
     """The answer as the program's rows."""
     out = []
-    for pairs, kinds, neighbours in (
-        (result.pairs, result.kinds, False),
-        (result.neighbour_pairs, result.neighbour_kinds, True),
-    ):
+    for pairs, kinds, neighbours in ((result.pairs, result.kinds, False),
+                                     (result.neighbour_pairs, result.neighbour_kinds, True)):
         assert kinds.dtype == np.uint8 and kinds.shape == (len(pairs),)
         named = np.array(names or farcull.KINDS)[kinds].tolist()
         out += [(a, b, neighbours, kind) for (a, b), kind in zip(pairs.tolist(), named)]
@@ -153,9 +143,7 @@ def test_runs_of_scenes_answer_the_same(scene):
         assert rows_of(limited) == whole[:50] and not limited.complete
         assert read.run(method, verify=False).kinds is None
         for partial in (record, limited):
-            with pytest.raises(farcull.InputError) as caught:
-                partial.certificate()
-            assert caught.value.where == "certificate"
+            assert refused(partial.certificate) == "certificate"
 
 
 def test_all_missed_pairs_are_without_those_of_ignored_objects():
@@ -187,12 +175,9 @@ def test_names_of_ignored_objects():
     # A * stands for any characters.
     assert objects([("b*", "*")]) == every - {(0, 2), (1, 2), (2, 3)}
     assert objects([("*:c", "d")]) == every - {(2, 3)}
-    assert "names 'x*', and no object" in str(pytest.raises(
-        farcull.InputError, twins.run, ignore=[("a", "d"), ("x*", "a")]).value)
+    assert "names 'x*', and no object" in str(error_of(twins.run, ignore=[("a", "d"), ("x*", "a")]))
     for wrong in ([("a", "e")], [("d", "d")], [("a", 4)], [(0, 4)], [(1, 1)], ["ab"], [("a",)]):
-        with pytest.raises(farcull.InputError) as caught:
-            twins.run(ignore=wrong)
-        assert caught.value.where == "ignore"
+        assert refused(twins.run, ignore=wrong) == "ignore"
 
 
 def test_what_a_scene_file_ignores_is_ignored(scene):
@@ -208,16 +193,14 @@ def test_what_a_scene_file_ignores_is_ignored(scene):
         record = read.run(method, kinds=True, ignore=[("o1", "o2")])
         assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, kinds=True))
         assert record.accounting["false_negatives"] == 0 and record.accounting["ignored"] == 4 * 40 * 40
-        with pytest.raises(farcull.InputError):
-            record.certificate()
-    with pytest.raises(farcull.Error) as caught:  # a check would prove something about other pairs
-        farcull.check(read, pairs=record.pairs)
-    assert "answers about all" in caught.value.reason
+        refused(record.certificate)
+    # A check would prove something about other pairs.
+    assert "answers about all" in error_of(farcull.check, read, pairs=record.pairs).reason
     # The plan knows both.
     counts = [str(farcull.plan(one, ignore=ignore, limit=3)).split("boxes overlap")[1][:40]
               for one, ignore in ((whole, None), (read, None), (read, [("o1", "o2")]))]
     assert len(set(counts)) == 3, counts
-    assert "is no option" in str(pytest.raises(farcull.InputError, farcull.plan, whole, kinds=True).value)
+    assert "is no option" in str(error_of(farcull.plan, whole, kinds=True))
 
 
 def test_frames_of_one_collider_answer_as_single_calls(scene):
@@ -231,7 +214,5 @@ def test_frames_of_one_collider_answer_as_single_calls(scene):
             assert rows_of(kept) == rows_of(farcull.collide(V, F, OBJECTS, **options))
             assert len(rows_of(kept)) == 300 and not kept.complete
     # An object that is not there is an error of one call alone.
-    with pytest.raises(farcull.InputError) as caught:
-        collider.find(V, F)
-    assert caught.value.where == "ignore"
+    assert refused(collider.find, V, F) == "ignore"
     assert len(rows_of(collider.find(V, F, OBJECTS))) == 300

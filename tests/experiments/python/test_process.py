@@ -12,14 +12,8 @@ import pytest
 
 
 def python(code, **options):
-    done = subprocess.run(
-        [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(code)],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-        **options,
-    )
+    done = subprocess.run([sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(code)], capture_output=True,
+                          text=True, check=False, timeout=120, **options)
     assert done.returncode == 0, f"status {done.returncode}\n{done.stdout}\n{done.stderr}"
     return done.stdout
 
@@ -34,16 +28,12 @@ LARGE = """
 """
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        "farcull.collide(V, F, self=True)",
-        # Few enough triangles that their pairs are not refused as too many.
-        "farcull.distances(V, F[:2800], kind='all', within=1, self=True)",
-        "farcull.Scene.from_arrays(V, F, self=True).run()",
-        "list(farcull.Frames('cloth:20000', frames=1000))",
-    ],
-)
+@pytest.mark.parametrize("call", [
+    "farcull.collide(V, F, self=True)",
+    # Few enough triangles that their pairs are not refused as too many.
+    "farcull.distances(V, F[:2800], kind='all', within=1, self=True)",
+    "farcull.Scene.from_arrays(V, F, self=True).run()",
+    "list(farcull.Frames('cloth:20000', frames=1000))"])
 def test_ctrl_c_ends_a_call(call):
     code = f"""
 {textwrap.indent(textwrap.dedent(LARGE), "    ")}
@@ -59,9 +49,7 @@ def test_ctrl_c_ends_a_call(call):
     # What is left answers.
     print(farcull.collide([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]], [0, 1]).pairs)
     """
-    process = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout.readline() == "begun\n"
         time.sleep(0.4)
@@ -76,8 +64,7 @@ def test_ctrl_c_ends_a_call(call):
 
 
 def test_a_collider_that_was_interrupted_answers_as_a_new_one():
-    out = python(
-        """
+    out = python("""
     import farcull, random, signal, time
     import numpy as np
 
@@ -111,14 +98,12 @@ def test_a_collider_that_was_interrupted_answers_as_a_new_one():
     assert np.array_equal(kept.pairs, fresh.pairs) and len(fresh.pairs) > 1000
     assert np.array_equal(kept.neighbour_pairs, fresh.neighbour_pairs)
     print(interrupted)
-    """
-    )
+    """)
     assert int(out) > 0  # else it shows nothing
 
 
 def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():
-    out = python(
-        """
+    out = python("""
     import farcull, threading
     import numpy as np
     rng = np.random.default_rng(13)
@@ -145,15 +130,12 @@ def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():
     ended = True
     changer.join()
     print(min(seen.values()))
-    """
-    )
+    """)
     assert int(out) > 0  # each was seen, else it shows nothing
 
 
 def test_a_call_leaves_the_lock_to_other_threads():
-    out = python(
-        LARGE
-        + """
+    out = python(LARGE + """
     import threading
     done = threading.Event()
     threading.Thread(target=lambda: (farcull.collide(V[:9000], F[:1500], self=True), done.set())).start()
@@ -161,14 +143,12 @@ def test_a_call_leaves_the_lock_to_other_threads():
     while not done.wait(0.001):
         steps += 1
     print(steps)
-    """
-    )
+    """)
     assert int(out) > 20
 
 
 def test_threads_that_call_at_once_agree():
-    python(
-        """
+    python("""
     import farcull, threading
     import numpy as np
     rng = np.random.default_rng(3)
@@ -192,13 +172,11 @@ def test_threads_that_call_at_once_agree():
     [t.start() for t in threads]
     [t.join() for t in threads]
     assert not wrong, wrong
-    """
-    )
+    """)
 
 
 def test_a_forked_process_answers_and_refuses_colliders_of_its_parent():
-    python(
-        """
+    python("""
     import farcull, os
     V, F = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]]
     scene = farcull.Scene("two-tori")
@@ -219,13 +197,11 @@ def test_a_forked_process_answers_and_refuses_colliders_of_its_parent():
             os._exit(5)
     assert os.waitpid(child, 0)[1] == 0
     assert collider.find(V, F, [0, 1]).pairs.tolist() == [[0, 1]]
-    """
-    )
+    """)
 
 
 def test_it_can_be_imported_twice():
-    python(
-        """
+    python("""
     import sys, importlib
     import farcull
     first = farcull.collide
@@ -242,14 +218,12 @@ def test_it_can_be_imported_twice():
         farcull.collide(V, F)
     except farcull.InputError:
         pass
-    """
-    )
+    """)
 
 
 @pytest.mark.parametrize("first", ["pass", "import farcull"])
 def test_another_interpreter_of_the_process_is_refused(first):
-    out = python(
-        f"""
+    out = python(f"""
     {first}
     import _xxsubinterpreters as interpreters
     other = interpreters.create(isolated=False)
@@ -259,26 +233,22 @@ def test_another_interpreter_of_the_process_is_refused(first):
         print(error)
     import farcull
     print(farcull.collide([[0, 0, 0]], [[0, 0, 0]], self=True).pairs.shape)
-    """
-    )
+    """)
     assert "not the main one" in out and out.endswith("(0, 2)\n")
 
 
 def test_errors_can_be_sent_to_other_processes():
-    python(
-        """
+    python("""
     import farcull, pickle
     error = pickle.loads(pickle.dumps(farcull.InputError("threads", "are many", "give fewer")))
     assert (error.where, error.reason, error.remedy) == ("threads", "are many", "give fewer")
     assert str(error) == "threads: are many; give fewer"
-    """
-    )
+    """)
 
 
 def test_without_memory_it_says_so():
     # 10^8 triangles with 1 GB left. The arrays take no memory: every row is the same one.
-    out = python(
-        """
+    out = python("""
     import resource
     import farcull
     import numpy as np
@@ -298,28 +268,23 @@ def test_without_memory_it_says_so():
         except MemoryError:
             print("MemoryError")
     print(farcull.collide(V, [[0, 1, 2], [0, 0, 0]], [0, 1]).pairs.tolist())
-    """
-    )
+    """)
     assert out == 4 * "MemoryError\n" + "[[0, 1]]\n"
 
 
 def test_a_thread_that_outlives_the_interpreter_does_not_crash_it():
-    python(
-        LARGE
-        + """
+    python(LARGE + """
     import threading, time
     def work():
         while True:
             farcull.collide(V[:3000], F[:1000], self=True)
     threading.Thread(target=work, daemon=True).start()
     time.sleep(0.5)
-    """
-    )
+    """)
 
 
 def test_a_thousand_frames_leak_nothing():
-    out = python(
-        """
+    out = python("""
     import farcull, gc, resource
     import numpy as np
 
@@ -350,8 +315,7 @@ def test_a_thousand_frames_leak_nothing():
             gc.collect()
             at[frame] = used()
     print(at[199], at[999])
-    """
-    )
+    """)
     before, after = map(float, out.split())
     print(f"{before:.1f} MB after 200 frames, {after:.1f} MB after 1000")
     # A frame that is kept, 1000 of them 72 kB each, would be 58 MB more.

@@ -2,17 +2,12 @@
 // the verdict.
 #include "experiments/record/tables.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "core/base/stage.h"
 #include "core/base/text.h"
 #include "experiments/record/output.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -45,9 +40,9 @@ TEST(Counted, ReasonsOfStagesAgree) {
     };
     for (const char* plural : {"1 triangles", "1 objects", "1 patches", "1 candidates", "1 passes",
                                "1 pairs of objects"})
-      EXPECT_EQ(text(1).find(plural), std::string::npos) << text(1);
+      EXPECT_FALSE(has_text(text(1), plural));
     for (const char* singular : {"2 triangle ", "2 object ", "2 patch ", "2 candidate ", "2 pass,"})
-      EXPECT_EQ(text(2).find(singular), std::string::npos) << text(2);
+      EXPECT_FALSE(has_text(text(2), singular));
   }
 }
 
@@ -65,14 +60,13 @@ TEST(Colliding, BothNumbersAndTheirSum) {
   EXPECT_EQ(json["colliding_pairs"], 1);
   EXPECT_EQ(json["neighbour_pairs"], 2);
   EXPECT_EQ(json["all_colliding_pairs"], 3);
-  EXPECT_NE(run_table(scene, record).find("\ncolliding  3 pairs = 1 + 2 of neighbours; "),
-            std::string::npos);
+  EXPECT_TRUE(has_text(run_table(scene, record), "\ncolliding  3 pairs = 1 + 2 of neighbours; "));
 }
 
 TEST(NothingToTest, IsOneObjectThatIsNotSelf) {
   for (const Scene& scene : {scene_of({2}), scene_of({9}), scene_of({0, 2, 0})}) {
     const NothingToTest nothing = nothing_to_test(scene);
-    EXPECT_NE(nothing.reason.find("only with --self"), std::string::npos) << nothing.reason;
+    EXPECT_TRUE(has_text(nothing.reason, "only with --self"));
     EXPECT_TRUE(nothing.with_self);
     EXPECT_EQ(plan_json(scene, plan(scene, {}))["nothing_to_test"], nothing.reason);
   }
@@ -100,7 +94,7 @@ TEST(NothingToTest, AgreesWithTheAccounting) {
       const ExactResult exact = all_colliding_pairs(scene);
       std::vector<TrianglePair> kept = exact.pairs;
       kept.insert(kept.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-      std::sort(kept.begin(), kept.end());
+      std::ranges::sort(kept);
       EXPECT_EQ(account(scene, kept).pairs_total == 0, !nothing_to_test(scene).reason.empty());
     }
   }
@@ -127,9 +121,8 @@ TEST(DefaultMethod, IsSaidWhereNoneIsNamed) {
   options.method_is_default = true;
   const std::string line = default_method_line(options);
   EXPECT_TRUE(line.starts_with("default    no --method: far-pairs ")) << line;
-  for (const Method method : all_methods()) {
+  for (const Method method : all_methods())
     EXPECT_EQ(line.find(" " + to_string(method)) != std::string::npos, true) << line;
-  }
 }
 
 }  // namespace

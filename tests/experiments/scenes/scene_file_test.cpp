@@ -1,15 +1,8 @@
 #include "experiments/scenes/scene_file.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <chrono>
-#include <cmath>
-#include <random>
-
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -21,9 +14,8 @@ const std::string kParts =
     "g left\nf 1 2 3\nf 4 5 6\ng right\nf 4 6 5\nf 2 3 7\n";
 
 bool same_bits(const Vec3& a, const Vec3& b) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
-  }
   return true;
 }
 
@@ -44,7 +36,7 @@ class SceneFileTest : public testing::Test {
     const Error error = error_of([&] { read(text); });
     EXPECT_EQ(error.where, path);
     EXPECT_EQ(error.line, line) << error.what();
-    EXPECT_NE(error.reason.find(reason), std::string::npos) << text << "\n" << error.what();
+    EXPECT_TRUE(has_text(error.reason, reason)) << text << "\n" << error.what();
   }
   void expect_refused_key(const std::string& keys, const std::string& reason) const {
     expect_refusal(R"({"objects": [{"mesh": "t.obj"}, {"mesh": "t.obj", )" + keys + "}]}",
@@ -66,8 +58,7 @@ TEST_F(SceneFileTest, ReadsTheFormOfTheManual) {
   EXPECT_EQ(scene.objects[1].name, "t");
   EXPECT_EQ(scene.objects[1].first_triangle, 1u);
   // Scale, then rotate, then translate.
-  const double c = std::cos(0.7);
-  const double s = std::sin(0.7);
+  const double c = std::cos(0.7), s = std::sin(0.7);
   EXPECT_TRUE(same_bits(scene.vertices[3], Vec3(c * 2 - s * 4 + 1, s * 2 + c * 4, 6)));
 }
 
@@ -78,9 +69,8 @@ TEST_F(SceneFileTest, SelfBelongsToTheObjectAndToItsParts) {
           {"mesh": "parts.obj", "split": "groups", "self": true}]})");
   ASSERT_EQ(scene.objects.size(), 5u);
   const std::vector<bool> expected = {false, true, false, true, true};
-  for (std::size_t i = 0; i < expected.size(); ++i) {
+  for (std::size_t i = 0; i < expected.size(); ++i)
     EXPECT_EQ(scene.objects[i].self, expected[i]) << i;
-  }
 }
 
 TEST_F(SceneFileTest, LeavesEveryBitAloneWithoutATransform) {
@@ -89,9 +79,8 @@ TEST_F(SceneFileTest, LeavesEveryBitAloneWithoutATransform) {
        {R"("split": "none")", R"("scale": 1)", R"("scale": [1, 1, 1], "translate": [0, 0, 0])",
         R"("rotate": {"axis": [1, 2, 3], "angle": 0})", R"("translate": [-0.0, 0, 0])"}) {
     const Scene scene = with(keys);
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       EXPECT_TRUE(same_bits(scene.vertices[i], mesh.vertices[i])) << keys;
-    }
   }
   EXPECT_TRUE(std::signbit(with(R"("scale": 1)").vertices[1].x()));
 }
@@ -129,9 +118,8 @@ TEST_F(SceneFileTest, SplitsIntoComponentsByFirstTriangle) {
 }
 
 TEST_F(SceneFileTest, KeepsTheNameWhereASplitGivesOnePart) {
-  for (const std::string split : {"groups", "components"}) {
+  for (const std::string split : {"groups", "components"})
     EXPECT_EQ(with(R"("split": ")" + split + "\"").objects.at(0).name, "t");
-  }
 }
 
 TEST_F(SceneFileTest, NumbersRepeatedNamesAndSkipsTakenOnes) {
@@ -351,6 +339,97 @@ TEST_F(SceneFileTest, RefusesToMixScenesWithMeshes) {
   EXPECT_EQ(error_of([&] { load_scene({mesh, path}); }).where, path);
   // The last argument is refused before the first is read.
   EXPECT_EQ(error_of([] { load_scene({"none.obj", "b.gltf"}); }).where, "b.gltf");
+}
+
+Scene scene_of(const std::vector<std::string>& names) {
+  Scene scene;
+  for (const std::string& name : names) scene.objects.push_back({name, 0, 0, false});
+  return scene;
+}
+
+using Pairs = std::vector<ObjectPair>;
+
+TEST(Ignore, NamesPairsOfObjectsAndOfGroups) {
+  const Scene scene = scene_of({"base", "link1", "link2", "hand", "link"});
+  const auto pairs = [&](const std::string& list) {
+    return ignored_objects(scene, parse_ignored(list));
+  };
+  EXPECT_EQ(pairs("base:link1"), (Pairs{{0, 1}}));
+  EXPECT_EQ(pairs("hand:base,base:hand"), (Pairs{{0, 3}}));
+  EXPECT_EQ(pairs("link*:hand"), (Pairs{{1, 3}, {2, 3}, {3, 4}}));
+  EXPECT_EQ(pairs("link*:link*"), (Pairs{{1, 2}, {1, 4}, {2, 4}}));
+  EXPECT_EQ(pairs("*a*:*k1"), (Pairs{{0, 1}, {1, 3}}));
+  EXPECT_EQ(pairs("*:*").size(), 10u);
+}
+
+TEST(Ignore, OfNamesThatAreTheSameAllAreMeant) {
+  EXPECT_EQ(ignored_objects(scene_of({"a", "a", "b"}), parse_ignored("a:b")),
+            (Pairs{{0, 2}, {1, 2}}));
+  EXPECT_EQ(ignored_objects(scene_of({"a", "a"}), parse_ignored("a:a")), (Pairs{{0, 1}}));
+  // A name with a * in it fits itself, and is refused where it fits others too.
+  EXPECT_EQ(ignored_objects(scene_of({"a*", "b"}), parse_ignored("a*:b")), (Pairs{{0, 1}}));
+  const Scene scene = scene_of({"a*", "a2", "b"});
+  EXPECT_TRUE(
+      refuses("names 'a*', which is the name of an object, and as a pattern fits others too",
+              [&] { ignored_objects(scene, parse_ignored("b:a*")); }));
+  EXPECT_EQ(error_of([&] { pairs_between(scene, "a*", "b", "here", "row 3"); }).reason,
+            "row 3 names 'a*', which is the name of an object, and as a pattern fits others too");
+  EXPECT_EQ(pairs_between(scene, "a2", "b", "here", "row 3"), (Pairs{{1, 2}}));
+}
+
+TEST(Ignore, PairsOfTwoPatternsAreThoseOfTheList) {
+  const Scene scene = scene_of({"base", "link1", "link2", "hand", "link"});
+  const auto pairs = [&](const char* a, const char* b) {
+    return pairs_between(scene, a, b, "here", "row 3");
+  };
+  EXPECT_EQ(pairs("link*", "hand"), (Pairs{{1, 3}, {2, 3}, {3, 4}}));
+  EXPECT_EQ(pairs("hand", "base"), (Pairs{{0, 3}}));
+  EXPECT_EQ(pairs("*", "*").size(), 10u);
+  const Error unknown = error_of([&] { pairs("base", "arm*"); });
+  EXPECT_EQ(unknown.where, "here");
+  EXPECT_EQ(unknown.reason, "row 3 names 'arm*', and no object is called so");
+  EXPECT_EQ(error_of([&] { pairs("han*", "hand"); }).reason, "row 3 names 'hand' alone");
+}
+
+TEST(Ignore, WhoAnswersAboutAllRefusesASceneThatIgnores) {
+  Scene scene = scene_of({"a", "b"});
+  EXPECT_NO_THROW(require_nothing_ignored(scene, "a check"));
+  scene.ignored = {{0, 1}};
+  EXPECT_TRUE(
+      refuses("a check answers about all", [&] { require_nothing_ignored(scene, "a check"); }));
+}
+
+TEST(Ignore, NamesMayHoldColons) {
+  const Scene scene = scene_of({"C:x", "y", "C", "x:y"});
+  EXPECT_EQ(ignored_objects(scene, parse_ignored("C:x:C")), (Pairs{{0, 2}}));
+  EXPECT_TRUE(refuses("can be divided at more than one colon",
+                      [&] { ignored_objects(scene, parse_ignored("C:x:y")); }));
+}
+
+TEST(Ignore, RefusesWhatNamesNothing) {
+  const Scene scene = scene_of({"a", "b"});
+  const auto refused = [&](const std::string& list) {
+    return message_of([&] { ignored_objects(scene, parse_ignored(list)); });
+  };
+  EXPECT_TRUE(has_text(refused("a:c"), "--ignore: 'a:c' names 'c', and no object is called so"));
+  EXPECT_TRUE(has_text(refused("z*:b"), "names 'z*'"));
+  EXPECT_TRUE(has_text(refused("ab"), "has no colon"));
+  EXPECT_TRUE(has_text(refused("a:a"), "names one object"));
+  EXPECT_TRUE(has_text(refused(""), "a pair of names is empty"));
+  EXPECT_TRUE(has_text(refused("a:b,"), "a pair of names is empty"));
+  EXPECT_TRUE(has_text(refused("a:c"), "the scene has a, b"));
+}
+
+TEST(Ignore, ReadsAFileAndNamesItsLines) {
+  const ScratchFolder folder;
+  const std::string good = folder.write("pairs.txt", "# links\r\n\na:b\r\n");
+  const Scene scene = scene_of({"a", "b"});
+  EXPECT_EQ(ignored_objects(scene, read_ignored(good)), (Pairs{{0, 1}}));
+  const std::string bad = folder.write("bad.txt", "a:b\n# x\na:z\n");
+  EXPECT_TRUE(refuses("bad.txt:3", [&] { ignored_objects(scene, read_ignored(bad)); }));
+  EXPECT_TRUE(refuses("cannot be read", [&] { read_ignored(folder.path("none.txt")); }));
+  const std::string empty = folder.write("empty.txt", "# nothing\n");
+  EXPECT_TRUE(refuses("names no pair", [&] { read_ignored(empty); }));
 }
 
 }  // namespace

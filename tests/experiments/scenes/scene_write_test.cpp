@@ -1,18 +1,10 @@
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/scenes/builtin/moving_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/moving.h"
 
 namespace farcull {
 namespace {
@@ -21,12 +13,6 @@ std::size_t files_in(const std::string& folder) {
   std::size_t count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
   return count;
-}
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 void expect_round_trip(const Scene& scene) {
@@ -84,8 +70,8 @@ TEST(MeshWrite, WritesIgnoredObjectsByNamesThatNameThemAlone) {
     twin.objects[0].name = name;
     twin.objects[2].name = "same";
     const ScratchFolder folder;
-    EXPECT_NE(error_of([&] { write_scene(twin, folder.path("s")); }).reason.find("others too"),
-              std::string::npos);
+    EXPECT_TRUE(
+        has_text(error_of([&] { write_scene(twin, folder.path("s")); }).reason, "others too"));
   }
 }
 
@@ -95,7 +81,7 @@ TEST(MeshWrite, ReplacesFilesAndTakesItsOwnBackWhereItFails) {
   EXPECT_EQ(error_of([&] { write_scene(scene, folder.path("no/s")); }).where, folder.path("no/s"));
   const std::string file = folder.write("file", "x");
   EXPECT_EQ(error_of([&] { write_scene(scene, file); }).where, file);
-  EXPECT_EQ(text_of(file), "x");
+  EXPECT_EQ(read_text(file), "x");
 
   // The second mesh cannot be written: the first one goes, or stays where one was before.
   const std::string place = folder.path("s");
@@ -143,7 +129,7 @@ TEST(MeshWrite, WhatStandsStillIsWrittenOnce) {
   const ScratchFolder folder;
   const WrittenScene written = write_moving("tree-leaves:2", {0, 3}, folder.path("s"));
   EXPECT_EQ(written.files, 1u + 2 * 4 + 1);
-  const auto json = nlohmann::json::parse(text_of(written.scene_file));
+  const auto json = nlohmann::json::parse(read_text(written.scene_file));
   EXPECT_EQ(json["objects"][0]["mesh"], "tree.off");
   EXPECT_EQ(json["objects"][1]["mesh"], "leaf0_%04d.off");
 }

@@ -1,14 +1,10 @@
 #include "experiments/studies/run_studies.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
+#include <sys/stat.h>
+#include <nlohmann/json.hpp>
 
-#include <map>
-#include <numeric>
-
-#include "core/base/error.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -42,14 +38,10 @@ TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
   for (int shard = 1; shard <= 3; ++shard)
     files.push_back(measure_shard(folder.folder(), shard, 3));
   const std::string out = folder.path("out.sqlite");
-  EXPECT_NE(message_of([&] {
-              merge_stores({files[0], files[2]}, out);
-            }).find("shard 2/3"),
-            std::string::npos);
-  EXPECT_NE(message_of([&] {
-              merge_stores({files[0], files[1], files[1]}, out);
-            }).find("is shard 2/3 of counting, and so is"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("shard 2/3", [&] { merge_stores({files[0], files[2]}, out); }));
+  EXPECT_TRUE(refuses("is shard 2/3 of counting, and so is", [&] {
+    merge_stores({files[0], files[1], files[1]}, out);
+  }));
 
   // A shard that was not finished.
   const ScratchFolder other;
@@ -63,13 +55,12 @@ TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
   const std::string message = message_of([&] {
     merge_stores({files[0], unfinished, files[2]}, out);
   });
-  EXPECT_NE(message.find(unfinished + ": has no row of counting"), std::string::npos) << message;
+  EXPECT_TRUE(has_text(message, unfinished + ": has no row of counting"));
   EXPECT_FALSE(std::filesystem::exists(out));
   for (const auto& entry : std::filesystem::directory_iterator(folder.folder()))
-    EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos);
+    EXPECT_FALSE(has_text(entry.path().string(), ".part-"));
   EXPECT_NO_THROW(merge_stores(files, out));
-  EXPECT_NE(message_of([&] { merge_stores(files, out); }).find("is there already"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("is there already", [&] { merge_stores(files, out); }));
 }
 
 // A file whose shard number was made another one by hand: the rows tell.
@@ -82,8 +73,7 @@ TEST(Merge, RefusesAPointThatTwoFilesHold) {
     Store store(files[1], Store::Access::write);
     store.add("counting", store.runs().front().first, 0, {});
   }
-  EXPECT_NE(message_of([&] { merge_stores(files, folder.path("out")); }).find("holds a point of"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("holds a point of", [&] { merge_stores(files, folder.path("out")); }));
 }
 
 // A run that was ended before its first row says nothing of the rows.
@@ -101,8 +91,7 @@ TEST(Merge, DoesNotPutAFileBesideAJournalThatIsNotItsOwn) {
   const std::string file = measure_shard(folder.folder(), 1, 1);
   for (const char* beside : {"out-journal", "out-wal"}) {
     const std::string journal = folder.write(beside, "of another file");
-    EXPECT_NE(message_of([&] { merge_stores({file}, folder.path("out")); }).find(beside),
-              std::string::npos);
+    EXPECT_TRUE(refuses(beside, [&] { merge_stores({file}, folder.path("out")); }));
     EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
     std::filesystem::remove(journal);
   }
@@ -123,18 +112,16 @@ TEST(Merge, RefusesWhatWasMeasuredOtherwise) {
   const ScratchFolder folder, second, third;
   const std::string first = measure_shard(folder.folder(), 1, 2);
   const std::string other_commit = measure_shard(second.folder(), 2, 2, lab_provenance("decade"));
-  EXPECT_NE(message_of([&] {
-              merge_stores({first, other_commit}, folder.path("out"));
-            }).find("of another commit (decade)"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("of another commit (decade)", [&] {
+    merge_stores({first, other_commit}, folder.path("out"));
+  }));
   StudiesRequest seeded = lab_request(third.folder(), two_studies());
   seeded.shard = {2, 2, "test"};
   seeded.choice.seed = 2;
   const std::string other_seed = run_studies(seeded).store;
-  EXPECT_NE(message_of([&] {
-              merge_stores({first, other_seed}, folder.path("out"));
-            }).find("another grid or seed"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("another grid or seed", [&] {
+    merge_stores({first, other_seed}, folder.path("out"));
+  }));
 }
 
 TEST(Shards, CoverEveryPointOnce) {
@@ -153,7 +140,7 @@ TEST(Shards, AreReadAsGiven) {
   EXPECT_EQ(shard.of, 4);
   for (const char* bad : {"", "2", "2/", "/4", "0/4", "5/4", "-1/4", "1/0", "1/4/2", "1.0/4", "a/b",
                           "1/100001", " 1/4", "99999999999999999999/4"})
-    EXPECT_NE(message_of([&] { parse_shard(bad); }).find("--shard"), std::string::npos) << bad;
+    EXPECT_TRUE(refuses("--shard", [&] { parse_shard(bad); })) << bad;
 }
 
 Shard from(const std::map<std::string, std::string>& variables) {
@@ -180,38 +167,172 @@ TEST(Shards, ComeFromSlurmOrOpenMpi) {
 
 TEST(Shards, RefuseAnEnvironmentThatDoesNotAddUp) {
   // --array=1-7:2
-  EXPECT_NE(message_of([] {
-              from({{"SLURM_ARRAY_TASK_ID", "3"},
-                    {"SLURM_ARRAY_TASK_MIN", "1"},
-                    {"SLURM_ARRAY_TASK_MAX", "7"},
-                    {"SLURM_ARRAY_TASK_COUNT", "4"}});
-            }).find("gaps"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("gaps", [] {
+    from({{"SLURM_ARRAY_TASK_ID", "3"},
+          {"SLURM_ARRAY_TASK_MIN", "1"},
+          {"SLURM_ARRAY_TASK_MAX", "7"},
+          {"SLURM_ARRAY_TASK_COUNT", "4"}});
+  }));
   // --array=3: one task of an array, submitted again.
-  EXPECT_NE(message_of([] {
-              from({{"SLURM_ARRAY_TASK_ID", "3"},
-                    {"SLURM_ARRAY_TASK_MIN", "3"},
-                    {"SLURM_ARRAY_TASK_MAX", "3"},
-                    {"SLURM_ARRAY_TASK_COUNT", "1"}});
-            }).find("begins at 3"),
-            std::string::npos);
-  EXPECT_NE(message_of([] {
-              from({{"SLURM_ARRAY_TASK_ID", "x"}});
-            }).find("is no number"),
-            std::string::npos);
-  EXPECT_NE(message_of([] {
-              from({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
-            }).find("part 5 of 4"),
-            std::string::npos);
-  EXPECT_NE(message_of([] {
-              from({{"SLURM_ARRAY_TASK_ID", "1"},
-                    {"SLURM_ARRAY_TASK_MIN", "1"},
-                    {"SLURM_ARRAY_TASK_MAX", "2"},
-                    {"SLURM_ARRAY_TASK_COUNT", "2"},
-                    {"OMPI_COMM_WORLD_RANK", "0"},
-                    {"OMPI_COMM_WORLD_SIZE", "2"}});
-            }).find("both"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("begins at 3", [] {
+    from({{"SLURM_ARRAY_TASK_ID", "3"},
+          {"SLURM_ARRAY_TASK_MIN", "3"},
+          {"SLURM_ARRAY_TASK_MAX", "3"},
+          {"SLURM_ARRAY_TASK_COUNT", "1"}});
+  }));
+  EXPECT_TRUE(refuses("is no number", [] { from({{"SLURM_ARRAY_TASK_ID", "x"}}); }));
+  EXPECT_TRUE(refuses("part 5 of 4", [] {
+    from({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
+  }));
+  EXPECT_TRUE(refuses("both", [] {
+    from({{"SLURM_ARRAY_TASK_ID", "1"},
+          {"SLURM_ARRAY_TASK_MIN", "1"},
+          {"SLURM_ARRAY_TASK_MAX", "2"},
+          {"SLURM_ARRAY_TASK_COUNT", "2"},
+          {"OMPI_COMM_WORLD_RANK", "0"},
+          {"OMPI_COMM_WORLD_SIZE", "2"}});
+  }));
+}
+
+// ---- A library that is upgraded between two runs, or between two shards.
+
+constexpr int kPoints = 12;
+
+// Its points are those of two contestants, "lemma" and "lemma-worst". `version` is what is
+// installed of both; empty: they are missing. From point `fails_from` on (counted from 1) measuring
+// fails.
+Study asking(const std::string& version, int fails_from = kPoints + 1) {
+  Study out = counting_study(kPoints);
+  out.library = [=](const Point&) { return version; };
+  out.measure = [=](const Point& point, Lab&) {
+    if (number_of(point) >= fails_from) throw Error("device", "is lost", "try again");
+    if (version.empty()) return PointResult{.device = "none", .left_out = "it is not there"};
+    LibraryCounts counts;
+    counts.library = version;
+    return PointResult{.counts = counts, .device = "process"};
+  };
+  return out;
+}
+
+StudiesSummary measure(const std::string& folder, const Study& study) {
+  return run_studies(lab_request(folder, {study}, true));
+}
+
+std::set<std::string> libraries_in(const std::string& path) {
+  std::set<std::string> out;
+  const StoredStudy stored = Store(path, Store::Access::read).study("counting");
+  for (const Row& row : stored.rows) out.insert(row.measurement.counts["library"]);
+  return out;
+}
+
+TEST(Versions, AResumeAfterAnUpgradeIsRefusedAndAddsNothing) {
+  const ScratchFolder folder;
+  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
+  const Error refused = error_of([&] { measure(folder.folder(), asking("lib 1.1")); });
+  EXPECT_EQ(refused.where, path);
+  for (const char* part : {"its rows of lemma are of lib 1.0, and lib 1.1 is here now",
+                           "its rows of lemma-worst are of lib 1.0"})
+    EXPECT_TRUE(has_text(refused.reason, part));
+  EXPECT_TRUE(has_text(refused.remedy, "another folder"));
+  EXPECT_EQ(rows_in(Store(path, Store::Access::read), "counting"), 6u);
+  // The twin: with the same version it goes on as before.
+  EXPECT_EQ(measure(folder.folder(), asking("lib 1.0")).studies.front().measured, 6u);
+  EXPECT_EQ(libraries_in(path), std::set<std::string>{"lib 1.0"});
+}
+
+TEST(Versions, TheCommandOfTheRemedyDeletesTheOldRowsAndNoOthers) {
+  const ScratchFolder folder;
+  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
+  const auto upgraded = [] {
+    Study study = asking("lib 1.1");
+    // One of the two contestants alone.
+    study.library = [](const Point& point) {
+      return number_of(point) % 2 == 1 ? "lib 1.1" : "lib 1.0";
+    };
+    return study;
+  };
+  const std::string remedy = error_of([&] { measure(folder.folder(), upgraded()); }).remedy;
+  const std::size_t at = remedy.find("sqlite3 ");
+  ASSERT_NE(at, std::string::npos) << remedy;
+  if (std::system("sqlite3 --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no sqlite3";
+  ASSERT_EQ(std::system(remedy.substr(at).c_str()), 0) << remedy;
+  EXPECT_EQ(rows_in(Store(path, Store::Access::read), "counting"), 3u);
+  EXPECT_EQ(measure(folder.folder(), upgraded()).studies.front().measured, 9u);
+}
+
+TEST(Versions, RowsOfAMissingProgramAreKept) {
+  const ScratchFolder folder;
+  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
+  EXPECT_EQ(measure(folder.folder(), asking("")).studies.front().left_out, 6u);
+  // It is there again: what was left out is measured. The twin: another version is not taken.
+  EXPECT_TRUE(refuses("lib 2 is here", [&] { measure(folder.folder(), asking("lib 2")); }));
+  EXPECT_EQ(measure(folder.folder(), asking("lib 1.0")).studies.front().measured, 6u);
+  EXPECT_EQ(libraries_in(path), std::set<std::string>{"lib 1.0"});
+}
+
+TEST(Versions, AnUpgradeOfWhatIsFinishedMixesNothing) {
+  const ScratchFolder folder;
+  measure(folder.folder(), asking("lib 1.0"));
+  EXPECT_EQ(measure(folder.folder(), asking("lib 1.1")).studies.front().measured, 0u);
+}
+
+TEST(Versions, AStoreThatHoldsTwoIsNotGoneOnWith) {
+  const ScratchFolder folder;
+  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
+  {
+    Store store(path, Store::Access::write);
+    Measurement newer;
+    newer.counts = {{"library", "lib 1.1"}};
+    store.add("counting", 1, 8, newer);
+  }
+  EXPECT_TRUE(has_text(error_of([&] { measure(folder.folder(), asking("lib 1.1")); }).reason,
+                       "its rows of lemma are of lib 1.1, and others of lib 1.0"));
+}
+
+std::string measure_shard(const std::string& folder, int index, const std::string& version) {
+  StudiesRequest request = lab_request(folder, {asking(version)});
+  request.shard = {index, 3, "test"};
+  return run_studies(request).store;
+}
+
+TEST(Versions, ShardsOfTwoAreNotMerged) {
+  const ScratchFolder folder, other;
+  const std::string first = measure_shard(folder.folder(), 1, "lib 1.0"),
+                    second = measure_shard(folder.folder(), 2, "lib 1.0"),
+                    third = measure_shard(folder.folder(), 3, "lib 1.0"),
+                    newer = measure_shard(other.folder(), 3, "lib 1.1");
+  const std::string out = folder.path("out.sqlite");
+  const Error refused = error_of([&] { merge_stores({first, second, newer}, out); });
+  EXPECT_EQ(refused.where, newer);
+  EXPECT_TRUE(has_text(refused.reason,
+                       "its rows of lemma are of lib 1.1, and those of " + first + " of lib 1.0"));
+  EXPECT_TRUE(has_text(refused.remedy, "--resume"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  // The twin.
+  EXPECT_EQ(merge_stores({first, second, third}, out).rows, static_cast<std::size_t>(kPoints));
+  EXPECT_EQ(libraries_in(out), std::set<std::string>{"lib 1.0"});
+}
+
+// The study itself asks the programs of contestants for their versions.
+TEST(Versions, OfTheStudyAreThoseThatItsProgramsSay) {
+  const Study study = study_named("libraries");
+  const Point point = LibraryPoint{.contestant = "gts", .family = "random"};
+  const auto said = [&](const std::string& folder) {
+    ::setenv("FARCULL_CONTESTANTS", folder.c_str(), 1);
+    std::string out = study.library(point);
+    ::unsetenv("FARCULL_CONTESTANTS");
+    return out;
+  };
+  for (const char* version : {"GTS 0.7.5", "GTS 0.7.6"}) {
+    const ScratchFolder folder;
+    const std::string program = folder.write(
+        "farcull_contestant_gts",
+        std::string("#!/bin/sh\nprintf 'name gts\\nlibrary ") + version + "\\npairs yes\\n\\n'\n");
+    ASSERT_EQ(::chmod(program.c_str(), 0700), 0);
+    EXPECT_EQ(said(folder.folder()), version);
+  }
+  const ScratchFolder empty;
+  EXPECT_EQ(said(empty.folder()), "");
 }
 
 }  // namespace

@@ -113,10 +113,9 @@ std::string left_over(const Table& table, const Table& found, const Arguments& a
   for (const auto& [section, lines] : table) {
     if (!arguments.study.empty() && study_of(section) != "[" + arguments.study + "]") continue;
     const auto at = found.find(section);
-    for (const auto& [key, counts] : lines) {
+    for (const auto& [key, counts] : lines)
       if (at == found.end() || !at->second.contains(key))
         out += section + "\n  " + key + ": the file has it, and no point does\n";
-    }
   }
   return out;
 }

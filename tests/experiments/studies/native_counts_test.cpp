@@ -1,11 +1,8 @@
 // That the file of native counts holds what is measured, and that the comparison sees whatever
 // differs. All points of the file: tests/experiments/studies/native_counts_main.cpp.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "experiments/studies/point.h"
 #include "tests/experiments/studies/native_counts.h"
+#include "experiments/studies/point.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -16,9 +13,8 @@ const std::string kFile = FARCULL_TEST_DIR "/experiments/studies/native_counts.t
 
 // The point of that key in the quick grid of accuracy.
 Point accuracy_point(const PointKey& key) {
-  for (const StudyGridPoint& of : quick_points(study_named("accuracy"))) {
+  for (const StudyGridPoint& of : quick_points(study_named("accuracy")))
     if (key_of(of.point) == key) return of.point;
-  }
   throw std::logic_error("no point " + describe(key));
 }
 
@@ -72,7 +68,7 @@ TEST(NativeCounts, TellAnotherRadiusDepthResolutionAndOffset) {
   // Another scene has another hash as well.
   RunPoint elsewhere = good;
   elsewhere.scene = NamedScene{"two-spheres"};
-  EXPECT_NE(said(table, elsewhere, key, lab).find("[scenes]"), std::string::npos);
+  EXPECT_TRUE(has_text(said(table, elsewhere, key, lab), "[scenes]"));
 }
 
 TEST(NativeCounts, TellEveryChangedDigitAndWhichPointHasIt) {
@@ -90,8 +86,8 @@ TEST(NativeCounts, TellEveryChangedDigitAndWhichPointHasIt) {
     counts = as_it_is;
     counts[i] = counts[i] == '9' ? '8' : static_cast<char>(counts[i] + 1);
     const std::string text = difference(table, line);
-    EXPECT_NE(text.find(line.key), std::string::npos);
-    EXPECT_NE(text.find(counts), std::string::npos) << "both values are said";
+    EXPECT_TRUE(has_text(text, line.key));
+    EXPECT_TRUE(has_text(text, counts)) << "both values are said";
     ++changed;
   }
   EXPECT_GT(changed, 30);
@@ -99,15 +95,14 @@ TEST(NativeCounts, TellEveryChangedDigitAndWhichPointHasIt) {
   table.at(kScenes).at(line.scene)[0] ^= 1;
   EXPECT_NE(difference(table, line), "");
   table.at(line.section).erase(line.key);
-  EXPECT_NE(difference(table, line).find("no such line"), std::string::npos);
+  EXPECT_TRUE(has_text(difference(table, line), "no such line"));
   table.erase(line.section);
-  EXPECT_NE(difference(table, line).find("no such section"), std::string::npos);
+  EXPECT_TRUE(has_text(difference(table, line), "no such section"));
 }
 
 // The file as it is committed: whole, sorted, and small enough to read a difference in it.
 TEST(NativeCounts, TheFileHasEveryPointOnceAndIsWhatItWouldBeWrittenAs) {
-  std::ifstream file(kFile, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_text(kFile);
   EXPECT_LT(text.size(), 300'000u);
   const Table table = parse(text, kFile);
   EXPECT_EQ(to_text(table, text.substr(0, text.find("\n[") + 1)), text);
@@ -119,11 +114,11 @@ TEST(NativeCounts, TheFileHasEveryPointOnceAndIsWhatItWouldBeWrittenAs) {
       std::string key;
       for (const std::string& axis : axis_values(key_of(of.point))) key += axis + ";";
       key.pop_back();
-      EXPECT_TRUE(std::any_of(table.begin(), table.end(),
-                              [&](const auto& section) {
-                                return study_of(section.first) == "[" + study.name + "]" &&
-                                       section.second.contains(key);
-                              }))
+      EXPECT_TRUE(std::ranges::any_of(table,
+                                      [&](const auto& section) {
+                                        return study_of(section.first) == "[" + study.name + "]" &&
+                                               section.second.contains(key);
+                                      }))
           << study.name << ": " << key;
     }
   }

@@ -2,14 +2,10 @@
 // of shards are those of one run.
 #include "experiments/studies/run_point.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "experiments/studies/run_studies.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -97,8 +93,7 @@ TEST(Proximity, APeerThatLiesShowsAnError) {
     EXPECT_EQ(distances_of(honest).errors.largest_relative, 0);
     EXPECT_GT(distances_of(honest).asked, 5u);
     const auto apart = [](std::vector<PeerDistance>& all) {
-      return std::find_if(all.begin(), all.end(),
-                          [](const PeerDistance& one) { return one.distance > 0; });
+      return std::ranges::find_if(all, [](const PeerDistance& one) { return one.distance > 0; });
     };
     const PointResult by_an_ulp = measured(
         liar([&](auto& all) { apart(all)->distance = std::nextafter(apart(all)->distance, 9e9); }));
@@ -128,8 +123,7 @@ TEST(Proximity, RefusesRunsThatDiffer) {
     if (++runs == 3) all.pop_back();
   });
   const Error error = error_of([&] { measure_distances(point, moody, lab); });
-  EXPECT_NE(error.reason.find("two runs of the same point differ"), std::string::npos)
-      << error.reason;
+  EXPECT_TRUE(has_text(error.reason, "two runs of the same point differ"));
   runs = 10;
   EXPECT_EQ(measure_distances(point, moody, lab).times.totals.size(), 3u);
 }
@@ -147,9 +141,8 @@ TEST(Proximity, LeavesOutWhatIsNotThereOrRefuses) {
 
 TEST(Proximity, AsksEveryPeer) {
   std::set<std::string> asked;
-  for (const Point& point : study_named("proximity").grid({.quick = true})) {
+  for (const Point& point : study_named("proximity").grid({.quick = true}))
     if (const auto* of = std::get_if<DistancePoint>(&point)) asked.insert(of->contestant);
-  }
   for (const DistancePeer& peer : distance_peers()) EXPECT_TRUE(asked.contains(peer.name));
   EXPECT_TRUE(asked.contains("farcull"));
 }

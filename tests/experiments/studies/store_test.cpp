@@ -1,19 +1,13 @@
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <set>
 
-#include "core/base/error.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -85,65 +79,49 @@ TEST(Store, RefusesAnotherGridUnderTheSameName) {
   EXPECT_NO_THROW(store.declare(first));
   Declaration other = first;
   other.choice.seed = 4;
-  EXPECT_NE(message_of([&] { store.declare(other); }).find("seed 3, not"), std::string::npos);
+  EXPECT_TRUE(refuses("seed 3, not", [&] { store.declare(other); }));
   other = first;
   other.choice.quick = true;
-  EXPECT_NE(message_of([&] { store.declare(other); }).find("the full grid"), std::string::npos);
+  EXPECT_TRUE(refuses("the full grid", [&] { store.declare(other); }));
   other = first;
   other.of = 2;
-  EXPECT_NE(message_of([&] { store.declare(other); }).find("shard 1/1, not 1/2"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("shard 1/1, not 1/2", [&] { store.declare(other); }));
   other = first;
   other.points.push_back({});
-  EXPECT_NE(message_of([&] { store.declare(other); }).find("other points"), std::string::npos);
-}
-
-void write(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  EXPECT_TRUE(refuses("other points", [&] { store.declare(other); }));
 }
 
 TEST(Store, RefusesWhatIsNoneOfOursAndLeavesItAsItIs) {
   const ScratchFolder folder;
   const std::string path = folder.path("s");
   for (const Store::Access access : {Store::Access::read, Store::Access::write}) {
-    write(path, "these are my notes, " + std::string(4096, 'x'));
-    const std::string before = text_of(path);
-    EXPECT_NE(message_of([&] { Store(path, access); }).find("is no store of farcull"),
-              std::string::npos);
-    EXPECT_EQ(text_of(path), before);
+    write_text(path, "these are my notes, " + std::string(4096, 'x'));
+    const std::string before = read_text(path);
+    EXPECT_TRUE(refuses("is no store of farcull", [&] { Store(path, access); }));
+    EXPECT_EQ(read_text(path), before);
     std::filesystem::remove(path);
   }
   std::filesystem::create_directory(path);
-  EXPECT_NE(message_of([&] { Store(path, Store::Access::write); }).find("is no file"),
-            std::string::npos);
-  EXPECT_NE(
-      message_of([&] { Store(folder.path("none"), Store::Access::read); }).find("measure first"),
-      std::string::npos);
+  EXPECT_TRUE(refuses("is no file", [&] { Store(path, Store::Access::write); }));
+  EXPECT_TRUE(refuses("measure first", [&] { Store(folder.path("none"), Store::Access::read); }));
   EXPECT_FALSE(std::filesystem::exists(folder.path("none")));
-  write(folder.path("empty"), "");
-  EXPECT_NE(
-      message_of([&] { Store(folder.path("empty"), Store::Access::read); }).find("nothing yet"),
-      std::string::npos);
+  write_text(folder.path("empty"), "");
+  EXPECT_TRUE(refuses("nothing yet", [&] { Store(folder.path("empty"), Store::Access::read); }));
 }
 
 // The application id stands at byte 68, the version at byte 60 of the file, big-endian.
 std::string store_with_byte(const std::string& path, std::size_t at, char to) {
   { Store store(path, Store::Access::write); }
-  std::string text = text_of(path);
+  std::string text = read_text(path);
   text[at] = to;
-  write(path, text);
+  write_text(path, text);
   return message_of([&] { Store(path, Store::Access::write); });
 }
 
 TEST(Store, RefusesOtherProgramsDatabasesOtherVersionsAndDamage) {
   const ScratchFolder folder;
-  EXPECT_NE(store_with_byte(folder.path("a"), 68, 'X').find("of another program"),
-            std::string::npos);
-  EXPECT_NE(store_with_byte(folder.path("b"), 63, 9).find("store of version 9"), std::string::npos);
+  EXPECT_TRUE(has_text(store_with_byte(folder.path("a"), 68, 'X'), "of another program"));
+  EXPECT_TRUE(has_text(store_with_byte(folder.path("b"), 63, 9), "store of version 9"));
   // The twin: the byte that is there anyway.
   EXPECT_EQ(store_with_byte(folder.path("c"), 68, 'F'), "");
 
@@ -151,12 +129,11 @@ TEST(Store, RefusesOtherProgramsDatabasesOtherVersionsAndDamage) {
   const std::string path = folder.path("d");
   run_studies(lab_request(folder.folder(), {counting_study(400)}));
   std::filesystem::rename(store_path(folder.folder()), path);
-  std::string text = text_of(path);
+  std::string text = read_text(path);
   ASSERT_GT(text.size(), 40000u);
   for (std::size_t at = text.size() / 2; at < text.size(); ++at) text[at] = 0;
-  write(path, text);
-  EXPECT_NE(message_of([&] { Store(path, Store::Access::read); }).find("damaged"),
-            std::string::npos);
+  write_text(path, text);
+  EXPECT_TRUE(refuses("damaged", [&] { Store(path, Store::Access::read); }));
 }
 
 // Byte for byte sound, but what it says does not fit together.
@@ -168,8 +145,7 @@ TEST(Store, RefusesARowWithoutItsPoint) {
     SQLite::Database database(path, SQLite::OPEN_READWRITE);
     database.exec("UPDATE rows SET position = 1000 WHERE position = 2");
   }
-  EXPECT_NE(message_of([&] { Store(path, Store::Access::read); }).find("rows without their point"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("rows without their point", [&] { Store(path, Store::Access::read); }));
 }
 
 TEST(Store, KeepsEveryOtherProgramOut) {
@@ -281,7 +257,7 @@ TEST(RunStudies, GoesOnAfterADiskThatWasFull) {
       const FileSizeLimit limit(static_cast<rlim_t>(static_cast<double>(size) * part));
       const std::string message =
           message_of([&] { run_studies(lab_request(full.folder(), {study}, true)); });
-      EXPECT_NE(message.find("--resume"), std::string::npos) << message;
+      EXPECT_TRUE(has_text(message, "--resume"));
       refusals += !message.empty();
     }
     kept.insert(rows_in(Store(store_path(full.folder()), Store::Access::write), study.name));
@@ -296,16 +272,13 @@ TEST(RunStudies, WantsResumeToGoOnAndTheSameCommit) {
   const ScratchFolder folder;
   const Study study = counting_study(4);
   run_studies(lab_request(folder.folder(), {study}));
-  EXPECT_NE(
-      message_of([&] { run_studies(lab_request(folder.folder(), {study})); }).find("--resume"),
-      std::string::npos);
+  EXPECT_TRUE(refuses("--resume", [&] { run_studies(lab_request(folder.folder(), {study})); }));
   const StudiesSummary again = run_studies(lab_request(folder.folder(), {study}, true));
   EXPECT_EQ(again.studies.front().measured, 0u);
   EXPECT_EQ(again.studies.front().before, 4u);
   StudiesRequest other = lab_request(folder.folder(), {study}, true);
   other.provenance.commit = "decade";
-  EXPECT_NE(message_of([&] { run_studies(other); }).find("commit c0ffee, and this is decade"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("commit c0ffee, and this is decade", [&] { run_studies(other); }));
   // Another study may stand beside it.
   other.studies = {counting_study(4, {}, "second")};
   EXPECT_NO_THROW(run_studies(other));
@@ -317,11 +290,10 @@ TEST(RunStudies, GoesOnWithTheSameDeviceAndProcessorOnly) {
   run_studies(lab_request(folder.folder(), {study}));
   StudiesRequest other = lab_request(folder.folder(), {study}, true);
   other.provenance.gl_renderer = "another";
-  EXPECT_NE(message_of([&] { run_studies(other); }).find("of the device r (4.5), and this is"),
-            std::string::npos);
+  EXPECT_TRUE(refuses("of the device r (4.5), and this is", [&] { run_studies(other); }));
   other.provenance = lab_provenance();
   other.provenance.cpu_features = "a";
-  EXPECT_NE(message_of([&] { run_studies(other); }).find("of the processor"), std::string::npos);
+  EXPECT_TRUE(refuses("of the processor", [&] { run_studies(other); }));
   other.provenance = lab_provenance();
   EXPECT_NO_THROW(run_studies(other));
 }

@@ -1,11 +1,16 @@
 // What every study promises of its grid.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
-
 #include "experiments/studies/study.h"
+
+#include "core/canvas/fatten.h"
+#include "core/view/regions.h"
+#include "core/view/view.h"
+#include "experiments/measure/harness.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/point.h"
+#include "experiments/studies/run_point.h"
+#include "offsets/offsets.h"
+#include "tests/lab/test.h"
+#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -19,9 +24,8 @@ std::string fault_of(const std::vector<PointKey>& points, bool in_turns = false)
   for (const PointKey& point : points) {
     if (!seen.insert(point).second) return "twice: " + describe(point);
     if (point.method.empty()) return "no method: " + describe(point);
-    if (!in_turns && point.scene != scene && !scenes.insert(point.scene).second) {
+    if (!in_turns && point.scene != scene && !scenes.insert(point.scene).second)
       return "not together: " + point.scene;
-    }
     scene = point.scene;
   }
   return "";
@@ -56,10 +60,9 @@ TEST_P(EveryStudy, HasFewerPointsWhereQuick) {
 TEST_P(EveryStudy, HasEveryMethodWhereQuickToo) {
   const auto methods = [&](bool quick) {
     std::set<std::tuple<std::string, std::string, std::string>> out;
-    for (const PointKey& point : keys_of(study().grid({.quick = quick}))) {
+    for (const PointKey& point : keys_of(study().grid({.quick = quick})))
       if (!point.method.starts_with("s-cullide"))
         out.insert({point.method, point.offset, column_text(point.depth_mode)});
-    }
     return out;
   };
   EXPECT_EQ(methods(true), methods(false));
@@ -107,15 +110,12 @@ TEST(Studies, AreRefusedWithAFaultyGrid) {
 TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
   for (const bool quick : {false, true}) {
     std::map<std::string, std::set<int>> resolutions;
-    for (const PointKey& point : keys_of(study_named("accuracy").grid({.quick = quick}))) {
-      if (point.radius != kPublishedRadius) {
+    for (const PointKey& point : keys_of(study_named("accuracy").grid({.quick = quick})))
+      if (point.radius != kPublishedRadius)
         resolutions[point.method + " " + point.offset].insert(point.resolution);
-      }
-    }
     std::set<int> powers = {64, 128, 256, 512, 1024, 2048, 4096};
-    for (const char* name : {"cullide ", "quick-cullide ", "far obb", "far exact"}) {
+    for (const char* name : {"cullide ", "quick-cullide ", "far obb", "far exact"})
       EXPECT_EQ(resolutions[name], powers) << name;
-    }
     EXPECT_GE(resolutions["s-cullide "].size(), quick ? 5u : powers.size());
     powers.insert(0);
     EXPECT_EQ(resolutions["far-pairs "], powers);
@@ -125,16 +125,321 @@ TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
 TEST(ErrorTime, HasEveryLibraryOnEveryScene) {
   for (const bool quick : {false, true}) {
     std::map<std::string, std::set<std::string>> methods;
-    for (const PointKey& point : keys_of(study_named("error-time").grid({.quick = quick}))) {
+    for (const PointKey& point : keys_of(study_named("error-time").grid({.quick = quick})))
       methods[point.scene].insert(point.method);
-    }
-    for (const auto& [scene, of] : methods) {
+    for (const auto& [scene, of] : methods)
       for (const char* peer :
-           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"}) {
+           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"})
         EXPECT_TRUE(of.contains(peer)) << peer << " on " << scene;
+  }
+}
+
+// ---- That a point's row depends on the point alone, not on what the lab measured before, nor on
+// which of several runs was looked at.
+
+PointResult measured(Lab& lab, const std::string& scene, Method method, int repeat = 1) {
+  return measure_run(repeated(plain_point(NamedScene{scene}, method), repeat), lab);
+}
+
+TEST(RunPoint, DoesNotDependOnEarlierRunsOfTheSession) {
+  Lab fresh("cpu");
+  const PointResult first = measured(fresh, "far-apart", Method::far_pairs);
+  Lab used("cpu");
+  measured(used, "two-spheres", Method::far_pairs);
+  const PointResult later = measured(used, "far-apart", Method::far_pairs);
+  EXPECT_EQ(named(first.counts), named(later.counts));
+  EXPECT_EQ(first.device, later.device);
+}
+
+// Whether the lists of i-collide are those of a run just before.
+bool is_warm(Lab& lab) { return lab.session().sweep().find(lab.current()).counts.sorts == 0; }
+
+TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
+  Lab lab("cpu");
+  const auto stages_of = [&](const RunPoint& point) {
+    Record record;
+    measure_run(point, lab, &record);
+    std::string out;
+    for (const Stage& stage : record.trace) out += name_of(stage) + ": " + reason_of(stage) + "\n";
+    return out;
+  };
+  const RunPoint still = plain_point(NamedScene{"crowd"}, Method::i_collide);
+  const std::string cold = stages_of(still);
+  EXPECT_EQ(stages_of(still), cold);
+  EXPECT_TRUE(is_warm(lab)) << "else nothing is there to be forgotten";
+  EXPECT_EQ(stages_of(still), cold);
+  // The twin: a point of a motion keeps the lists.
+  RunPoint moving = still;
+  moving.scene = MotionFrame{"crowd", 0, 2};
+  const std::string first = stages_of(moving);
+  EXPECT_NE(stages_of(moving), first);
+  EXPECT_THROW(measure_run(repeated(moving, 2), lab), std::logic_error);
+}
+
+// Crossings at the corners of pixels: 0.9 of the radius loses some, the budget none. A method
+// without a radius has nothing at risk of it.
+TEST(RunPoint, OfScenesThatGoToAnExtremeSaysHowManyPairsAreAtRisk) {
+  Lab lab("native");
+  const auto counts_of = [&lab](RunPoint point) {
+    point.scene = PixelCorners{};
+    point.views = "z";
+    point.resolution = 96;
+    return std::get<RunCounts>(stability_study().measure(point, lab).counts);
+  };
+  const RunCounts far =
+      counts_of({.method = Method::far, .offset = "obb", .radius = kBudgetRadius});
+  EXPECT_EQ(far.missed, 0u);
+  ASSERT_TRUE(far.at_risk.has_value());
+  EXPECT_GT(*far.at_risk, 0u);
+  EXPECT_FALSE(counts_of({.method = Method::cullide}).at_risk.has_value());
+}
+
+TEST(RunPoint, GivesTheSameCountsInEveryRepeat) {
+  Lab lab("cpu");
+  for (const Method method : {Method::far_pairs, Method::i_collide, Method::exact}) {
+    EXPECT_EQ(named(measured(lab, "crowd", method, 3).counts),
+              named(measured(lab, "crowd", method).counts));
+  }
+}
+
+// The twin: each way in which two runs may differ is refused, and said.
+TEST(RunPoint, RefusesRunsThatDiffer) {
+  const PointKey point = key_of(plain_point(NamedScene{"crowd"}, Method::far_pairs));
+  const Outcome good{.pairs = {{1, 2}, {3, 4}}, .counts = RunCounts{}, .device = "cpu"};
+  EXPECT_NO_THROW(require_same(point, good, good));
+  const auto said = [&](const Outcome& other) -> std::string {
+    try {
+      require_same(point, good, other);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where, describe(point));
+      return error.reason;
+    }
+    return "nothing";
+  };
+  Outcome other = good;
+  std::get<RunCounts>(other.counts).missed = 3;
+  EXPECT_TRUE(has_text(said(other), "missed 0 and 3"));
+  other = good;
+  std::get<RunCounts>(other.counts).drawn = DrawnCounts{.queries = 7};
+  EXPECT_TRUE(has_text(said(other), "queries none and 7"));
+  other = good;
+  other.pairs = {{1, 2}, {3, 5}};
+  EXPECT_TRUE(has_text(said(other), "1 and 1 pairs"));
+  other = good;
+  other.device = "another";
+  EXPECT_TRUE(has_text(said(other), "device cpu and another"));
+}
+
+// ----
+
+Record record_at(int resolution, double radius) {
+  Record record;
+  record.options.method = Method::far;
+  record.options.resolution = resolution;
+  record.options.views = "x,y,z";
+  std::vector<ViewReport> views;
+  for (const char* name : {"x", "y", "z"}) {
+    ViewReport view{.name = name, .budget = {}};
+    view.radius_px = radius;
+    views.push_back(view);
+  }
+  record.found.by = views;
+  return record;
+}
+
+// Whether the point is inside the closed convex quadrilateral, by the side of each edge.
+bool inside(const std::array<float, 8>& c, double x, double y) {
+  bool left = true, right = true;
+  for (int i = 0; i < 4; ++i) {
+    const double ax = c[2 * i], ay = c[2 * i + 1];
+    const double bx = c[(2 * i + 2) % 8], by = c[(2 * i + 3) % 8];
+    const double side = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+    left &= side >= 0;
+    right &= side <= 0;
+  }
+  return left || right;
+}
+
+// Every pixel of every view against every proxy.
+Fragments by_all_pixels(const Scene& scene, const Record& record, const Fattener& fattener) {
+  Fragments out;
+  const Regions plan = find_regions(scene);
+  for (const View& view : parse_views(record.options.views)) {
+    const auto window = fit_window(view, plan.places, record.options.resolution);
+    FattenCounts counts;
+    const Drawables drawables =
+        fatten(scene, plan.triangles, *window, fattener, record.found.views()[0].radius_px, counts);
+    out.elements += drawables.elements();
+    for (const Proxy& proxy : drawables.proxies) {
+      for (int j = 0; j < window->height; ++j) {
+        for (int i = 0; i < window->width; ++i) {
+          const double x = i + 0.5 - window->width / 2, y = j + 0.5 - window->height / 2;
+          if (!inside(proxy.corners, x, y)) continue;
+          float entry = 0, exit = 0;
+          ++out.covered;
+          out.solid += fattener.solid.interval(static_cast<float>(x), static_cast<float>(y),
+                                               proxy.solid, entry, exit);
+        }
       }
     }
   }
+  return out;
+}
+
+TEST(Fragments, AreThoseOfEveryPixelTried) {
+  for (const char* name : {"needles:20", "degenerate"}) {
+    const Scene scene = make_builtin_scene(name);
+    const Record record = record_at(48, 0.75);
+    for (const bool exact : {false, true}) {
+      const Fragments fast = count_fragments(scene, record, exact ? "exact" : "obb");
+      const Fragments slow =
+          by_all_pixels(scene, record, exact ? minkowski_fattener() : obb_fattener());
+      EXPECT_GT(slow.solid, 0u);
+      EXPECT_EQ(fast.elements, slow.elements);
+      EXPECT_EQ(fast.covered, slow.covered) << name << (exact ? " exact" : " obb");
+      EXPECT_EQ(fast.solid, slow.solid);
+    }
+  }
+}
+
+TEST(Fragments, AreFewerOfTheSmallerSolidAndMoreOfTheLargerBall) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  const Fragments obb = count_fragments(scene, record_at(128, 0.75), "obb");
+  const Fragments exact = count_fragments(scene, record_at(128, 0.75), "exact");
+  EXPECT_LT(exact.solid, obb.solid);
+  EXPECT_LE(exact.solid, exact.covered);
+  EXPECT_GT(count_fragments(scene, record_at(128, 1.5), "obb").solid, obb.solid);
+}
+
+// ---- Placements stand apart in every view, collide as they are meant to, and are missed where the
+// ball is far too small.
+
+TEST(Placements, LengthsOfIntersections) {
+  const std::array<Vec3, 3> flat = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+  const std::array<Vec3, 3> through = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(-9, 1, 0)};
+  EXPECT_NEAR(intersection_length(flat, through), 1, 1e-12);
+  EXPECT_EQ(intersection_length(through, flat), intersection_length(flat, through));
+  std::array<Vec3, 3> above = through;
+  for (Vec3& p : above) p[2] += 3;
+  EXPECT_EQ(intersection_length(flat, above), 0) << "the twin: they do not meet";
+}
+
+// The two patches of each placement, as a box.
+std::vector<Box> boxes_of(const PlacedPatches& placed) {
+  std::vector<Box> out(placed.placements, Box::empty());
+  const std::size_t half = placed.scene.triangles.size() / 2;
+  for (std::uint32_t t = 0; t < placed.scene.triangles.size(); ++t)
+    for (const Vec3& p : placed.scene.corners(t)) out[t % half / kPatchTriangles].add(p);
+  return out;
+}
+
+// Placements that overlap in the image of a view, two units of room around each.
+int crowded(const std::vector<Box>& boxes, int depth) {
+  int out = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      bool apart = false;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (axis == depth) continue;
+        apart |=
+            boxes[i].lo[axis] > boxes[k].hi[axis] + 2 || boxes[k].lo[axis] > boxes[i].hi[axis] + 2;
+      }
+      out += !apart;
+    }
+  }
+  return out;
+}
+
+TEST(Placements, StandApartInEveryView) {
+  const PatchSource source(make_builtin_scene("random-soup"));
+  for (const bool grazing : {false, true}) {
+    const PlacedPatches placed = source.place(grazing, 1, 160, 1000, 3);
+    ASSERT_EQ(placed.placements, 100u);
+    ASSERT_EQ(placed.scene.triangles.size(), 2 * 100 * kPatchTriangles);
+    std::vector<Box> boxes = boxes_of(placed);
+    for (int depth = 0; depth < 3; ++depth) EXPECT_EQ(crowded(boxes, depth), 0) << depth;
+    boxes[0] = boxes[1];
+    EXPECT_GT(crowded(boxes, 2), 0) << "the twin: two in one place are seen";
+    // Most placements collide, and nothing collides across placements.
+    std::vector<int> collides(placed.placements);
+    for (const TrianglePair& pair : all_colliding_pairs(placed.scene, {.threads = 1}).pairs) {
+      const std::size_t at = pair.a / kPatchTriangles;
+      EXPECT_EQ(pair.b / kPatchTriangles, at + placed.placements);
+      collides[at] = 1;
+    }
+    EXPECT_GT(std::ranges::count(collides, 1), 90) << grazing;
+  }
+}
+
+TEST(Placements, AreTheSameForASeed) {
+  const PatchSource source(make_builtin_scene("random-soup"));
+  const auto vertices = [&](std::uint64_t seed) {
+    return source.place(true, 0.25, 64, 20, seed).scene.vertices;
+  };
+  EXPECT_EQ(vertices(5), vertices(5));
+  EXPECT_NE(vertices(5), vertices(6));
+}
+
+// Rows of other sizes, resolutions and kinds are added up as if each placement were drawn anew.
+TEST(Placements, AreDrawnAnewForWhatIsAddedUp) {
+  const PlacementPoint point{.from = "random-soup",
+                             .grazing = true,
+                             .side = 0x1p-5,
+                             .placements = 500,
+                             .subpixel_bits = 8,
+                             .radius = {},
+                             .resolution = 256};
+  std::set<std::uint64_t> seeds;
+  for (const std::uint64_t seed : {1, 2}) {
+    for (const bool grazing : {false, true}) {
+      for (const double side : {0x1p-5, 0.25, 1.0, 16.0}) {
+        for (const int resolution : {256, 1024, 4096}) {
+          for (const std::uint64_t window : {0, 1, 100}) {
+            PlacementPoint other = point;
+            other.seed = seed;
+            other.grazing = grazing;
+            other.side = side;
+            other.resolution = resolution;
+            seeds.insert(placement_seed(other, window));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seeds.size(), 2u * 2 * 4 * 3 * 3);
+  PlacementPoint other = point;
+  other.subpixel_bits = 0;
+  other.radius = parse_radius("0.5");
+  EXPECT_EQ(placement_seed(other, 3), placement_seed(point, 3)) << "these look at the same ones";
+}
+
+PlacementCounts measured(const RadiusRule& radius, int bits) {
+  Lab lab("native");
+  const PlacementPoint point{.from = "random-soup",
+                             .grazing = true,
+                             .side = 1,
+                             .placements = 500,
+                             .subpixel_bits = bits,
+                             .radius = radius,
+                             .resolution = 256};
+  return std::get<PlacementCounts>(measure_placements(point, lab).counts);
+}
+
+TEST(Placements, AreMissedOnlyBelowTheBudget) {
+  for (const int bits : {0, 4, 8}) {
+    const PlacementCounts budget = measured({}, bits);
+    EXPECT_EQ(budget.placements, 500u);
+    EXPECT_GT(budget.colliding_placements, 400u);
+    EXPECT_TRUE(budget.promises);
+    EXPECT_EQ(budget.missed, 0u) << bits;
+    EXPECT_EQ(budget.radius_px, budget.budget_px);
+  }
+  const PlacementCounts small = measured({.published = false, .factor = 0.1}, 8);
+  EXPECT_FALSE(small.promises);
+  EXPECT_GT(small.missed, 0u) << "the twin: a small ball misses";
+  EXPECT_GT(small.missed_placements, 0u);
+  EXPECT_LE(small.missed_placements, small.colliding_placements);
+  EXPECT_GT(small.largest_miss_px, 0);
 }
 
 }  // namespace

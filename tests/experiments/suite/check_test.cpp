@@ -1,17 +1,9 @@
 // What is refused in a suite: every corruption with its file, its line and its reason.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "experiments/suite/reader.h"
-#include "tests/experiments/suite/suite_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/suite.h"
 
 namespace farcull {
 namespace {
-
-using lab::TestFolder;
 
 /// A change to one file, and what the error has to say about it.
 struct Corruption {
@@ -25,21 +17,21 @@ struct Corruption {
 
 /// Corrupts a suite that is right, with sums that fit where `sums`, and checks the error.
 void expect_refused(const Corruption& corruption, bool sums) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   lab::write_few(folder);
   folder.replace(corruption.file, corruption.old, corruption.by);
   if (sums) lab::write_index(folder);
-  const Error error = error_of([&] { check_suite(folder.path()); });
+  const Error error = error_of([&] { check_suite(folder.folder()); });
   EXPECT_EQ(error.where,
-            folder.at(corruption.named != nullptr ? corruption.named : corruption.file));
+            folder.path(corruption.named != nullptr ? corruption.named : corruption.file));
   EXPECT_EQ(error.line, corruption.line) << error.what();
-  EXPECT_NE(error.reason.find(corruption.reason), std::string::npos) << error.what();
+  EXPECT_TRUE(has_text(error.reason, corruption.reason)) << error.what();
 }
 
 TEST(SuiteCheck, TakesWhatIsRight) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   lab::write_few(folder);
-  const SuiteSummary summary = check_suite(folder.path());
+  const SuiteSummary summary = check_suite(folder.folder());
   ASSERT_EQ(summary.families.size(), 1u);
   EXPECT_EQ(summary.families[0].name, "few");
   EXPECT_EQ(summary.families[0].pairs, 3u);
@@ -79,15 +71,15 @@ TEST(SuiteCheck, RefusesWrongListsOfPairs) {
 }
 
 TEST(SuiteCheck, NamesAPairThatIsMissing) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   lab::write_few(folder);
   folder.replace("meshes/two-1/pairs.csv", "0,0,0,1,2\n", "");
   lab::write_index(folder, 1);
-  Error error = error_of([&] { check_suite(folder.path()); });
-  EXPECT_NE(error.reason.find("has 0 items; suite.txt says 1"), std::string::npos) << error.what();
+  Error error = error_of([&] { check_suite(folder.folder()); });
+  EXPECT_TRUE(has_text(error.reason, "has 0 items; suite.txt says 1")) << error.what();
   lab::write_index(folder, 0);
-  error = error_of([&] { check_suite(folder.path()); });
-  EXPECT_EQ(error.where, folder.at("meshes/two-1/pairs.csv"));
+  error = error_of([&] { check_suite(folder.folder()); });
+  EXPECT_EQ(error.where, folder.path("meshes/two-1/pairs.csv"));
   EXPECT_EQ(error.reason, "the pair 0,0,0,1 collides and is missing");
 }
 
@@ -105,18 +97,18 @@ TEST(SuiteCheck, RefusesChangedFilesByTheirSums) {
 }
 
 TEST(SuiteCheck, RefusesCutAndForeignFiles) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   lab::write_few(folder);
   const std::string whole = folder.read("suite.txt");
   for (std::size_t length = 0; length < whole.size(); length += 7) {
     folder.write("suite.txt", whole.substr(0, length));
-    EXPECT_NE(message_of([&] { read_suite(folder.path()); }), "") << length;
+    EXPECT_NE(message_of([&] { read_suite(folder.folder()); }), "") << length;
   }
   folder.write("suite.txt", whole);
-  EXPECT_EQ(message_of([&] { read_suite(folder.path()); }), "");
+  EXPECT_EQ(message_of([&] { read_suite(folder.folder()); }), "");
   folder.write("pairs/other.txt", "farcull-pairs 1 other\n");
-  const Error error = error_of([&] { check_suite(folder.path()); });
-  EXPECT_EQ(error.where, folder.at("pairs/other.txt"));
+  const Error error = error_of([&] { check_suite(folder.folder()); });
+  EXPECT_EQ(error.where, folder.path("pairs/other.txt"));
 }
 
 /// The error for a file of pairs in which `old` is replaced.
@@ -132,7 +124,7 @@ TEST(SuiteReader, NamesTheLineOfAMalformedPair) {
     const Error error = pairs_error(old, by);
     EXPECT_EQ(error.line, line) << error.what();
     EXPECT_EQ(error.where, "few.txt");
-    EXPECT_NE(error.reason.find(reason), std::string::npos) << error.what();
+    EXPECT_TRUE(has_text(error.reason, reason)) << error.what();
   };
   expect("farcull-pairs 1", "farcull-pairs 2", 1, "the first line");
   expect("few\n", "few and more\n", 1, "the first line");
@@ -177,12 +169,12 @@ TEST(SuiteReader, ReadsHexadecimalNumbersAsTheyWereWritten) {
 }
 
 TEST(SuiteReader, ReadsUnlabelledPairsAndMeshes) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   lab::write_few(folder);
   folder.replace("pairs/few.txt", "crossing", "?");
-  EXPECT_EQ(read_pairs(folder.at("pairs/few.txt")).pairs[0].kind, SuiteKind::unlabelled);
-  std::filesystem::remove(folder.at("meshes/two-1/pairs.csv"));
-  const SuiteMesh mesh = read_mesh(folder.at("meshes/two-1"));
+  EXPECT_EQ(read_pairs(folder.path("pairs/few.txt")).pairs[0].kind, SuiteKind::unlabelled);
+  std::filesystem::remove(folder.path("meshes/two-1/pairs.csv"));
+  const SuiteMesh mesh = read_mesh(folder.path("meshes/two-1"));
   EXPECT_FALSE(mesh.labelled);
   EXPECT_EQ(mesh.name, "two-1");
   EXPECT_EQ(mesh.scene.triangles.size(), 2u);

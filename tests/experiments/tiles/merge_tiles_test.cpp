@@ -1,34 +1,20 @@
 // What is merged is the list of one run; whatever is missing, doubled, foreign or cut short is
 // refused, and then no file is written.
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/base/bytes.h"
-#include "core/base/error.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/tiles/run_tile.h"
+#include "tests/lab/test.h"
+#include "core/base/bytes.h"
 
 namespace farcull {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
 
 constexpr std::size_t kTiles = 3;
 
@@ -54,14 +40,14 @@ class MergeTiles : public testing::Test {
     const TileRun tile = run_tile(source, question, session_);
     const TileList text{
         .text = tile_list(tile, {}), .file = list(k).filename().string(), .columns = {}};
-    write(list(k), text.text);
-    write(record(k), tile_json(tile, &text).dump());
+    write_text(list(k), text.text);
+    write_text(record(k), tile_json(tile, &text).dump());
   }
 
   void change(std::size_t k, const std::function<void(Json&)>& how) {
-    Json json = Json::parse(read(record(k)));
+    Json json = Json::parse(read_text(record(k)));
     how(json);
-    write(record(k), json.dump());
+    write_text(record(k), json.dump());
   }
 
   // The reason for which the records are refused; nothing is left in the folder then.
@@ -80,9 +66,7 @@ class MergeTiles : public testing::Test {
     return "";
   }
   std::string refusal() { return refusal({record(1), record(2), record(3)}); }
-  void expect_refused(const std::string& reason) {
-    EXPECT_NE(refusal().find(reason), std::string::npos) << refusal();
-  }
+  void expect_refused(const std::string& reason) { EXPECT_TRUE(has_text(refusal(), reason)); }
 
   fs::path folder_;
   Session session_{"native"};
@@ -92,7 +76,7 @@ TEST_F(MergeTiles, GiveTheListOfOneRunInAnyOrder) {
   const Scene scene = load_scene({"field:9000"});
   const Record whole = farcull::run(scene, {.device = "native"}, session_);
   const MergedTiles merged = merge_tiles({record(3), record(1), record(2)}, out());
-  EXPECT_EQ(read(out()), pairs_csv(scene, whole));
+  EXPECT_EQ(read_text(out()), pairs_csv(scene, whole));
   EXPECT_EQ(merged.tiles, kTiles);
   EXPECT_EQ(merged.rows, whole.collisions.pairs.size());
   EXPECT_GT(merged.rows, 100);
@@ -105,12 +89,10 @@ TEST_F(MergeTiles, GiveTheListOfOneRunInAnyOrder) {
 }
 
 TEST_F(MergeTiles, RefuseTilesThatAreMissingOrThereTwice) {
-  EXPECT_NE(refusal({record(1), record(3)}).find("of its 3 tiles one is missing: 2"),
-            std::string::npos);
-  EXPECT_NE(refusal({record(2)}).find("2 are missing: 1, 3"), std::string::npos);
-  EXPECT_NE(refusal({record(1), record(2), record(2)}).find("is tile 2 of 3, and so is"),
-            std::string::npos);
-  EXPECT_NE(refusal({record(1), record(2), record(4)}).find("does not exist"), std::string::npos);
+  EXPECT_TRUE(has_text(refusal({record(1), record(3)}), "of its 3 tiles one is missing: 2"));
+  EXPECT_TRUE(has_text(refusal({record(2)}), "2 are missing: 1, 3"));
+  EXPECT_TRUE(has_text(refusal({record(1), record(2), record(2)}), "is tile 2 of 3, and so is"));
+  EXPECT_TRUE(has_text(refusal({record(1), record(2), record(4)}), "does not exist"));
   fs::remove(list(2));
   expect_refused("does not exist, and");
 }
@@ -144,27 +126,27 @@ TEST_F(MergeTiles, NoticeATriangleThatNoTileHas) {
 }
 
 TEST_F(MergeTiles, RefuseListsThatWereCutShortOrChanged) {
-  const std::string whole = read(list(2));
-  write(list(2), whole.substr(0, whole.size() - 3));
+  const std::string whole = read_text(list(2));
+  write_text(list(2), whole.substr(0, whole.size() - 3));
   expect_refused("ends within a line");
-  write(list(2), whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1));
+  write_text(list(2), whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1));
   expect_refused("it was cut short or changed");
-  write(list(2), whole + whole.substr(whole.rfind('\n', whole.size() - 2) + 1));
+  write_text(list(2), whole + whole.substr(whole.rfind('\n', whole.size() - 2) + 1));
   expect_refused("is not sorted");
   std::string other = whole;
   other[other.size() - 2] = other[other.size() - 2] == '9' ? '8' : '9';
-  write(list(2), other);
+  write_text(list(2), other);
   EXPECT_FALSE(refusal().empty());
-  write(list(2), "");
+  write_text(list(2), "");
   expect_refused("does not begin as its record says");
-  write(list(2), whole);
+  write_text(list(2), whole);
   EXPECT_EQ(merge_tiles({record(1), record(2), record(3)}, out()).tiles, kTiles);
 }
 
 TEST_F(MergeTiles, RefuseAPairThatTwoTilesHave) {
   // As if tile 2 were tile 1 once more: all is consistent but for the pairs.
-  write(list(2), read(list(1)));
-  const Json one = Json::parse(read(record(1)));
+  write_text(list(2), read_text(list(1)));
+  const Json one = Json::parse(read_text(record(1)));
   change(2, [&](Json& json) {
     json["tile"]["list"]["rows"] = one["tile"]["list"]["rows"];
     json["tile"]["list"]["sha256"] = one["tile"]["list"]["sha256"];
@@ -173,9 +155,9 @@ TEST_F(MergeTiles, RefuseAPairThatTwoTilesHave) {
 }
 
 TEST_F(MergeTiles, RefuseWhatIsNoRecord) {
-  write(record(2), "{\"tile\": ");
+  write_text(record(2), "{\"tile\": ");
   expect_refused("is no JSON, or was cut short");
-  write(record(2), "{}");
+  write_text(record(2), "{}");
   expect_refused("it has no entry `tile`");
   run(2, kTiles, "field:9000");
   change(2, [](Json& json) { json["tile"].erase("k"); });
@@ -197,17 +179,17 @@ TEST_F(MergeTiles, RefuseWhatIsNoRecord) {
 }
 
 TEST_F(MergeTiles, DoNotWriteOverWhatIsRead) {
-  const std::string before = read(list(1));
+  const std::string before = read_text(list(1));
   EXPECT_THROW(merge_tiles({record(1), record(2), record(3)}, list(1).string()), Error);
   EXPECT_THROW(merge_tiles({record(1), record(2), record(3)}, out(), list(1).string()), Error);
   EXPECT_FALSE(fs::exists(out()));
-  EXPECT_EQ(read(list(1)), before);
+  EXPECT_EQ(read_text(list(1)), before);
 }
 
 // Longer than what is read, and written, at a time.
 TEST_F(MergeTiles, JoinLongLists) {
   constexpr std::size_t kRows = 100'000;
-  const std::string columns = Json::parse(read(record(1)))["tile"]["list"]["columns"];
+  const std::string columns = Json::parse(read_text(record(1)))["tile"]["list"]["columns"];
   std::array<std::string, kTiles> texts;
   std::array<std::size_t, kTiles> rows{};
   texts.fill(columns + "\n");
@@ -222,7 +204,7 @@ TEST_F(MergeTiles, JoinLongLists) {
   }
   for (std::size_t k = 1; k <= kTiles; ++k) {
     ASSERT_GT(texts[k - 1].size(), std::size_t{1} << 20);
-    write(list(k), texts[k - 1]);
+    write_text(list(k), texts[k - 1]);
     Sha256 hash;
     hash.add(texts[k - 1]);
     change(k, [&](Json& json) {
@@ -231,12 +213,12 @@ TEST_F(MergeTiles, JoinLongLists) {
     });
   }
   EXPECT_EQ(merge_tiles({record(1), record(2), record(3)}, out()).rows, kRows * kTiles);
-  EXPECT_TRUE(read(out()) == whole);
+  EXPECT_TRUE(read_text(out()) == whole);
 }
 
 TEST_F(MergeTiles, PromiseWhatEveryTilePromises) {
   EXPECT_EQ(Json::parse(merge_tiles({record(1), record(2), record(3)}, out()).json)["promises"],
-            Json::parse(read(record(1)))["promises"]);
+            Json::parse(read_text(record(1)))["promises"]);
   change(2, [](Json& json) { json["promises"] = false; });
   EXPECT_FALSE(merge_tiles({record(1), record(2), record(3)}, out()).promises);
 }

@@ -1,17 +1,86 @@
 // The lists of all tiles together are the list of one run, byte for byte.
 #include "experiments/tiles/run_tile.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
-#include "core/scene/scene.h"
+#include "core/base/random.h"
+#include "experiments/record/output.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/tiles/tile_lab.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
+
+/// Up to 4 objects of up to 6 triangles on whole numbers from 0 to 4: most boxes begin where others
+/// end, and most cuts lie on such a place. Some triangles are degenerate, some vertices are shared.
+Scene small_scene(RandomNumbers& random) {
+  Scene scene;
+  scene.name = "small";
+  const auto objects = 1 + random.below(4u);
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    const std::uint32_t vertices = 3 + random.below(8u), triangles = random.below(7u);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+      Vec3 p;
+      for (int i = 0; i < 3; ++i) p[i] = random.below(5);
+      scene.vertices.push_back(p);
+    }
+    scene.objects.push_back({.name = "o" + std::to_string(o),
+                             .first_triangle = static_cast<std::uint32_t>(scene.triangles.size()),
+                             .triangle_count = triangles,
+                             .self = random.below(2) == 0});
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::uint32_t& v : corners) v = first + random.below(vertices);
+      scene.triangles.push_back(corners);
+      scene.source_face.push_back(t / 2);
+    }
+  }
+  return scene;
+}
+
+/// One part for each object, with all vertices of the scene in it.
+SceneSource source_of(const Scene& scene) {
+  return [scene](const TakePart& take) {
+    for (const Object& object : scene.objects) {
+      Scene part;
+      part.name = scene.name;
+      part.vertices = scene.vertices;
+      const auto from = static_cast<std::ptrdiff_t>(object.first_triangle);
+      const auto to = from + static_cast<std::ptrdiff_t>(object.triangle_count);
+      part.triangles.assign(scene.triangles.begin() + from, scene.triangles.begin() + to);
+      part.source_face.assign(scene.source_face.begin() + from, scene.source_face.begin() + to);
+      part.objects = {object};
+      part.objects[0].first_triangle = 0;
+      take(part);
+    }
+    return scene.ignored;
+  };
+}
+
+/// The four numbers at the beginning of a row.
+std::array<std::uint64_t, 4> key_of(const std::string& row) {
+  std::array<std::uint64_t, 4> key{};
+  std::istringstream in(row);
+  char comma = 0;
+  for (std::uint64_t& number : key) in >> number >> comma;
+  return key;
+}
+
+/// Several lists with one header as one, in order.
+std::string joined(const std::vector<std::string>& lists) {
+  std::vector<std::string> rows;
+  std::string header;
+  for (const std::string& list : lists) {
+    std::istringstream in(list);
+    std::getline(in, header);
+    for (std::string row; std::getline(in, row);) rows.push_back(row);
+  }
+  std::ranges::sort(rows, {}, key_of);
+  std::string out = header + "\n";
+  for (const std::string& row : rows) out += row + "\n";
+  return out;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -122,9 +191,7 @@ TEST(Tiles, AreCutByAFixedRuleIntoEvenParts) {
   scene.name = "even";
   for (std::uint32_t t = 0; t < 100'000; ++t) {  // more than the sample holds
     const double x = 100 * random.unit(), y = random.unit();
-    for (int k = 0; k < 3; ++k) scene.vertices.emplace_back(x + 0.1 * k, y, 0);
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
+    add_triangle(scene, {Vec3(x, y, 0), Vec3(x + 0.1 * 1, y, 0), Vec3(x + 0.1 * 2, y, 0)});
   }
   scene.objects = {{"a", 0, 50'000}, {"b", 50'000, 50'000}};
   const Census census = take_census(source_of(scene), 0);
@@ -268,6 +335,92 @@ TEST(Tiles, ReadAScenePartByPartAsAtOnce) {
   expect_same({"field:3000@seed9"}, 1);
   expect_same({"field:3000@far"}, 1);
   expect_same({"two-spheres"}, 1);
+}
+
+// ---- Each pair of triangles whose boxes overlap belongs to exactly one tile, and both triangles
+// meet that tile (docs/tiles.md). Twins with one word of the definitions changed lose or repeat
+// pairs.
+
+// The definitions, as they are or changed.
+struct Rules {
+  std::function<bool(const Slab&, const Box&)> meets = farcull::meets;
+  std::function<bool(const Slab&, double)> holds = farcull::holds;
+  std::function<double(double, double)> place = [](double a, double b) { return std::max(a, b); };
+};
+
+struct Faults {
+  int lost = 0, repeated = 0;
+};
+
+// Boxes and cuts on whole numbers, which are equal often.
+Faults faults_of(const Rules& rules) {
+  RandomNumbers random(1);
+  Faults out;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::vector<Box> boxes(4);
+    for (Box& box : boxes) {
+      for (int i = 0; i < 3; ++i) {
+        box.lo[i] = random.below(5);
+        box.hi[i] = box.lo[i] + random.below(3);
+      }
+    }
+    std::vector<double> cuts(random.below(std::size_t{5}));
+    for (double& cut : cuts) cut = random.below(6);
+    std::ranges::sort(cuts);
+    const int axis = random.below(3);
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (!overlap(boxes[a], boxes[b])) continue;
+        int times = 0;
+        for (std::size_t k = 0; k <= cuts.size(); ++k) {
+          const Slab slab = slab_of(axis, cuts, k);
+          times += rules.meets(slab, boxes[a]) && rules.meets(slab, boxes[b]) &&
+                   rules.holds(slab, rules.place(boxes[a].lo[axis], boxes[b].lo[axis]));
+        }
+        out.lost += times == 0;
+        out.repeated += times > 1;
+      }
+    }
+  }
+  return out;
+}
+
+TEST(Tiles, EachPairBelongsToOneTile) {
+  const Faults faults = faults_of({});
+  EXPECT_EQ(faults.lost, 0);
+  EXPECT_EQ(faults.repeated, 0);
+}
+
+TEST(Tiles, ATriangleThatEndsOnTheCutMustNotBeDropped) {
+  const Faults faults = faults_of({.meets = [](const Slab& slab, const Box& box) {
+    return box.lo[slab.axis] < slab.to && box.hi[slab.axis] > slab.from;
+  }});
+  EXPECT_GT(faults.lost, 0);
+}
+
+TEST(Tiles, TilesMustNotHoldBothEnds) {
+  const Faults faults = faults_of(
+      {.meets =
+           [](const Slab& slab, const Box& box) {
+             return box.lo[slab.axis] <= slab.to && box.hi[slab.axis] >= slab.from;
+           },
+       .holds = [](const Slab& slab, double at) { return at >= slab.from && at <= slab.to; }});
+  EXPECT_EQ(faults.lost, 0);
+  EXPECT_GT(faults.repeated, 0);
+}
+
+TEST(Tiles, ThePlaceOfAPairIsTheLaterBeginning) {
+  const Faults faults = faults_of({.place = [](double a, double b) { return std::min(a, b); }});
+  EXPECT_GT(faults.lost, 0);
+}
+
+TEST(Tiles, TheFirstAndTheLastTileHaveNoEnd) {
+  const std::vector<double> cuts = {1, 1, 2};
+  EXPECT_TRUE(holds(slab_of(0, cuts, 0), -HUGE_VAL));
+  EXPECT_FALSE(holds(slab_of(0, cuts, 0), 1));
+  EXPECT_FALSE(holds(slab_of(0, cuts, 1), 1));  // between equal cuts lies nothing
+  EXPECT_TRUE(holds(slab_of(0, cuts, 2), 1));
+  EXPECT_TRUE(holds(slab_of(0, cuts, 3), 1e308));
 }
 
 }  // namespace

@@ -1,23 +1,9 @@
 // Certificates for a clearance: distances decided in integers, a distance of exactly the clearance
 // counts, and one unit in the last place more or less does not go unseen.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <random>
-#include <sstream>
-#include <string>
-#include <utility>
-
 #include "core/base/error.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
-#include "tests/verify/certificate/certificate_case.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/certificates.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 
@@ -29,9 +15,8 @@ using reference::Triangle;
 std::string text(const Triangle& a, const Triangle& b, double clearance) {
   std::ostringstream out;
   out << std::hexfloat;
-  for (const Triangle& t : {a, b}) {
+  for (const Triangle& t : {a, b})
     for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  }
   out << clearance;
   return out.str();
 }
@@ -76,10 +61,9 @@ TEST(IntegerClearance, ADirectionOrTwoPointsOnSmallGrids) {
   for (int n = 0; n < 10'000; ++n) {
     std::array<Triangle, 2> t;
     const int flat = n % 3 == 0 ? 1 : 3;
-    for (Triangle& corners : t) {
+    for (Triangle& corners : t)
       for (Vec3& p : corners)
         p = Vec3(random() % 5, random() % 3, static_cast<double>(random() % flat));
-    }
     const double clearance = clearances[random() % clearances.size()];
     IntegerPair pair(t[0], t[1], clearance);
     const bool expected = reference::within(t[0], t[1], clearance);
@@ -352,8 +336,7 @@ TEST(CertificateClearance, EveryKindOfFieldChangedIsCaught) {
       changed.evidence = other.evidence;
       std::size_t at = 0;
       for (const TrianglePair& pair : box_pairs(c.scene, changed.clearance)) {
-        if (std::binary_search(c.meeting.begin(), c.meeting.end(), pair))
-          changed.evidence[at] = kKept | kMeets;
+        if (std::ranges::binary_search(c.meeting, pair)) changed.evidence[at] = kKept | kMeets;
         ++at;
       }
       recount(changed);
@@ -376,8 +359,8 @@ TEST(CertificateClearance, OfARunThatMissedAPairIsRefuted) {
   EXPECT_EQ(result.verdict, Verdict::refuted);
   EXPECT_EQ(result.culled_meeting, c.meeting.size() - fewer.size());
   ASSERT_TRUE(result.pair);
-  EXPECT_FALSE(std::binary_search(fewer.begin(), fewer.end(), *result.pair));
-  EXPECT_TRUE(std::binary_search(c.meeting.begin(), c.meeting.end(), *result.pair));
+  EXPECT_FALSE(std::ranges::binary_search(fewer, *result.pair));
+  EXPECT_TRUE(std::ranges::binary_search(c.meeting, *result.pair));
 }
 
 TEST(CertificateClearance, KeptPairsWhoseBoxesAreFartherApartNeedNoEvidence) {
@@ -403,11 +386,11 @@ TEST(CertificateClearance, TextKeepsEveryBit) {
     certificate.clearance = clearance;
     const std::string text = to_text(certificate);
     EXPECT_EQ(parse_certificate(text, "text"), certificate) << clearance;
-    EXPECT_NE(text.find("\"version\": 4,"), std::string::npos);
+    EXPECT_TRUE(has_text(text, "\"version\": 4,"));
   }
   certificate.clearance = 0;
-  EXPECT_NE(to_text(certificate).find("\"version\": 3,"), std::string::npos);
-  EXPECT_EQ(to_text(certificate).find("clearance"), std::string::npos);
+  EXPECT_TRUE(has_text(to_text(certificate), "\"version\": 3,"));
+  EXPECT_FALSE(has_text(to_text(certificate), "clearance"));
 }
 
 // ---- lists without a certificate ----
@@ -442,6 +425,98 @@ TEST(CertificateOfAList, ProvesTheRightListAlone) {
     EXPECT_EQ(wrong.pair, c.pairs[i]);
     EXPECT_EQ(wrong.meeting, c.meeting);  // decided by the checker, whatever the list says
   }
+}
+
+// ---- Certificates of scenes whose objects are tested against themselves: neighbours.
+
+/// Every object against itself; with neighbours that meet and others.
+const Case& folded() {
+  static const Case folded = [] {
+    std::mt19937 random(4);
+    std::vector<std::vector<reference::Triangle>> objects(3);
+    for (auto& triangles : objects) {
+      triangles.resize(60);
+      for (reference::Triangle& t : triangles) {
+        const Vec3 corner(random() % 4, random() % 4, random() % 4);
+        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+      }
+    }
+    Scene scene = reference::welded(reference::scene_of(objects), true);
+    for (Object& object : scene.objects) object.self = true;
+    return Case(std::move(scene));
+  }();
+  return folded;
+}
+
+TEST(CertificateSelf, CountsNeighboursApart) {
+  const Case& c = folded();
+  const CheckResult result = c.check(c.certificate);
+  EXPECT_EQ(result.verdict, Verdict::proved) << result.reason;
+  EXPECT_EQ(result.found, c.certificate.claims);
+  EXPECT_EQ(result.found.neighbours, c.neighbours);
+  EXPECT_EQ(result.found.meeting, c.meeting.size());
+  EXPECT_EQ(result.found.separated, c.pairs.size() - c.meeting.size() - c.neighbours);
+  EXPECT_GT(c.neighbours, 100u);
+}
+
+TEST(CertificateSelf, EveryFalseByteOfNeighboursIsCaught) {
+  const Case& c = folded();
+  int meeting = 0, apart = 0;
+  for (std::size_t i = 0; i < c.pairs.size() && meeting + apart < 40; ++i) {
+    if (!reference::neighbours(c.scene, c.pairs[i])) continue;
+    const bool meets = c.meets(i);
+    ++(meets ? meeting : apart);
+    for (const int claim : {0, 37, static_cast<int>(kMeets), static_cast<int>(kNeighbours), 40}) {
+      if (claim == (meets ? kMeets : kNeighbours)) continue;
+      Certificate changed = c.certificate;
+      changed.evidence[i] = static_cast<std::uint8_t>(kKept | claim);
+      recount(changed);
+      const CheckResult result = c.check(changed);
+      const bool refuted = meets ? claim != 40 : claim == kMeets;
+      EXPECT_EQ(result.verdict, refuted ? Verdict::refuted : Verdict::not_proved) << claim;
+      EXPECT_EQ(result.pair, c.pairs[i]);
+    }
+    if (!meets) continue;
+    Certificate culled = c.certificate;  // a culled pair of neighbours that meets
+    culled.evidence[i] = kNeighbours;
+    recount(culled);
+    EXPECT_EQ(c.check(culled).verdict, Verdict::refuted);
+    EXPECT_EQ(c.check(culled).culled_meeting, 1u);
+  }
+  EXPECT_GT(meeting, 2);
+  EXPECT_GT(apart, 10);
+}
+
+// For all others the byte means nothing, and a run that lost a pair of neighbours says so itself.
+TEST(CertificateSelf, NeighboursAreOfOneObjectAndALostPairRefutes) {
+  Scene scene = folded().scene;
+  for (Object& object : scene.objects) object.self = false;
+  const Case other(scene);
+  EXPECT_EQ(other.certificate.claims.neighbours, 0u);
+  EXPECT_EQ(other.check(folded().certificate).verdict, Verdict::not_proved);  // another scene
+  const auto apart = std::ranges::find_if(other.pairs, [&](const auto& pair) {
+    return !std::ranges::binary_search(other.meeting, pair);
+  });
+  ASSERT_NE(apart, other.pairs.end());
+  Certificate changed = other.certificate;
+  changed.evidence[static_cast<std::size_t>(apart - other.pairs.begin())] = kNeighbours;
+  recount(changed);
+  EXPECT_EQ(other.check(changed).verdict, Verdict::not_proved);
+
+  const Case& c = folded();
+  std::vector<TrianglePair> kept, colliding;
+  std::optional<TrianglePair> lost;
+  for (const TrianglePair& pair : c.meeting)
+    if (!lost && reference::neighbours(c.scene, pair))
+      lost = pair;
+    else
+      kept.push_back(pair);
+  const CheckResult culled = c.check(make_certificate(c.scene, kept, kept, {}));
+  EXPECT_EQ(culled.verdict, Verdict::refuted);
+  EXPECT_EQ(culled.pair, lost);
+  const CheckResult wrong = c.check(make_certificate(c.scene, c.meeting, kept, {}));
+  EXPECT_EQ(wrong.verdict, Verdict::refuted);
+  EXPECT_EQ(wrong.pair, lost);
 }
 
 }  // namespace

@@ -2,20 +2,10 @@
 #include "verify/certificate/certificate.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <limits>
-#include <optional>
-#include <random>
-#include <string>
-
-#include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
-#include "tests/verify/certificate/certificate_case.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/certificates.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/certificate/pair_list.h"
@@ -65,9 +55,8 @@ TEST(Certificate, NamesWhatItCannotAttest) {
   std::string all;
   for (const std::string& line : result.unattested) all += line + "\n";
   for (const char* what :
-       {"method", "far", "resolution", "512", "views", "radius", "device", "renderer", "time"}) {
-    EXPECT_NE(all.find(what), std::string::npos) << what;
-  }
+       {"method", "far", "resolution", "512", "views", "radius", "device", "renderer", "time"})
+    EXPECT_TRUE(has_text(all, what)) << what;
 }
 
 // ---- a hundred changes ----
@@ -220,7 +209,7 @@ TEST(Certificate, AnotherSceneIsNotProved) {
        {moved, regrouped, make_builtin_scene("two-tori"), make_builtin_scene("two-spheres@far")}) {
     const CheckResult result = check_certificate(c.certificate, other);
     EXPECT_EQ(result.verdict, Verdict::not_proved);
-    EXPECT_NE(result.reason.find("another scene"), std::string::npos) << result.reason;
+    EXPECT_TRUE(has_text(result.reason, "another scene"));
     // The hash is for the reader. Where it lies, the evidence is still held against the scene.
     Certificate forged = c.certificate;
     forged.scene = {other.name, other.objects.size(), other.triangles.size(), scene_hash(other)};
@@ -280,7 +269,7 @@ TEST(Certificate, OfARunThatMissedAPairIsRefuted) {
   for (const std::size_t missed : {std::size_t{0}, c.meeting.size() / 2, c.meeting.size() - 1}) {
     std::vector<TrianglePair> kept = c.kept;
     std::vector<TrianglePair> colliding = c.meeting;
-    kept.erase(std::find(kept.begin(), kept.end(), c.meeting[missed]));
+    kept.erase(std::ranges::find(kept, c.meeting[missed]));
     colliding.erase(colliding.begin() + static_cast<std::ptrdiff_t>(missed));
     const CheckResult result = c.check(make_certificate(c.scene, kept, colliding, some_run()));
     EXPECT_EQ(result.verdict, Verdict::refuted);
@@ -298,10 +287,10 @@ TEST(Certificate, OfARunWithWrongExactTestsIsRefuted) {
   EXPECT_EQ(lost.pair, c.meeting[5]);
 
   std::vector<TrianglePair> more = c.meeting;
-  const auto disjoint = std::find_if(c.kept.begin(), c.kept.end(), [&](const TrianglePair& pair) {
-    return !std::binary_search(c.meeting.begin(), c.meeting.end(), pair);
+  const auto disjoint = std::ranges::find_if(c.kept, [&](const TrianglePair& pair) {
+    return !std::ranges::binary_search(c.meeting, pair);
   });
-  more.insert(std::lower_bound(more.begin(), more.end(), *disjoint), *disjoint);
+  more.insert(std::ranges::lower_bound(more, *disjoint), *disjoint);
   const CheckResult invented = c.check(make_certificate(c.scene, c.kept, more, some_run()));
   EXPECT_EQ(invented.verdict, Verdict::refuted);
   EXPECT_EQ(invented.pair, *disjoint);
@@ -333,14 +322,13 @@ TEST(Certificate, ForgedForARunThatMissedPairsProvesNothingOfTheRun) {
   EXPECT_EQ(refuted.culled_meeting, c.meeting.size());
 
   Certificate forged = honest;
-  for (std::uint8_t& byte : forged.evidence) {
+  for (std::uint8_t& byte : forged.evidence)
     if (byte == kMeets) byte |= kKept;
-  }
   recount(forged);
   forged.run.method = "far";
   const CheckResult other_list = c.check(forged);
   EXPECT_EQ(other_list.verdict, Verdict::not_proved);
-  EXPECT_NE(other_list.reason.find("another list of pairs"), std::string::npos);
+  EXPECT_TRUE(has_text(other_list.reason, "another list of pairs"));
   EXPECT_FALSE(other_list.pair.has_value());
   EXPECT_EQ(other_list.meeting, c.meeting);
 
@@ -354,7 +342,7 @@ TEST(Certificate, ForgedForARunThatMissedPairsProvesNothingOfTheRun) {
   EXPECT_NE(proved.list_sha256, honest.list_sha256);
   ASSERT_GE(proved.unattested.size(), 2u);
   EXPECT_EQ(proved.unattested[0], "that the method was far");
-  EXPECT_NE(proved.unattested[1].find("which pairs the run kept"), std::string::npos);
+  EXPECT_TRUE(has_text(proved.unattested[1], "which pairs the run kept"));
 }
 
 // ---- the text ----
@@ -407,11 +395,10 @@ std::string changed_text(const std::string& from, const std::string& to) {
 void expect_refused(const std::string& text, const std::string& reason) {
   const Error error = error_of([&] { parse_certificate(text, "some/file.json"); });
   EXPECT_EQ(error.where, "some/file.json");
-  EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
+  EXPECT_TRUE(has_text(error.reason, reason));
   EXPECT_LT(error.reason.size(), 300u);
-  EXPECT_TRUE(std::all_of(error.reason.begin(), error.reason.end(), [](char c) {
-    return c >= ' ' && c <= '~';
-  })) << error.reason;
+  EXPECT_TRUE(std::ranges::all_of(error.reason, [](char c) { return c >= ' ' && c <= '~'; }))
+      << error.reason;
 }
 
 TEST(CertificateText, RefusesWhatIsNoJson) {
@@ -488,8 +475,7 @@ TEST(CertificateText, RandomChangesOfBytesNeverCrash) {
   const Case c(make_builtin_scene("degenerate"));
   const std::string text = to_text(c.certificate);
   std::mt19937_64 random(20240609);
-  int refused = 0;
-  int parsed = 0;
+  int refused = 0, parsed = 0;
   for (int n = 0; n < 40'000; ++n) {
     std::string changed = text;
     for (std::uint64_t k = random() % 4 + 1; k-- > 0;) {

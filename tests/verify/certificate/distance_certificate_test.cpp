@@ -1,16 +1,7 @@
 // Certificates of right distances are proved, and forged ones are not.
 #include "verify/certificate/distance_certificate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <random>
-
-#include "core/base/error.h"
-#include "tests/core/base/trials.h"
-#include "tests/experiments/system/error_of.h"
-#include "tests/verify/certificate/distance_case.h"
+#include "tests/lab/certificates.h"
 
 namespace farcull {
 namespace {
@@ -34,9 +25,8 @@ Scene random_scene(std::mt19937_64& random) {
     for (reference::Triangle& t : object) {
       Vec3 at(0, 0, 0);
       for (int k = 0; k < 3; ++k) at[k] = grid ? below(6) : 8 * unit();
-      for (Vec3& p : t) {
+      for (Vec3& p : t)
         for (int k = 0; k < 3; ++k) p[k] = scale * (at[k] + (grid ? below(3) : unit()));
-      }
     }
   }
   Scene scene = reference::scene_of(objects);

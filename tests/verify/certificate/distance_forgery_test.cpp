@@ -1,14 +1,8 @@
 // Certificates of distances with one thing changed are not proved: what is false is refuted, what
 // is not as the page says is left unproved, and what cannot be read is an Error.
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
-#include "core/base/error.h"
-#include "tests/verify/certificate/distance_case.h"
+#include "tests/lab/certificates.h"
 #include "verify/certificate/distance_certificate.h"
 
 namespace farcull {
@@ -60,6 +54,15 @@ Outcome outcome_of(const std::string& text, const Scene& scene) {
   }
 }
 
+Json listing(std::array<int, 2> objects, std::array<int, 2> triangles, const char* squared,
+             std::array<const char*, 2> features) {
+  return {{"objects", objects},
+          {"triangles", triangles},
+          {"squared", squared},
+          {"features", features},
+          {"inside", nullptr}};
+}
+
 /// Changes the JSON of certificates of one scene, and counts the kinds of changes.
 class Forger {
  public:
@@ -92,9 +95,8 @@ class Forger {
 
 /// Of the entry of these objects.
 Json& entry(Json& json, unsigned a, unsigned b) {
-  for (Json& one : json["distances"]) {
+  for (Json& one : json["distances"])
     if (one["objects"] == Json{a, b}) return one;
-  }
   throw std::logic_error("no such entry");
 }
 
@@ -124,11 +126,7 @@ void forge_claims(Forger& f) {
     feature = "edge " + feature.get<std::string>().substr(7);
   });
   f.expect("a farther pair with its distance", Outcome::refuted, objects, [](Json& j) {
-    j["distances"][2] = {{"objects", {0, 3}},
-                         {"triangles", {0, 3}},
-                         {"squared", "317/4"},
-                         {"features", {"vertex 1", "vertex 0"}},
-                         {"inside", nullptr}};
+    j["distances"][2] = listing({0, 3}, {0, 3}, "317/4", {"vertex 1", "vertex 0"});
   });
   f.expect("another pair that is as near", Outcome::not_proved, objects, [&](Json& j) {
     const DistanceEntry other = f.right.entry({1, 3});
@@ -145,11 +143,8 @@ void forge_claims(Forger& f) {
   f.expect("two distances exchanged", Outcome::refuted, objects,
            [](Json& j) { std::swap(entry(j, 0, 1)["squared"], entry(j, 1, 2)["squared"]); });
   f.expect("one object twice", Outcome::not_proved, objects, [](Json& j) {
-    j["distances"].insert(j["distances"].begin(), Json{{"objects", {0, 0}},
-                                                       {"triangles", {0, 1}},
-                                                       {"squared", "0/1"},
-                                                       {"features", {"vertex 1", "vertex 1"}},
-                                                       {"inside", nullptr}});
+    j["distances"].insert(j["distances"].begin(),
+                          listing({0, 0}, {0, 1}, "0/1", {"vertex 1", "vertex 1"}));
   });
 }
 
@@ -209,27 +204,15 @@ void forge_completeness(Forger& f) {
   f.expect("two entries exchanged", Outcome::not_proved, objects,
            [](Json& j) { std::swap(j["distances"][0], j["distances"][1]); });
   f.expect("neighbours", Outcome::not_proved, all, [](Json& j) {
-    Json& list = j["distances"];
-    list.insert(list.end() - 1, Json{{"objects", {3, 3}},
-                                     {"triangles", {0, 1}},
-                                     {"squared", "0/1"},
-                                     {"features", {"vertex 1", "vertex 1"}},
-                                     {"inside", nullptr}});
+    j["distances"].insert(j["distances"].end() - 1,
+                          listing({3, 3}, {0, 1}, "0/1", {"vertex 1", "vertex 1"}));
   });
   f.expect("inside an object that is not self", Outcome::not_proved, all, [](Json& j) {
-    j["distances"].insert(j["distances"].begin(), Json{{"objects", {0, 0}},
-                                                       {"triangles", {0, 1}},
-                                                       {"squared", "0/1"},
-                                                       {"features", {"vertex 1", "vertex 1"}},
-                                                       {"inside", nullptr}});
+    j["distances"].insert(j["distances"].begin(),
+                          listing({0, 0}, {0, 1}, "0/1", {"vertex 1", "vertex 1"}));
   });
   f.expect("a triangle and itself", Outcome::not_proved, all, [](Json& j) {
-    Json& list = j["distances"];
-    list.push_back({{"objects", {3, 3}},
-                    {"triangles", {3, 3}},
-                    {"squared", "0/1"},
-                    {"features", {"vertex 0", "vertex 0"}},
-                    {"inside", nullptr}});
+    j["distances"].push_back(listing({3, 3}, {3, 3}, "0/1", {"vertex 0", "vertex 0"}));
   });
 }
 

@@ -1,18 +1,10 @@
 // The integer pair agrees with rational arithmetic, direction by direction.
 #include "verify/certificate/integer_pair.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <sstream>
-#include <string>
-
 #include "experiments/generators/pair_generators.h"
 #include "experiments/lemma/lemma.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"
 
@@ -24,9 +16,8 @@ using reference::Triangle;
 std::string text(const Triangle& a, const Triangle& b) {
   std::ostringstream out;
   out << std::hexfloat;
-  for (const Triangle& t : {a, b}) {
+  for (const Triangle& t : {a, b})
     for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  }
   return out.str();
 }
 
@@ -34,14 +25,9 @@ std::string text(const Triangle& a, const Triangle& b) {
 bool page_separates(const Triangle& s, const Triangle& t, int direction) {
   using Integer = mpz_class;
   using V = reference::Vector<Integer>;
-  const auto convert = [](double x) {
-    int exponent = 0;
-    mpz_class mantissa(std::ldexp(std::frexp(x, &exponent), 53));
-    const int shift = exponent - 53 + 1074;
-    return shift >= 0 ? mpz_class(mantissa << shift) : mpz_class(mantissa >> -shift);
-  };
-  const std::array<V, 3> a = reference::converted(s, convert);
-  const std::array<V, 3> b = reference::converted(t, convert);
+  const std::array<V, 3> a = reference::converted(s, reference::scaled);
+  const std::array<V, 3> b = reference::converted(t, reference::scaled);
+  const auto gap = [&](const V& d) { return reference::gap(a, b, d) > 0; };
   const auto edge = [](const std::array<V, 3>& c, int i) {
     return reference::minus(c[(i + 1) % 3], c[i]);
   };
@@ -51,16 +37,15 @@ bool page_separates(const Triangle& s, const Triangle& t, int direction) {
     return V{Integer(w[0] * ee - e[0] * we), Integer(w[1] * ee - e[1] * we),
              Integer(w[2] * ee - e[2] * we)};
   };
-  if (direction == 0) return reference::gap(a, b, reference::cross(edge(a, 0), edge(a, 1)));
-  if (direction == 1) return reference::gap(a, b, reference::cross(edge(b, 0), edge(b, 1)));
+  if (direction == 0) return gap(reference::cross(edge(a, 0), edge(a, 1)));
+  if (direction == 1) return gap(reference::cross(edge(b, 0), edge(b, 1)));
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const V w = reference::minus(b[j], a[i]);
-      if (direction == 2 + 3 * i + j)
-        return reference::gap(a, b, reference::cross(edge(a, i), edge(b, j)));
-      if (direction == 11 + 3 * i + j) return reference::gap(a, b, perpendicular(w, edge(a, i)));
-      if (direction == 20 + 3 * i + j) return reference::gap(a, b, perpendicular(w, edge(b, j)));
-      if (direction == 29 + 3 * i + j) return reference::gap(a, b, w);
+      if (direction == 2 + 3 * i + j) return gap(reference::cross(edge(a, i), edge(b, j)));
+      if (direction == 11 + 3 * i + j) return gap(perpendicular(w, edge(a, i)));
+      if (direction == 20 + 3 * i + j) return gap(perpendicular(w, edge(b, j)));
+      if (direction == 29 + 3 * i + j) return gap(w);
     }
   }
   throw std::logic_error("no such direction");
@@ -161,10 +146,9 @@ TEST(IntegerPair, ADirectionOrAPointForEveryPairOnSmallGrids) {
   for (int n = 0; n < 60'000; ++n) {
     std::array<Triangle, 2> t;
     const int flat = n % 3 == 0 ? 1 : 3;  // every third pair in one plane
-    for (Triangle& corners : t) {
+    for (Triangle& corners : t)
       for (Vec3& p : corners)
         p = Vec3(random() % 3, random() % 3, static_cast<double>(random() % flat));
-    }
     IntegerPair pair(t[0], t[1]);
     const bool expected = reference::intersects(t[0], t[1]);
     ASSERT_EQ(pair.separating_direction().has_value(), !expected) << text(t[0], t[1]);

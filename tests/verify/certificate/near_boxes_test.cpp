@@ -1,16 +1,8 @@
 // Boxes that are proved far apart are, exactly; and what is not proved is nearly as near.
 #include "verify/certificate/box_pairs.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <set>
-
-#include "tests/core/base/trials.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -141,9 +133,8 @@ TEST(NearBoxes, AreAllPairsThatAreNotProvedFar) {
       const FarBoxes far(length);
       std::set<TrianglePair> expected;
       for (std::uint32_t a = 0; a < 150; ++a) {
-        for (std::uint32_t b = other == 0 ? a + 1 : 150; b < (other == 0 ? 150u : 300u); ++b) {
+        for (std::uint32_t b = other == 0 ? a + 1 : 150; b < (other == 0 ? 150u : 300u); ++b)
           if (!far.proved(all.bounds[a], all.bounds[b])) expected.insert({a, b});
-        }
       }
       for (const std::size_t enough : {std::size_t{1}, std::size_t{100}, std::size_t{1} << 20}) {
         std::vector<TrianglePair> found;

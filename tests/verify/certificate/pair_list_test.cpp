@@ -1,22 +1,13 @@
 // The list of colliding pairs, its hash, and what a scene does not ask.
 #include "verify/certificate/pair_list.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
-#include "core/base/bytes.h"
-#include "core/base/error.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/certificate/certificate.h"
+#include "core/base/bytes.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -59,7 +50,7 @@ TEST(PairList, IsWhatARunWrites) {
     record.collisions.neighbour_pairs = exact.neighbour_pairs;
     std::vector<TrianglePair> all = exact.pairs;
     all.insert(all.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-    std::sort(all.begin(), all.end());
+    std::ranges::sort(all);
     EXPECT_EQ(pairs_csv(scene, record), pair_list(scene, all));
     EXPECT_EQ(pair_list_hash(scene, all), sha256(pair_list(scene, all)));
   }
@@ -150,8 +141,8 @@ TEST(GivenList, MalformedOnesNameTheLine) {
     const Error error = error_of([&] { read_pair_list(text, "some/pairs.csv"); });
     EXPECT_EQ(error.where, "some/pairs.csv");
     EXPECT_EQ(error.line, line);
-    EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
-    EXPECT_NE(error.remedy.find("object_a,triangle_a,object_b,triangle_b"), std::string::npos);
+    EXPECT_TRUE(has_text(error.reason, reason));
+    EXPECT_TRUE(has_text(error.remedy, "object_a,triangle_a,object_b,triangle_b"));
   }
 }
 
@@ -165,7 +156,7 @@ TEST(GivenList, NamesObjectsAndTrianglesThatTheSceneLacks) {
     const Error error = error_of([&] { find_differences(scene, list.name, list.rows, {}); });
     EXPECT_EQ(error.where, "pairs.csv");
     EXPECT_EQ(error.line, 3);
-    EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
+    EXPECT_TRUE(has_text(error.reason, reason));
   }
 }
 
@@ -201,19 +192,18 @@ TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
     EXPECT_EQ(wrong.wrong, 1u) << row;
     EXPECT_EQ(wrong.missing, 0u) << row;
     EXPECT_EQ(wrong.wrong_line, 5u) << row;
-    EXPECT_NE(wrong.wrong_reason.find(reason), std::string::npos) << wrong.wrong_reason;
+    EXPECT_TRUE(has_text(wrong.wrong_reason, reason));
   }
-  EXPECT_NE(differences(scene, "0,1,1,0,0\n", {}, 0.5).wrong_reason.find("farther apart"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(differences(scene, "0,1,1,0,0\n", {}, 0.5).wrong_reason, "farther apart"));
   // What it says of neighbours.
   const ListDifferences said = differences(scene, "0,0,0,2,1\n0,0,1,0,0\n0,2,1,0,0\n", meeting);
   EXPECT_EQ(said.wrong, 1u);
   EXPECT_EQ(said.missing, 0u);
-  EXPECT_NE(said.wrong_reason.find("no neighbours, and the line says 1"), std::string::npos);
+  EXPECT_TRUE(has_text(said.wrong_reason, "no neighbours, and the line says 1"));
   const std::vector<TrianglePair> with_neighbours = {{0, 1}};
   EXPECT_TRUE(differences(scene, "0,0,0,1,1\n", with_neighbours).none());
-  EXPECT_NE(differences(scene, "0,0,0,1,0\n", with_neighbours).wrong_reason.find("line says 0"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has_text(differences(scene, "0,0,0,1,0\n", with_neighbours).wrong_reason, "line says 0"));
   // Both, and the first of several in the order of the file.
   const ListDifferences both =
       differences(scene, "0,1,1,0,0\n0,0,0,2,0\n0,0,0,1,1\n0,0,0,2,0\n", meeting);
@@ -223,8 +213,7 @@ TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
   EXPECT_EQ(both.missing, 2u);
   EXPECT_EQ(both.missing_pair, (TrianglePair{0, 3}));
   // Of an object that is not self.
-  EXPECT_NE(differences(folded(false), "0,0,0,2,0\n", {}).wrong_reason.find("--self asks"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(differences(folded(false), "0,0,0,2,0\n", {}).wrong_reason, "--self asks"));
 }
 
 TEST(NotAsked, IsWhatLiesInsideObjectsThatAreNotSelf) {
@@ -252,17 +241,15 @@ TEST(NotAsked, IsSaidBesideThePromise) {
   record.options.method = Method::far;
   record.promise.holds = true;
   const std::string heading = run_heading(folded(false), record);
-  EXPECT_NE(heading.find("promises to miss nothing\nnot asked  whether an object meets itself: 3 "
-                         "pairs of triangles inside sheet, "),
-            std::string::npos)
-      << heading;
-  EXPECT_NE(heading.find("(--self asks)\n"), std::string::npos);
+  EXPECT_TRUE(has_text(heading,
+                       "promises to miss nothing\nnot asked  whether an object meets itself: 3 "
+                       "pairs of triangles inside sheet, "));
+  EXPECT_TRUE(has_text(heading, "(--self asks)\n"));
   record.options.method = Method::cullide;
-  EXPECT_NE(run_heading(folded(false), record).find("(--method far-pairs --self asks)\n"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--method far-pairs --self asks)\n"));
   record.options.method = Method::exact;
-  EXPECT_NE(run_heading(folded(false), record).find("(--self asks)\n"), std::string::npos);
-  EXPECT_EQ(run_heading(folded(true), record).find("not asked"), std::string::npos);
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--self asks)\n"));
+  EXPECT_FALSE(has_text(run_heading(folded(true), record), "not asked"));
 }
 
 }  // namespace

@@ -1,18 +1,11 @@
 #include "experiments/scenes/builtin/scenes.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <set>
 
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -32,9 +25,8 @@ bool edge_crosses(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
 
 // Whether two triangles cross beyond doubt; touching and what rounding might decide do not count.
 bool cross(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     if (edge_crosses(a[i], a[(i + 1) % 3], b) || edge_crosses(b[i], b[(i + 1) % 3], a)) return true;
-  }
   return false;
 }
 
@@ -52,9 +44,8 @@ int crossings(const Scene& scene) {
            ++i) {
         if (!overlap(boxes[i], common)) continue;
         for (std::uint32_t j = second.first_triangle;
-             j < second.first_triangle + second.triangle_count; ++j) {
+             j < second.first_triangle + second.triangle_count; ++j)
           count += overlap(boxes[i], boxes[j]) && cross(scene.corners(i), scene.corners(j));
-        }
       }
     }
   }
@@ -70,11 +61,10 @@ class MeshFolder {
     setenv("FARCULL_MESHES", folder.c_str(), 1);
   }
   ~MeshFolder() {
-    if (old_.empty()) {
+    if (old_.empty())
       unsetenv("FARCULL_MESHES");
-    } else {
+    else
       setenv("FARCULL_MESHES", old_.c_str(), 1);
-    }
   }
   MeshFolder(const MeshFolder&) = delete;
   MeshFolder& operator=(const MeshFolder&) = delete;
@@ -99,43 +89,13 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
     EXPECT_NO_THROW(validate(scene, entry.name));
     EXPECT_EQ(scene_hash(scene), scene_hash(entry.make())) << entry.name << " differs from itself";
   }
-  for (const char* name : {"two-spheres",
-                           "two-tori",
-                           "random-soup",
-                           "needles",
-                           "degenerate",
-                           "ground",
-                           "crowd",
-                           "far-apart",
-                           "two-bunnies",
-                           "armadillo-elephant",
-                           "dragon-bunny",
-                           "near-copy",
-                           "bunnies-far-apart",
-                           "needles-layers",
-                           "needles-crossed",
-                           "field",
-                           "crumpled",
-                           "rope",
-                           "spheres",
-                           "fans",
-                           "funnel",
-                           "mannequin-devil",
-                           "armadillo",
-                           "bunny",
-                           "cylinders",
-                           "torii",
-                           "tree-leaves",
-                           "shells",
-                           "cloth",
-                           "bunny-dragon",
-                           "breaking-dragon",
-                           "slivers",
-                           "stack",
-                           "mixed",
-                           "gap"}) {
+  for (const std::string& name :
+       listed("two-spheres,two-tori,random-soup,needles,degenerate,ground,crowd,far-apart,"
+              "two-bunnies,armadillo-elephant,dragon-bunny,near-copy,bunnies-far-apart,"
+              "needles-layers,needles-crossed,field,crumpled,rope,spheres,fans,funnel,"
+              "mannequin-devil,armadillo,bunny,cylinders,torii,tree-leaves,shells,cloth,"
+              "bunny-dragon,breaking-dragon,slivers,stack,mixed,gap"))
     EXPECT_TRUE(names.contains(name)) << name;
-  }
 }
 
 TEST(BuiltinScenes, CollideWhereTheirNameSaysSo) {
@@ -158,8 +118,7 @@ TEST(BuiltinScenes, SoupAndNeedlesReachTheirExtremes) {
     return std::pair(std::min({a, b, c}), std::max({a, b, c}));
   };
   const Scene soup = make_builtin_scene("random-soup");
-  double least = 1e9;
-  double most = 0;
+  double least = 1e9, most = 0;
   for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) {
     const double size = shortest_and_longest(soup.corners(t)).second;
     least = std::min(least, size);
@@ -180,9 +139,7 @@ TEST(BuiltinScenes, SoupAndNeedlesReachTheirExtremes) {
 
 TEST(BuiltinScenes, DegenerateHoldsPointsSegmentsAndExactContacts) {
   const Scene scene = make_builtin_scene("degenerate");
-  int points = 0;
-  int segments = 0;
-  int identical = 0;
+  int points = 0, segments = 0, identical = 0;
   const std::uint32_t half = scene.objects[0].triangle_count;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const auto [a, b, c] = scene.corners(t);
@@ -200,9 +157,8 @@ TEST(BuiltinScenes, GroundIsAThousandTimesLargerThanItsBlobs) {
   const Scene scene = make_builtin_scene("ground");
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   EXPECT_EQ(scene.objects.back().name, "ground");
-  for (std::size_t i = 0; i + 1 < boxes.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < boxes.size(); ++i)
     EXPECT_GT(diagonal(boxes.back()), 1000 * diagonal(boxes[i]));
-  }
 }
 
 // What all needles of a bench scene have in common: one of few oblique directions, a length and a
@@ -217,17 +173,15 @@ void expect_needles(const Scene& scene, std::size_t directions) {
     ASSERT_NEAR((b - a).cross(c - a).norm() / length, 0.002, 1e-6);
     ASSERT_GT(along.cwiseAbs().minCoeff(), 0.3) << "not oblique";
     const auto close = [&](const Vec3& d) { return (d - along).norm() < 3e-4; };
-    if (std::none_of(seen.begin(), seen.end(), close)) seen.push_back(along);
+    if (std::ranges::none_of(seen, close)) seen.push_back(along);
   }
   EXPECT_EQ(seen.size(), directions);
   const std::vector<Box> boxes = triangle_boxes(scene);
-  std::uint64_t looked = 0;
-  std::uint64_t overlapping = 0;
+  std::uint64_t looked = 0, overlapping = 0;
   const std::uint32_t second = scene.objects[1].first_triangle;
-  for (std::uint32_t a = 0; a < second; a += 50) {
+  for (std::uint32_t a = 0; a < second; a += 50)
     for (std::uint32_t b = second; b < boxes.size(); b += 50, ++looked)
       overlapping += overlap(boxes[a], boxes[b]);
-  }
   EXPECT_GT(overlapping, looked / 10);
 }
 
@@ -244,9 +198,8 @@ TEST(BuiltinScenes, TakesASeedWhereItIsDrawn) {
   EXPECT_NE(hash("needles:60@seed101"), hash("needles:60"));
   EXPECT_EQ(hash("needles:60@seed101@far"), hash("needles:60@far@seed101"));
   EXPECT_THROW(make_builtin_scene("two-tori@seed3"), Error);
-  for (const char* word : {"@seed3@seed4", "@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"}) {
+  for (const char* word : {"@seed3@seed4", "@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"})
     EXPECT_THROW(make_builtin_scene(std::string("needles:60") + word), Error) << word;
-  }
 }
 
 TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
@@ -270,31 +223,12 @@ TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
 }
 
 TEST(BuiltinScenes, RefuseSizesThatAreNone) {
-  for (const char* name : {"field:",
-                           "field:0",
-                           "field:999",
-                           "field:1e6",
-                           "field:-1000",
-                           "field:1000000001",
-                           "field:99999999999999999999",
-                           "field:5000x",
-                           "field:5000:5000",
-                           "crowd:1",
-                           "crowd:",
-                           "two-bunnies:1",
-                           "two-tori:",
-                           "crowd:400:",
-                           "crowd:400:0",
-                           "crowd:400:x",
-                           "crowd:400:nan",
-                           "crowd:400:inf",
-                           "crowd:400:-1",
-                           "crowd:400:0.2:1",
-                           "crowd:400:0.2 ",
-                           "crowd:400:0x1p-2",
-                           "crowd::0.2",
-                           "crowd:0.2",
-                           "shells:3"}) {
+  for (const std::string& name :
+       listed("field:,field:0,field:999,field:1e6,field:-1000,field:1000000001,"
+              "field:99999999999999999999,field:5000x,field:5000:5000,crowd:1,crowd:,"
+              "two-bunnies:1,two-tori:,crowd:400:,crowd:400:0,crowd:400:x,crowd:400:nan,"
+              "crowd:400:inf,crowd:400:-1,crowd:400:0.2:1,crowd:400:0.2 ,crowd:400:0x1p-2,"
+              "crowd::0.2,crowd:0.2,shells:3")) {
     EXPECT_TRUE(is_builtin_scene(name)) << name;
     EXPECT_EQ(error_of([&] { make_builtin_scene(name); }).where, name);
   }
@@ -308,7 +242,7 @@ TEST(BuiltinScenes, RefuseUnknownNamesAndSuffixes) {
   for (const char* name : {"crowd@", "crowd@near", "crowd@far@", "crowd@@far", "crowd@fa"}) {
     const Error error = error_of([&] { make_builtin_scene(name); });
     EXPECT_EQ(error.where, name);
-    EXPECT_NE(error.remedy.find("@far, @tiny, @huge, @ground"), std::string::npos);
+    EXPECT_TRUE(has_text(error.remedy, "@far, @tiny, @huge, @ground"));
   }
 }
 
@@ -361,7 +295,7 @@ TEST(PackagedScenes, SayHowToGetMissingMeshes) {
     if (!entry.needs_meshes) continue;
     const Error error = error_of([&] { make_builtin_scene(entry.name); });
     EXPECT_EQ(error.where.find(folder.path("meshes")), 0u);
-    EXPECT_NE(error.remedy.find("bash experiments/meshes.sh"), std::string::npos);
+    EXPECT_TRUE(has_text(error.remedy, "bash experiments/meshes.sh"));
   }
 }
 
@@ -371,8 +305,7 @@ TEST(PackagedScenes, ComeFromTheFolderOfTheEnvironment) {
   folder.write("bunny00.off", "OFF\n4 1 0\n-1 0 0\n3 0 0\n0 1 0\n100 100 100\n3 0 1 2\n");
   const Scene scene = make_builtin_scene("two-bunnies");
   // Half the extent along x is 2; the vertex that no triangle uses does not count.
-  const double c = std::cos(0.7);
-  const double s = std::sin(0.7);
+  const double c = std::cos(0.7), s = std::sin(0.7);
   EXPECT_EQ(scene.vertices[4], Vec3(c * -1 + 2 * 0.02, s * -1 + 2 * 0.0026, 2 * 0.0014));
   const Scene apart = make_builtin_scene("bunnies-far-apart");
   const std::vector<Box> boxes = object_boxes(apart, triangle_boxes(apart));
@@ -416,9 +349,8 @@ TEST(PackagedScenes, NearCopyIsMovedByABillionthOfItsDiagonal) {
   const Scene scene = make_builtin_scene("near-copy");
   const std::size_t half = scene.vertices.size() / 2;
   const double length = diagonal(bounds(scene));
-  for (std::size_t i = 0; i < half; ++i) {
+  for (std::size_t i = 0; i < half; ++i)
     ASSERT_NEAR((scene.vertices[half + i] - scene.vertices[i]).norm() / length, 1e-9, 1e-14);
-  }
 }
 
 }  // namespace

@@ -1,15 +1,10 @@
 // Built-in scenes in motion on a GL device: FAR pairs in all frames, FAR with both offsets in some.
-#include <gtest/gtest.h>
-
-#include <array>
-
 #include "core/gl/pairs/pairs.h"
-#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/run.h"
-#include "tests/core/gl/gl_lab.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/experiments/scenes/builtin/moving_lab.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/moving.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {

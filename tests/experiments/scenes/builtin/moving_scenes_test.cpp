@@ -1,24 +1,16 @@
 // Built-in scenes in motion: they are what they say, and FAR pairs on the CPU misses nothing in any
 // frame of any of them.
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-
-#include <cmath>
-#include <map>
-#include <numeric>
-#include <set>
 
 #include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "core/view/view.h"
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/experiments/scenes/builtin/moving_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "tests/lab/moving.h"
+#include "tests/lab/pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -193,7 +185,7 @@ TEST(MovingScenes, ASimulationDependsOnTheNumberOfItsFrame) {
     EXPECT_EQ(frame["motion"]["converged"], 1);
     EXPECT_GT(frame["motion"]["iterations"], 0);
   }
-  EXPECT_NE(result.table.find("residual N"), std::string::npos);
+  EXPECT_TRUE(has_text(result.table, "residual N"));
 }
 
 // Two triangles, one of which falls; it has something to say of some frames.
@@ -223,10 +215,10 @@ TEST(MovingScenes, NotesAndWarningsReachTheRecordAndTheTable) {
   EXPECT_EQ(frames[1]["warning"], nullptr);
   EXPECT_EQ(frames[3]["warning"], "it fell far");
   EXPECT_EQ(frames[2]["colliding_pairs"], 1);
-  EXPECT_NE(result.table.find("height"), std::string::npos);
-  EXPECT_NE(result.table.find("\nwarning  it fell far (frame 2 and 1 more)\n"
-                              "warning  it fell through (frame 4)\n"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(result.table, "height"));
+  EXPECT_TRUE(has_text(result.table,
+                       "\nwarning  it fell far (frame 2 and 1 more)\n"
+                       "warning  it fell through (frame 4)\n"));
   EXPECT_TRUE(result.table.ends_with("(frame 4)\n"));
 }
 
@@ -364,7 +356,7 @@ TEST(PackagedScenes, DragonBreaksIntoPiecesThatAreItsTriangles) {
     const Scene& scene = moving.at(frame);
     EXPECT_EQ(scene.triangles.size(), 19'994u);
     std::vector<std::uint32_t> faces = scene.source_face;
-    std::sort(faces.begin(), faces.end());
+    std::ranges::sort(faces);
     std::vector<std::uint32_t> all(faces.size());
     std::iota(all.begin(), all.end(), 0u);
     EXPECT_EQ(faces, all) << "each triangle once";
@@ -415,9 +407,8 @@ TEST(PackagedScenes, StaleTopologyOfABreakingDragonIsCaught) {
   const auto cpu = cpu_pair_backend(2);
   lab::Stale stale(*cpu);
   std::size_t missed = 0;
-  for (long frame = 1; frame < kFrames; ++frame) {
+  for (long frame = 1; frame < kFrames; ++frame)
     missed += lab::missed(moving.at(frame), {.blocks = false}, stale);
-  }
   EXPECT_GT(missed, 100u);
 }
 

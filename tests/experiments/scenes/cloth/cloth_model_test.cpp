@@ -1,16 +1,11 @@
 // What a step of the cloth is made of: derivatives against differences, the inequalities that the
 // bound of the energy rests on, and the factorization.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/SparseCholesky>
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
 
 #include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "tests/lab/test.h"
 
 namespace farcull::cloth {
 namespace {
@@ -102,8 +97,7 @@ struct Difference {
   double allowed = 0;
 };
 Difference difference(const auto& f, double d, double sizes) {
-  const VectorXd near = (f(d) - f(-d)) / (2 * d);
-  const VectorXd far = (f(2 * d) - f(-2 * d)) / (4 * d);
+  const VectorXd near = (f(d) - f(-d)) / (2 * d), far = (f(2 * d) - f(-2 * d)) / (4 * d);
   return {near, (near - far).norm() + sizes * 0x1p-53 / d};
 }
 
@@ -136,14 +130,12 @@ TEST(ClothModel, HessianIsThatOfTheGradient) {
     const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
     const VectorXd p = shaken(VectorXd::Zero(s.x.size()), 1, random);
     VectorXd permuted(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+    for (std::size_t v = 0; v < solver.places().size(); ++v)
       permuted.segment<3>(3 * solver.places()[v]) = p.segment<3>(3 * static_cast<Eigen::Index>(v));
-    }
     const VectorXd product = whole * permuted;
     VectorXd hp(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+    for (std::size_t v = 0; v < solver.places().size(); ++v)
       hp.segment<3>(3 * static_cast<Eigen::Index>(v)) = product.segment<3>(3 * solver.places()[v]);
-    }
     const auto along = [&](double t) {
       VectorXd g;
       gradient(s.step, s.x + t * p, g);
@@ -159,8 +151,7 @@ TEST(ClothModel, HessianIsThatOfTheGradient) {
 
 // (grad F(x) - grad F(y)).(x - y) >= m/h^2 |x - y|^2, which is convexity with room: twin below.
 double monotony(const Sample& s, const VectorXd& y, bool thrust_at_x) {
-  VectorXd gx;
-  VectorXd gy;
+  VectorXd gx, gy;
   gradient(s.step, s.x, gx);
   gradient(s.step, y, gy);
   double sum = (gx - gy).dot(s.x - y);
@@ -235,8 +226,7 @@ TEST(ClothModel, AStepBoundsThePotentialEnergiesFromAbove) {
 // and of c e^2 where they do; the derivative and the energy by differences that halve their errors.
 TEST(ClothModel, ASmoothSpringIsWhatItSays) {
   for (const double c : {1.0, 1e4, 1e8}) {
-    const double crimp = 1e-12;
-    const double width = std::sqrt(4 * crimp / c);
+    const double crimp = 1e-12, width = std::sqrt(4 * crimp / c);
     for (const double e : {-1e3 * width, -3 * width, -width, 0.0, width, 3 * width, 1e3 * width}) {
       const double f = smooth_force(c, crimp, e);
       EXPECT_GT(f, 0);
@@ -274,9 +264,8 @@ TEST(ClothInterior, RoomEndsAtTheCone) {
       const ConePoint at{u.t + a * du.t, u.d + a * du.d};
       return at.t > 0 && determinant(at) > 0;
     };
-    for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+    for (const double part : {0.1, 0.5, 0.9, 0.999})
       EXPECT_TRUE(inside(part * std::min(way, 1e6))) << i;
-    }
     if (std::isfinite(way)) {
       EXPECT_FALSE(inside(1.001 * way)) << i;
     }
@@ -301,8 +290,7 @@ TEST(ClothInterior, EndsAtTheMinimum) {
   // it by more than |g|^2 h^2/(2 m); so no other point may be lower than this one by more.
   double lightest = model.mass[0];
   for (const double mass : model.mass) lightest = std::min(lightest, mass);
-  const double h = settings.time_step;
-  const double gap = g.squaredNorm() * h * h / (2 * lightest);
+  const double h = settings.time_step, gap = g.squaredNorm() * h * h / (2 * lightest);
   shapes::Random random(5);
   for (const double by : {1e-12, 1e-9, 1e-6, 1e-3}) {
     const VectorXd other = shaken(minimum.x, by, random);

@@ -2,16 +2,7 @@
 // solver does not converge.
 #include "experiments/scenes/cloth/cloth.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <vector>
-
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -34,9 +25,8 @@ ClothSettings small(double stiffness, std::uint64_t triangles = 800) {
 
 VectorXd positions(const Cloth& cloth) {
   VectorXd x(cloth.state().velocities.size());
-  for (Eigen::Index v = 0; v < x.size() / 3; ++v) {
+  for (Eigen::Index v = 0; v < x.size() / 3; ++v)
     x.segment<3>(3 * v) = cloth.scene().vertices[static_cast<std::size_t>(v)];
-  }
   return x;
 }
 
@@ -61,10 +51,8 @@ double rounding(const ClothSettings& s, const Cloth& cloth) {
 // Steps `frames` times. In every frame: the total energy gains no more than slack and rounding,
 // and slack is no more than the residual on every vertex times the way it went.
 struct Course {
-  int most_iterations = 0;
-  int failed = 0;
-  bool bounded = true;
-  bool finite = true;
+  int most_iterations = 0, failed = 0;
+  bool bounded = true, finite = true;
 };
 Course run(Cloth& cloth, const ClothSettings& settings, int frames) {
   Course course;
@@ -103,9 +91,8 @@ TEST_P(ClothAt, StaysFiniteAndGainsNoEnergyIn500Frames) {
   // It hangs, rather than having fallen off: its lowest point is above a free fall of 5 seconds,
   // and within the reach of the cloth.
   double lowest = 0;
-  for (Eigen::Index v = 2; v < cloth.state().velocities.size(); v += 3) {
+  for (Eigen::Index v = 2; v < cloth.state().velocities.size(); v += 3)
     lowest = std::min(lowest, positions(cloth)[v]);
-  }
   EXPECT_GT(lowest, -settings.side);
   EXPECT_LT(lowest, -settings.radius);
   validate(cloth.scene(), "cloth");
@@ -121,8 +108,7 @@ TEST(Cloth, TheEnergyBoundCatchesExplicitEuler) {
     const cloth::Energies e = cloth::energies(model, x, v);
     return e.kinetic + e.elastic + e.bending + e.gravitational + e.contact;
   };
-  VectorXd x = model.rest;
-  VectorXd v = VectorXd::Zero(x.size());
+  VectorXd x = model.rest, v = VectorXd::Zero(x.size());
   VectorXd force;
   bool caught = false;
   for (int f = 0; f < 20 && !caught; ++f) {
@@ -156,18 +142,14 @@ TEST(Cloth, CentreOfMassFallsByTheRecurrence) {
     const cloth::Model model = cloth::make_model(s);
     const auto mean = [&](const VectorXd& q) {
       Vec3 sum = Vec3::Zero();
-      for (Eigen::Index v = 0; v < q.size() / 3; ++v) {
+      for (Eigen::Index v = 0; v < q.size() / 3; ++v)
         sum += model.mass[static_cast<std::size_t>(v)] * q.segment<3>(3 * v);
-      }
       return Vec3(sum / (s.density * s.side * s.side));
     };
-    Vec3 w = mean(start);
-    Vec3 c = mean(positions(cloth));
-    const double n = static_cast<double>(start.size()) / 3;
-    const double mass = s.density * s.side * s.side;
+    Vec3 w = mean(start), c = mean(positions(cloth));
+    const double n = static_cast<double>(start.size()) / 3, mass = s.density * s.side * s.side;
     const double h = s.time_step;
-    double allowed_w = n * 0x1p-52;
-    double allowed_c = n * 0x1p-52;
+    double allowed_w = n * 0x1p-52, allowed_c = n * 0x1p-52;
     for (int f = 0; f < 30; ++f) {
       const ClothReport report = cloth.step();
       ASSERT_TRUE(report.converged) << report.warning;
@@ -206,9 +188,8 @@ TEST(Cloth, RestsOnTheSphere) {
   double deepest = 0;
   for (int f = 0; f < 300; ++f) cloth.step();
   const VectorXd x = positions(cloth);
-  for (Eigen::Index v = 0; v < x.size(); v += 3) {
+  for (Eigen::Index v = 0; v < x.size(); v += 3)
     deepest = std::max(deepest, settings.radius - x.segment<3>(v).norm());
-  }
   EXPECT_GT(deepest, 0);
   EXPECT_LT(deepest, 1e-3);
   EXPECT_GT(cloth.report().contact, 0);
@@ -223,9 +204,8 @@ TEST(Cloth, FoldsThroughItself) {
     cloth.step();
     if (f % 10 != 9) continue;
     std::size_t of_itself = 0;
-    for (const TrianglePair& pair : all_colliding_pairs(cloth.scene()).pairs) {
+    for (const TrianglePair& pair : all_colliding_pairs(cloth.scene()).pairs)
       of_itself += pair.b < cloth.scene().objects[0].triangle_count ? 1 : 0;
-    }
     most = std::max(most, of_itself);
   }
   EXPECT_GT(most, 0u);
@@ -242,8 +222,7 @@ TEST(Cloth, SaysThatItDidNotConvergeAndStays) {
   const double total = cloth.report().total();
   const ClothReport report = cloth.step();
   EXPECT_FALSE(report.converged);
-  EXPECT_NE(report.warning.find("did not converge: 0 iterations left"), std::string::npos)
-      << report.warning;
+  EXPECT_TRUE(has_text(report.warning, "did not converge: 0 iterations left"));
   EXPECT_GT(report.residual, 0);
   EXPECT_EQ(positions(cloth), before);
   EXPECT_EQ(cloth.state().velocities, VectorXd::Zero(before.size()));
@@ -274,9 +253,8 @@ TEST(Cloth, RecoversFromNumbersThatAreNotFinite) {
 
 TEST(Cloth, SameBitsOnEveryRun) {
   std::array<Cloth, 2> cloths = {Cloth(small(1e6, 200)), Cloth(small(1e6, 200))};
-  for (int f = 0; f < 40; ++f) {
+  for (int f = 0; f < 40; ++f)
     for (Cloth& cloth : cloths) cloth.step();
-  }
   const std::vector<Vec3>& a = cloths[0].scene().vertices;
   const std::vector<Vec3>& b = cloths[1].scene().vertices;
   EXPECT_EQ(scene_hash(cloths[0].scene()), scene_hash(cloths[1].scene()));

@@ -2,20 +2,8 @@
 // and no file is believed that is not what was written.
 #include "experiments/scenes/cloth/cloth.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -55,16 +43,6 @@ std::vector<std::vector<std::uint64_t>> uninterrupted(const ClothSettings& setti
     out.push_back(bits_of(cloth.state()));
   }
   return out;
-}
-
-std::string content_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-void put(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
 }
 
 class KeptClothFiles : public testing::Test {
@@ -108,25 +86,25 @@ TEST_F(KeptClothFiles, RefuseEveryChangedBitAndEveryTruncation) {
   Cloth cloth(stiff());
   cloth.step();
   kept.write(cloth.state());
-  const std::string path = kept.path(1), good = content_of(path);
+  const std::string path = kept.path(1), good = read_text(path);
   ASSERT_NO_THROW(kept.read(1));
   ASSERT_GT(good.size(), 1000u);
   // A prime step reaches every part of the file, and every bit of a byte.
   for (std::size_t bit = 0; bit < 8 * good.size(); bit += 97) {
     std::string bad = good;
     bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
-    put(path, bad);
+    write_text(path, bad);
     const Error error = error_of([&] { kept.read(1); });
     ASSERT_EQ(error.where, path) << bit;
-    ASSERT_NE(error.remedy.find("remove"), std::string::npos) << bit;
+    ASSERT_TRUE(has_text(error.remedy, "remove")) << bit;
   }
   for (std::size_t size = 0; size < good.size(); size += 97) {
-    put(path, good.substr(0, size));
+    write_text(path, good.substr(0, size));
     ASSERT_EQ(error_of([&] { kept.read(1); }).where, path) << size;
   }
-  put(path, good + "x");
+  write_text(path, good + "x");
   EXPECT_EQ(error_of([&] { kept.read(1); }).where, path);
-  put(path, good);
+  write_text(path, good);
   EXPECT_EQ(bits_of(kept.read(1)), bits_of(cloth.state()));
 }
 
@@ -136,7 +114,7 @@ TEST_F(KeptClothFiles, RefuseWhatIsOfAnotherFrameOrAnotherCloth) {
   cloth.step();
   kept.write(cloth.state());
   fs::copy_file(kept.path(1), kept.path(2));
-  EXPECT_NE(error_of([&] { kept.read(2); }).reason.find("another frame"), std::string::npos);
+  EXPECT_TRUE(has_text(error_of([&] { kept.read(2); }).reason, "another frame"));
   ClothSettings other = stiff();
   other.friction = std::nextafter(other.friction, 1.0);
   const KeptCloth others(folder_, other);
@@ -145,13 +123,13 @@ TEST_F(KeptClothFiles, RefuseWhatIsOfAnotherFrameOrAnotherCloth) {
   fs::copy_file(kept.path(1), others.path(1));
   const Error error = error_of([&] { others.read(1); });
   EXPECT_EQ(error.where, others.path(1));
-  EXPECT_NE(error.reason.find("another cloth"), std::string::npos);
-  EXPECT_NE(error.remedy.find("FARCULL_CLOTH"), std::string::npos);
+  EXPECT_TRUE(has_text(error.reason, "another cloth"));
+  EXPECT_TRUE(has_text(error.remedy, "FARCULL_CLOTH"));
 }
 
 TEST_F(KeptClothFiles, NameTheFolderThatCannotBeMade) {
-  put(folder_, "a file");
-  EXPECT_NE(error_of([&] { KeptCloth(folder_, stiff()); }).where.find(folder_), std::string::npos);
+  write_text(folder_, "a file");
+  EXPECT_TRUE(has_text(error_of([&] { KeptCloth(folder_, stiff()); }).where, folder_));
 }
 
 // The scene as commands have it: the frames that are there are read, and not simulated again.
@@ -178,7 +156,7 @@ TEST_F(KeptClothFiles, ServeTheSceneFrameByFrame) {
   kept.write(state);
   EXPECT_NE(vertices_at({11}).first, next.first);
   // A damaged file ends the run instead of being passed over.
-  put(kept.path(11), "farcull");
+  write_text(kept.path(11), "farcull");
   EXPECT_EQ(error_of([&] { vertices_at({11}); }).where, kept.path(11));
 }
 

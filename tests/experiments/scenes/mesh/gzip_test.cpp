@@ -1,15 +1,11 @@
 // Meshes compressed by gzip, and files of formats that are not read.
 #include "experiments/scenes/mesh/text.h"
 
-#include <gtest/gtest.h>
 #include <zlib.h>
-
-#include <optional>
-#include <stdexcept>
 
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/scenes/mesh/mesh_samples.h"
+#include "tests/lab/meshes.h"
 
 namespace farcull {
 namespace {
@@ -118,8 +114,8 @@ TEST(GzipMesh, RefusesEveryPrefix) {
     for (std::size_t size = 3; size < bytes.size(); ++size) {
       const Error error =
           error_of([&] { parse_mesh(bytes.substr(0, size), sample.format, sample.name); });
-      EXPECT_NE(error.reason.find("end too early"), std::string::npos) << size << error.what();
-      EXPECT_NE(error.remedy.find("whole file"), std::string::npos);
+      EXPECT_TRUE(has_text(error.reason, "end too early")) << size << error.what();
+      EXPECT_TRUE(has_text(error.remedy, "whole file"));
     }
   }
 }
@@ -170,7 +166,7 @@ TEST(GzipMesh, RefusesABombBeforeItFillsTheMemory) {
   const GzipLimits limits = {.max_bytes = 1 << 30, .free_bytes = 1 << 16, .most_ratio = 100};
   const Error error = error_of([&] { gunzip(bomb, "b.obj.gz", limits); });
   expect_error(error, "b.obj.gz", 0, "more than 100 times");
-  EXPECT_NE(error.remedy.find("gzip -d"), std::string::npos);
+  EXPECT_TRUE(has_text(error.remedy, "gzip -d"));
   // Each limit alone lets it pass, and so do contents that are not compressed so far.
   EXPECT_EQ(gunzip(bomb, "b", {.max_bytes = 1 << 30, .free_bytes = 1 << 20, .most_ratio = 100}),
             text);
@@ -220,7 +216,7 @@ TEST(ForeignMesh, IsNamedByItsExtensionWithItsCommand) {
         Case{"a.obj.xz", "xz", "xz -dk a.obj.xz"}}) {
     const Error error = error_of([&] { mesh_format(path); });
     expect_error(error, path, 0, format);
-    EXPECT_NE(error.remedy.find(command), std::string::npos) << error.remedy;
+    EXPECT_TRUE(has_text(error.remedy, command));
     // One argument alone could be a built-in scene as well.
     EXPECT_STREQ(error_of([&] { load_scene({path}); }).what(), error.what());
   }

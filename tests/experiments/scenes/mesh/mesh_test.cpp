@@ -2,17 +2,11 @@
 // formats one by one.
 #include "experiments/scenes/mesh/load.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "experiments/scenes/mesh/text.h"
-#include "tests/experiments/scenes/mesh/mesh_samples.h"
+#include "tests/lab/meshes.h"
 
 namespace farcull {
 namespace {
@@ -51,9 +45,8 @@ TEST(ParseNumber, UnderflowIsZeroButOverflowIsNot) {
 
 TEST(ParseNumber, RefusesWhatIsOnlyNearlyANumber) {
   double x = 0;
-  for (const char* text : {"", "+", "-", "+-1", "1e", "1.0x", "0x10", "1,5", "--1", ".", "1d5"}) {
+  for (const char* text : {"", "+", "-", "+-1", "1e", "1.0x", "0x10", "1,5", "--1", ".", "1d5"})
     EXPECT_EQ(parse_number(text, x), Number::kMalformed) << text;
-  }
 }
 
 TEST(CleanName, KeepsUtf8AndReplacesWhatJsonCannotHold) {
@@ -101,9 +94,8 @@ TEST(LoadMesh, RefusesWhatCannotBeOpenedOrRead) {
   const ScratchFolder folder;
   const std::string closed = folder.write("c.obj", kThree + "f 1 2 3\n");
   ASSERT_EQ(chmod(closed.c_str(), 0), 0);
-  if (access(closed.c_str(), R_OK) != 0) {  // root may read everything
+  if (access(closed.c_str(), R_OK) != 0)  // root may read everything
     expect_error(error_of([&] { load_mesh(closed); }), closed, 0, "cannot be opened");
-  }
   // This file opens, but its first page cannot be read.
   const std::string broken = folder.path("b.obj");
   std::filesystem::create_symlink("/proc/self/mem", broken);
@@ -200,9 +192,8 @@ TEST(MeshReaders, SurviveDamagedBytes) {
       ASSERT_EQ(mesh.source_face.size(), mesh.triangles.size());
       ASSERT_EQ(mesh.group.size(), mesh.triangles.size());
       for (const Vec3& p : mesh.vertices) ASSERT_TRUE(p.allFinite());
-      for (const Triangle& t : mesh.triangles) {
+      for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) ASSERT_LT(v, mesh.vertices.size());
-      }
     } catch (const Error& error) {
       ++refused;
       ASSERT_FALSE(error.remedy.empty());

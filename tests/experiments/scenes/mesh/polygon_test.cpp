@@ -2,16 +2,8 @@
 // number of random polygons.
 #include "experiments/scenes/mesh/load.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-
-#include "tests/core/base/rational.h"
-#include "tests/experiments/scenes/mesh/mesh_samples.h"
+#include "tests/lab/meshes.h"
+#include "tests/lab/rational.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -300,9 +292,8 @@ TEST(Triangulate, SeesAnyPlaneEitherSideAndAnySize) {
   for (const double size : {1.0, 1e-300, 1e-322, 4e307}) {
     for (int axis = 0; axis < 3; ++axis) {
       Polygon turned;
-      for (const Vec3& p : dart) {
+      for (const Vec3& p : dart)
         turned.push_back(Vec3(p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]) * size / 4);
-      }
       std::vector<Triangle> triangles;
       ASSERT_EQ(triangulate(turned, triangles), Triangulation::whole);
       EXPECT_EQ(triangles, expected) << size << " " << axis;
@@ -312,7 +303,7 @@ TEST(Triangulate, SeesAnyPlaneEitherSideAndAnySize) {
   const Polygon back = {dart[3], dart[2], dart[1], dart[0]};
   std::vector<Triangle> triangles;
   ASSERT_EQ(triangulate(back, triangles), Triangulation::whole);
-  for (const auto& t : triangles) EXPECT_EQ(std::count(t.begin(), t.end(), 1u), 1);
+  for (const auto& t : triangles) EXPECT_EQ(std::ranges::count(t, 1u), 1);
 }
 
 // Its area is lost in the rounding of all three projections, and 0 in two of them.

@@ -1,0 +1,31 @@
+"""What the tests of the module share. FARCULL_PROGRAM names the program."""
+
+import os
+
+import farcull
+import numpy as np
+import pytest
+
+PROGRAM = os.environ["FARCULL_PROGRAM"]
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+ALL = dict(self=True, kinds=True)
+
+
+def error_of(call, *arguments, **options):
+    with pytest.raises(farcull.Error) as caught:
+        call(*arguments, **options)
+    error = caught.value
+    assert error.where and error.reason and error.remedy
+    assert str(error) == f"{error.where}: {error.reason}; {error.remedy}"
+    return error
+
+
+def refused(call, *arguments, **options):
+    """Where the call says that an argument is wrong."""
+    error = error_of(call, *arguments, **options)
+    assert isinstance(error, farcull.InputError)
+    return error.where
+
+
+def same_pairs(a, b):
+    return np.array_equal(a.pairs, b.pairs) and np.array_equal(a.neighbour_pairs, b.neighbour_pairs)

@@ -1,0 +1,151 @@
+// Boxes that move, and their pairs by brute force: what the tests of the sweep share.
+#pragma once
+
+#include "core/boxes/join.h"
+#include "core/sweep/sweep_prune.h"
+#include "tests/lab/rational.h"
+
+namespace farcull::lab {
+
+using Boxes = std::vector<Box>;
+using Indices = std::vector<std::uint32_t>;
+using Pairs = std::vector<TrianglePair>;
+using rational::Random;
+
+/// Its own comparison, so that overlap() is not what tests itself.
+inline bool meet(const Box& a, const Box& b) {
+  for (int i = 0; i < 3; ++i)
+    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
+  return true;
+}
+
+template <class Counts>
+inline Pairs brute_force(const Boxes& boxes, const Counts& counts) {
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+      if (counts(a, b) && meet(boxes[a], boxes[b])) pairs.push_back({a, b});
+  }
+  return pairs;
+}
+
+inline Pairs brute_force(const Boxes& boxes) {
+  return brute_force(boxes, [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+inline Box cube(double lo, double hi) { return {Vec3::Constant(lo), Vec3::Constant(hi)}; }
+inline Box along_x(double lo, double hi) { return {Vec3(lo, 0, 0), Vec3(hi, 1, 1)}; }
+
+/// One step of boxes that move: small steps, jumps, coordinates of few values, boxes that are
+/// points or empty, and the ends of the doubles.
+inline void move(Boxes& boxes, Random& random, int kind) {
+  for (Box& box : boxes) {
+    if (random.below(3) == 0) continue;
+    Vec3 by = random.cube(kind == 3 ? 9 : 0.3);
+    if (kind % 2 == 0) by = Vec3(random.below(3) - 1, random.below(3) - 1, random.below(3) - 1);
+    const bool was_huge = box.hi.cwiseAbs().maxCoeff() > 1e6;
+    if (was_huge || box.is_empty()) box = cube(0, random.below(2));
+    box = {box.lo + by, box.hi + by};
+    const int axis = random.below(3);
+    switch (random.below(40)) {
+      case 0:
+        box.hi[axis] = box.lo[axis];
+        break;
+      case 1:
+        box.lo = box.hi;
+        break;
+      case 2:
+        std::swap(box.lo, box.hi);
+        break;  // empty, or a point
+      case 3:
+        box = cube(-0.0, 0.0);
+        break;
+      case 4:
+        box = cube(-DBL_MAX, DBL_MAX);
+        break;
+      case 5:
+        box.hi[axis] = DBL_MAX;
+        break;
+      case 6:
+        box = boxes[random.below(static_cast<int>(boxes.size()))];
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+inline Boxes some_boxes(Random& random, int count) {
+  Boxes boxes;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 at(random.below(9), random.below(9), random.below(9));
+    boxes.push_back({at, at + Vec3(random.below(3), random.below(3), random.below(3))});
+  }
+  return boxes;
+}
+
+/// The same algorithm in few words, with a fault: what the tests above would find in the sweep.
+enum class SweepFault {
+  none,
+  dropped_swap,  // of the boxes' ends: the first exchange that makes a pair is forgotten
+  open_boxes,    // at equal coordinates an upper end comes before a lower one
+};
+
+class SmallBoxSweep {
+ public:
+  SweepFault fault = SweepFault::none;
+
+  Pairs update(const Boxes& boxes) {
+    const bool first = boxes.size() != before_.size();
+    if (first) {
+      pairs_ = brute_force(boxes);
+      for (auto& ends : ends_) {
+        ends.resize(2 * boxes.size());
+        std::iota(ends.begin(), ends.end(), 0u);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      auto& ends = ends_[axis];
+      const auto at = [&](std::uint32_t end) {
+        return end % 2 != 0 ? boxes[end / 2].hi[axis] : boxes[end / 2].lo[axis];
+      };
+      const std::uint32_t first_side = fault == SweepFault::open_boxes ? 1 : 0;
+      const auto less = [&](std::uint32_t e, std::uint32_t f) {
+        return at(e) < at(f) || (at(e) == at(f) && e % 2 == first_side && f % 2 != first_side);
+      };
+      for (std::size_t i = 1; i < ends.size(); ++i) {
+        for (std::size_t to = i; to > 0 && less(ends[to], ends[to - 1]); --to) {
+          std::swap(ends[to], ends[to - 1]);
+          if (!first) exchanged(ends[to - 1], ends[to], boxes);
+        }
+      }
+    }
+    before_ = boxes;
+    std::ranges::sort(pairs_);
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    return pairs_;
+  }
+  void forget() { before_.clear(); }
+
+ private:
+  // e moved from behind f to before it.
+  void exchanged(std::uint32_t e, std::uint32_t f, const Boxes& boxes) {
+    const std::uint32_t i = e / 2, j = f / 2;
+    if (i == j || e % 2 == f % 2) return;
+    const TrianglePair pair{std::min(i, j), std::max(i, j)};
+    if (e % 2 != 0) {
+      if (!meet(boxes[i], boxes[j])) std::erase(pairs_, pair);
+    } else if (meet(boxes[i], boxes[j])) {
+      if (fault == SweepFault::dropped_swap)
+        fault = SweepFault::none;
+      else
+        pairs_.push_back(pair);
+    }
+  }
+
+  Boxes before_;
+  Indices ends_[3];
+  Pairs pairs_;
+};
+
+}  // namespace farcull::lab

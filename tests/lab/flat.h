@@ -1,0 +1,57 @@
+// Scenes as the library takes them.
+#pragma once
+
+#include "core/scene/scene.h"
+#include "experiments/library/farcull.h"
+#include "tests/lab/test.h"
+#include "verify/exact.h"
+
+namespace farcull {
+
+/// A scene as flat arrays.
+struct Flat {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles, starts;
+
+  explicit Flat(const Scene& scene) {
+    for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
+    for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
+  }
+  ColliderInput input() const { return {vertices, triangles, starts}; }
+};
+
+/// Where the call throws a ColliderError, and its reason; both "nothing was thrown" without one.
+template <class Call>
+std::array<std::string, 2> refusal(const Call& call) {
+  try {
+    call();
+  } catch (const ColliderError& error) {
+    EXPECT_FALSE(error.reason.empty() || error.remedy.empty());
+    EXPECT_TRUE(has_text(error.what(), error.reason));
+    return {error.where, error.reason};
+  }
+  return {"nothing was thrown", "nothing was thrown"};
+}
+
+namespace lab {
+
+/// The same with what collides in it.
+struct FlatScene : Flat {
+  std::vector<ColliderPair> pairs, neighbour_pairs;  // the truth, by the method `exact`
+
+  /// self: every object is tested against itself as well.
+  FlatScene(Scene scene, bool self) : Flat(scene) {
+    for (Object& object : scene.objects) object.self = self;
+    const ExactResult exact = all_colliding_pairs(scene, {});
+    for (const TrianglePair& p : exact.pairs) pairs.push_back({p.a, p.b});
+    for (const TrianglePair& p : exact.neighbour_pairs) neighbour_pairs.push_back({p.a, p.b});
+  }
+  bool found_by(Collider& collider) const {
+    const ColliderResult found = collider.find(input());
+    return found.pairs == pairs && found.neighbour_pairs == neighbour_pairs;
+  }
+};
+
+}  // namespace lab
+}  // namespace farcull

@@ -1,0 +1,147 @@
+// What nearly every test uses: googletest and the standard library; how many random cases are
+// tried, of which seeds; what a call throws; and folders of a test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "tests/lab/standard.h"
+
+namespace farcull {
+
+/// FARCULL_SEED, else today's date in UTC as a number (20261125), so that inputs are tried that
+/// nobody has tried before. Every test program prints it at its start and beside a failure.
+/// Rapidcheck's own properties use it too, unless RC_PARAMS is set.
+std::uint64_t seed_of_day();
+
+/// A seed of the day for the loop that has this fixed seed; loops with other seeds get others.
+std::uint64_t seed_of_day(std::uint64_t fixed);
+
+/// The seeds of a loop. What asserts power (that something is lost, or culled) belongs to the fixed
+/// one, whose counts are known; of the day's inputs only the promise is asserted.
+inline std::array<std::uint64_t, 2> seeds(std::uint64_t fixed) {
+  return {fixed, seed_of_day(fixed)};
+}
+
+/// The seed of scene i of n: one half has the fixed seeds 0 .. n / 2 - 1, the other those of the
+/// day.
+inline std::uint64_t nth_seed(std::uint64_t i, std::uint64_t n) {
+  return i < n / 2 ? i : seed_of_day(i);
+}
+
+/// n random cases, or an eighth of them (at least `least`) where the address sanitizer makes every
+/// case several times slower: it looks for faults of memory, which a few cases of each kind show,
+/// and all n cases are tried without it.
+constexpr int trials(int n, [[maybe_unused]] int least = 1) {
+#ifdef __SANITIZE_ADDRESS__
+  return n / 8 > least ? n / 8 : least;
+#else
+  return n;
+#endif
+}
+
+/// A file of the build tree for a minimized input that failed, to be moved to tests/cases. Makes
+/// the folder.
+std::filesystem::path failure_file(const std::string& name);
+
+/// The Error that the call throws. Without one the test fails, and where is "nothing was thrown".
+template <class Call>
+Error error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.remedy.empty()) << error.what();
+    EXPECT_FALSE(error.reason.empty());
+    return error;
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return Error("nothing was thrown", "", "");
+}
+
+/// The same as text, for calls that may do well: "" then.
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The parts of a text between commas.
+inline std::vector<std::string> listed(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) out.push_back(part);
+  return out;
+}
+
+/// Whether the text has this part; shows the text where a test fails.
+inline testing::AssertionResult has_text(const std::string& text, const std::string& part) {
+  const bool has = text.find(part) != std::string::npos;
+  return (has ? testing::AssertionSuccess() : testing::AssertionFailure()) << text;
+}
+
+/// Whether the call throws an Error whose text has this part.
+template <class Call>
+testing::AssertionResult refuses(const std::string& part, const Call& call) {
+  return has_text(message_of(call), part);
+}
+
+/// The bytes of a file; none if it cannot be read.
+inline std::string read_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void write_text(const std::string& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// A folder of the running test's own, removed with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "farcull_test_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no scratch folder");
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string folder() const { return path_.string(); }
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string read(const std::string& name) const { return read_text(path(name)); }
+  /// Writes a file, in a folder that is made where there is none, and returns its path.
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    write_text(path(name), bytes);
+    return path(name);
+  }
+  /// Replaces the first `old` of a file, which has to be there.
+  void replace(const std::string& name, const std::string& old, const std::string& by) const {
+    std::string text = read(name);
+    const std::size_t place = text.find(old);
+    ASSERT_NE(place, std::string::npos) << name << " has no '" << old << "'";
+    write(name, text.replace(place, old.size(), by));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A folder of verdicts about devices for one test, in place of the one that all tests share.
+class CacheFolder : public ScratchFolder {
+ public:
+  CacheFolder() { ::setenv("XDG_CACHE_HOME", folder().c_str(), 1); }
+  ~CacheFolder() { ::setenv("XDG_CACHE_HOME", old_.c_str(), 1); }
+
+ private:
+  std::string old_ = std::getenv("XDG_CACHE_HOME");
+};
+
+}  // namespace farcull

@@ -1,0 +1,343 @@
+// Distances in rationals, for tests: the least over all pairs of features, each by its formula.
+// Written apart from all other code that computes distances.
+#pragma once
+
+#include "core/scene/scene.h"
+#include "core/voronoi/voronoi.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/scenes.h"
+#include "verify/rational.h"
+
+namespace farcull::exact_distance {
+
+// Number: rational::Q, or double for a first estimate.
+template <class Number>
+using Point = reference::Vector<Number>;
+template <class Number>
+using Corners = std::array<Point<Number>, 3>;
+using reference::cross;
+using reference::dot;
+using reference::minus;
+
+template <class Number>
+Corners<Number> converted(const std::array<Vec3, 3>& corners) {
+  return reference::converted(corners, [](double x) { return Number(x); });
+}
+
+/// The square of the distance of a point from a segment, which may be a point.
+template <class Number>
+Number to_segment(const Point<Number>& p, const Point<Number>& a, const Point<Number>& b) {
+  const Point<Number> e = minus(b, a), from = minus(p, a);
+  const Number ee = dot(e, e), along = dot(from, e);
+  if (ee == 0 || along <= 0) return dot(from, from);
+  const Point<Number> to = minus(p, b);
+  if (along >= ee) return dot(to, to);
+  return Number(dot(from, from) - along * along / ee);
+}
+
+// Where a line through p along d meets the plane of the triangle is inside: by the two weights.
+template <class Number>
+bool inside(const Point<Number>& x, const Corners<Number>& t, const Point<Number>& normal) {
+  const Point<Number> e = minus(t[1], t[0]), f = minus(t[2], t[0]), from = minus(x, t[0]);
+  const Number nn = dot(normal, normal), s = dot(cross(from, f), normal),
+               w = dot(cross(e, from), normal);
+  return s >= 0 && w >= 0 && s + w <= nn;
+}
+
+/// The square of the distance of a point from a triangle, which may be a segment or a point.
+template <class Number>
+Number to_triangle(const Point<Number>& p, const Corners<Number>& t) {
+  Number out = to_segment(p, t[0], t[1]);
+  out = std::min(out, to_segment(p, t[1], t[2]));
+  out = std::min(out, to_segment(p, t[2], t[0]));
+  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const Number nn = dot(normal, normal);
+  if (nn == 0 || !inside(p, t, normal)) return out;
+  const Number height = dot(minus(p, t[0]), normal);
+  return std::min(out, Number(height * height / nn));
+}
+
+// The square of the distance of two lines where both are nearest inside the segments.
+template <class Number>
+std::optional<Number> across(const Point<Number>& a, const Point<Number>& b, const Point<Number>& c,
+                             const Point<Number>& d) {
+  const Point<Number> e = minus(b, a), f = minus(d, c), from = minus(c, a), n = cross(e, f);
+  const Number nn = dot(n, n);
+  if (nn == 0) return std::nullopt;
+  const Number s = dot(cross(from, f), n), t = dot(cross(from, e), n);
+  if (s < 0 || s > nn || t < 0 || t > nn) return std::nullopt;
+  const Number height = dot(from, n);
+  return Number(height * height / nn);
+}
+
+// Whether the segment passes through the triangle from one side to the other.
+template <class Number>
+bool pierces(const Point<Number>& p, const Point<Number>& q, const Corners<Number>& t) {
+  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const Number from = dot(normal, minus(p, t[0])), to = dot(normal, minus(q, t[0]));
+  if (!((from < 0 && to > 0) || (from > 0 && to < 0))) return false;
+  Point<Number> x;
+  for (std::size_t k = 0; k < 3; ++k) x[k] = p[k] + from / Number(from - to) * (q[k] - p[k]);
+  return inside(x, t, normal);
+}
+
+/// The square of the distance of two triangles.
+template <class Number>
+Number between(const Corners<Number>& a, const Corners<Number>& b) {
+  Number out = to_triangle(a[0], b);
+  for (std::size_t i = 0; i < 3; ++i) {
+    out = std::min(out, to_triangle(a[i], b));
+    out = std::min(out, to_triangle(b[i], a));
+    const std::size_t next = (i + 1) % 3;
+    if (pierces(a[i], a[next], b) || pierces(b[i], b[next], a)) return Number(0);
+    for (std::size_t j = 0; j < 3; ++j)
+      if (const auto of_edges = across(a[i], a[next], b[j], b[(j + 1) % 3]))
+        out = std::min(out, *of_edges);
+  }
+  return out;
+}
+
+/// The nearest neighbours of an object.
+struct Nearest {
+  rational::Q squared = -1;         // of the distance; negative: there is no other object
+  std::vector<TrianglePair> pairs;  // all at that distance, sorted
+};
+
+/// Of each object. Precondition: coordinates of at most about 2, multiples of 2^-10 or of 2^-10 of
+/// their size. A first estimate in double leaves out what is far from the least distance: of such
+/// numbers all comparisons in it are right, and its squares are less than 1e-12 off.
+inline std::vector<Nearest> nearest_neighbours(const Scene& scene) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto count = static_cast<std::uint32_t>(scene.triangles.size());
+  std::vector<Corners<double>> rough;
+  std::vector<Corners<rational::Q>> exact;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    rough.push_back(converted<double>(scene.corners(t)));
+    exact.push_back(converted<rational::Q>(scene.corners(t)));
+  }
+  struct Estimate {
+    TrianglePair pair;
+    double squared;
+  };
+  std::vector<Estimate> estimates;
+  std::vector<double> least(scene.objects.size(), HUGE_VAL);
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      if (owner[a] == owner[b]) continue;
+      const double squared = between(rough[a], rough[b]);
+      estimates.push_back({{a, b}, squared});
+      for (const std::uint32_t t : {a, b}) least[owner[t]] = std::min(least[owner[t]], squared);
+    }
+  }
+  std::vector<Nearest> out(scene.objects.size());
+  for (const auto& [pair, squared] : estimates) {
+    std::optional<rational::Q> decided;
+    for (const std::uint32_t object : {owner[pair.a], owner[pair.b]}) {
+      if (squared > 1.001 * least[object] + 1e-12) continue;
+      if (!decided) decided = between(exact[pair.a], exact[pair.b]);
+      Nearest& nearest = out[object];
+      if (nearest.squared < 0 || *decided < nearest.squared) {
+        nearest.squared = *decided;
+        nearest.pairs.clear();
+      }
+      if (*decided == nearest.squared) nearest.pairs.push_back(pair);
+    }
+  }
+  return out;
+}
+
+}  // namespace farcull::exact_distance
+
+// Small scenes for tests of the discrete Voronoi diagram, and what it misses.
+
+namespace farcull::lab {
+
+// 3 to 8 objects of 1 to 4 triangles in a cube of side 1, on a grid of 2^-10, so that contacts and
+// ties happen. Kinds: triangles of any size; segments and points; needles; sheets one above the
+// other; a cluster of any size, from 1/4 to 1/2048, apart from one triangle; copies.
+constexpr int kNeighbourKinds = 6;
+constexpr int kClusterKind = 4;
+inline Scene neighbours_scene(std::uint64_t seed, int kind) {
+  Random random(seed);
+  constexpr double kGrid = 0x1p-10;
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(
+      static_cast<std::size_t>(3 + random.below(6)));
+  const auto drawn = [&](double from, double to) {
+    return Vec3(random.grid(from, to, kGrid), random.grid(from, to, kGrid),
+                random.grid(from, to, kGrid));
+  };
+  const double cluster = std::exp2(-2 - random.below(10));
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    const int count = 1 + random.below(4);
+    for (int i = 0; i < count; ++i) {
+      const double size = std::exp2(-random.below(8));
+      const Vec3 at = drawn(0, 1);
+      std::array<Vec3, 3> t = {at, at, at};
+      for (Vec3& c : t) c += drawn(-size, size);
+      if (kind == kClusterKind && (o > 0 || i > 0))
+        for (Vec3& c : t) c *= cluster;
+      if (kind == 1 && random.below(2)) t[2] = random.below(2) ? t[1] : Vec3(2 * t[1] - t[0]);
+      if (kind == 1 && random.below(3) == 0) t[2] = t[1] = t[0];
+      if (kind == 2) t[2] = t[1] + Vec3(kGrid, 0, 0);
+      if (kind == 3) t[0][2] = t[1][2] = t[2][2] = random.below(8) * 0x1p-5;
+      if (kind == 5 && o > 0 && random.below(3) == 0) t = objects[o - 1].front();
+      objects[o].push_back(t);
+    }
+  }
+  return scene_of(objects);
+}
+
+// Of any kind.
+inline Scene neighbours_scene(std::uint64_t seed) {
+  return neighbours_scene(seed, static_cast<int>(seed % kNeighbourKinds));
+}
+
+// How many objects have a nearest neighbour, and how many of these lose all of theirs: no object
+// that is as near as any is among the pairs.
+struct Losses {
+  std::uint64_t objects = 0, lost = 0;
+};
+
+inline bool holds(const std::vector<ObjectPair>& sorted, std::uint32_t a, std::uint32_t b) {
+  return std::ranges::binary_search(sorted, ObjectPair{std::min(a, b), std::max(a, b)});
+}
+
+inline void count_losses(const Scene& scene, const std::vector<exact_distance::Nearest>& truth,
+                         const std::vector<ObjectPair>& found, Losses& losses) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  for (const exact_distance::Nearest& nearest : truth) {
+    if (nearest.pairs.empty()) continue;
+    ++losses.objects;
+    losses.lost += std::ranges::none_of(nearest.pairs, [&](const TrianglePair& pair) {
+      return holds(found, owner[pair.a], owner[pair.b]);
+    });
+  }
+}
+
+/// The square of the distance of a point of a grid from a triangle.
+inline rational::Q squared_distance(const GridPoint& point, const GridTriangle& triangle) {
+  exact_distance::Corners<rational::Q> corners;
+  exact_distance::Point<rational::Q> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = static_cast<double>(point[k]);
+    for (std::size_t c = 0; c < 3; ++c) corners[c][k] = static_cast<double>(triangle.corners[c][k]);
+  }
+  return exact_distance::to_triangle(p, corners);
+}
+
+// What tests of a diagram that a device computes slice by slice share.
+
+// A triangle in the unit cubes of a grid, often a needle, a segment or a point.
+inline GridTriangle drawn_triangle(rational::Random& random, float longest) {
+  GridTriangle out;
+  const auto number = [&] { return static_cast<float>(random.uniform(0, longest)); };
+  const float thin = std::exp2(static_cast<float>(-random.below(40)));
+  for (auto& corner : out.corners) corner = {number(), number(), number()};
+  auto& [a, b, c] = out.corners;
+  switch (random.below(6)) {
+    case 0:  // a needle
+      for (std::size_t k = 0; k < 3; ++k) c[k] = std::min(longest, b[k] + thin);
+      break;
+    case 1:  // three points close to a line
+      for (std::size_t k = 0; k < 3; ++k) c[k] = 0.5f * (a[k] + b[k]);
+      c[0] = std::min(longest, c[0] + thin);
+      break;
+    case 2:
+      c = b;
+      break;
+    case 3:
+      c = b = a;
+      break;
+    default:
+      break;
+  }
+  return out;
+}
+
+// A grid as one brick for each 8 x 8 x 8 cells, with all triangles.
+inline VoronoiBricks all_bricks(const VoronoiGrid& grid, std::size_t triangles) {
+  VoronoiBricks out;
+  for (std::uint32_t t = 0; t < triangles; ++t) out.triangles.push_back(t);
+  for (int z = 0; z < grid.cells[2]; z += 8) {
+    for (int y = 0; y < grid.cells[1]; y += 8) {
+      for (int x = 0; x < grid.cells[0]; x += 8) {
+        out.bricks.push_back({{x, y, z},
+                              {std::min(x + 8, grid.cells[0]), std::min(y + 8, grid.cells[1]),
+                               std::min(z + 8, grid.cells[2])},
+                              0,
+                              triangles});
+      }
+    }
+  }
+  return out;
+}
+
+struct SliceCounts {
+  std::uint64_t cells = 0;  // compared
+  std::uint64_t same = 0;   // with the owners of the CPU's own diagram
+  std::uint64_t wrong = 0;  // with an owner that the errors do not explain
+};
+
+// Each cell's owners beside the distances of the CPU's diagram. An owner may differ only where the
+// distances tie within the errors of both.
+inline void compare_with_all_cells(const Scene& scene, int resolution, VoronoiDevice& device,
+                                   SliceCounts& counts) {
+  const VoronoiGrid grid = voronoi_grid(scene, resolution);
+  const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, 1);
+  const float within = 2 * (voronoi_error(grid.longest()) + voronoi_bounds::error(grid.longest()));
+  device.start(triangles, grid);
+  const VoronoiBricks bricks = all_bricks(grid, triangles.size());
+  std::vector<std::pair<float, std::uint32_t>> near(scene.objects.size()), sorted;
+  for (int z = 0; z < grid.cells[2]; ++z) {
+    const auto owners_of = device.nearest_two(z, bricks);
+    for (std::uint32_t cell = 0; cell < owners_of.size(); ++cell) {
+      const auto x = static_cast<int>(cell) % grid.cells[0];
+      const auto y = static_cast<int>(cell) / grid.cells[0];
+      const GridPoint centre = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                                static_cast<float>(z) + 0.5f};
+      for (std::uint32_t o = 0; o < near.size(); ++o) near[o] = {HUGE_VALF, o};
+      for (const GridTriangle& t : triangles) {
+        const float d = distance_of(centre, t, voronoi_error(grid.longest())).computed;
+        near[t.object].first = std::min(near[t.object].first, d);
+      }
+      sorted = near;
+      std::ranges::sort(sorted);
+      const auto& [a, b] = owners_of[cell];
+      ++counts.cells;
+      counts.same += a == sorted[0].second && b == sorted[1].second;
+      const auto ties = [&](std::uint32_t object, float distance) {
+        return object < near.size() && std::abs(near[object].first - distance) <= within;
+      };
+      counts.wrong += a == b || !ties(a, sorted[0].first) || !ties(b, sorted[1].first);
+    }
+  }
+}
+
+struct SliceLosses {
+  std::uint64_t pairs = 0, lost = 0, upper = 0;
+};
+
+// Nearest pairs of triangles of random scenes that the reliable form loses on the device, and upper
+// bounds that are too low.
+inline SliceLosses losses_of_reliable(VoronoiDevice& device, int scenes, double widening) {
+  SliceLosses out;
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(scenes); ++seed) {
+    const Scene scene = neighbours_scene(seed);
+    constexpr std::array<int, 7> kResolutions = {1, 2, 3, 5, 8, 11, 20};
+    const ReliableNeighbours found = reliable_neighbours(
+        scene, {.resolution = kResolutions[seed % 7], .widening = widening}, device);
+    const std::vector<exact_distance::Nearest> truth = exact_distance::nearest_neighbours(scene);
+    for (std::size_t o = 0; o < truth.size(); ++o) {
+      const rational::Q upper = std::isfinite(found.upper[o]) ? found.upper[o] : 1e300;
+      out.upper += upper * upper < truth[o].squared;
+      for (const TrianglePair& pair : truth[o].pairs) {
+        ++out.pairs;
+        out.lost += !std::ranges::binary_search(found.triangles, pair);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace farcull::lab
