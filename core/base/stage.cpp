@@ -120,6 +120,14 @@ std::string reason_of(const Stage& stage) {
              "; pairs of objects, and objects with themselves: " + m;
     case Reason::only_blocks:
       return "boxes of runs decide: no view is needed";
+    case Reason::boxes_meet:
+      return "pairs of triangles of different objects whose boxes meet: " + n +
+             "; what meets none is not drawn";
+    case Reason::many_in_front:
+      return "boxes of triangles overlap often, and only a triangle in front of all that its box "
+             "overlaps is culled: exact tests are cheaper";
+    case Reason::boxes_decide_little:
+      return "boxes of triangles meet too often, or lie too unevenly, to be compared first";
     case Reason::no_boxes_overlap:
       return "no two objects' boxes overlap" + apart + ", none is tested against itself";
     case Reason::no_triangle_meets:

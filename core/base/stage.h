@@ -45,58 +45,61 @@ enum class Unit : std::uint8_t { none, triangles, pairs, views };
 /// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,         // --full: nothing is left out
-  regions,      // n pairs of objects' boxes overlap
-  meetings,     // n such pairs, m objects are tested against themselves
-  crowded,      // too many such pairs to list; m as above
-  block_pairs,  // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
-                // `detail` were compared, since a corner moved; empty: all
-  only_blocks,  // nothing else can meet: no view is needed
-  no_boxes_overlap,    // no two objects' boxes overlap (and none is tested against itself)
-  no_triangle_meets,   // no triangle meets the box of another object
-  nothing_to_look_at,  // the boxes decide: no device is needed
-  device,              // `detail` answered
-  shaders,             // the canvas, on GL with context and shaders, for the fattener `detail`
-  fattener,            // `detail`; n triangles are beyond its budget and kept
-  unresolvable,        // double arithmetic cannot resolve the region of the view in pixels
-  unresolvable_view,   // pixel space cannot resolve the scene in the view
-  nothing_left,        // no triangle is left
-  set_unchanged,       // what the passes store has not changed since the last visit of the view
-  passes,              // n passes ran; fewer than 2: the other one's stored set has not changed
-  few_left,            // n triangles are left, at most m are enough
-  few_to_test,         // n triangles are left: m or fewer are cheaper to test
-  patches_cut,         // n patches of at most m triangles
-  patches_whole,       // n objects, none of more than m triangles: each is one patch
-  few_objects,         // n objects take part, fewer than m: one seldom hides all of another
-  rounds_given,        // n rounds were asked for
-  all_views,           // a triangle is culled where every view clears it
-  little_culled,       // the round culled n of m triangles, a smaller part than a round is worth
-  owners,              // every triangle is an owner by itself
-  clusters_given,      // sizes of clusters are given
-  clusters_large,      // occlusion queries on many triangles
-  clusters_small,      // occlusion queries on n triangles or fewer
-  clusters_flags,      // flags are read back at once
-  views_chosen,        // by the scene
-  views_given,         // by the caller
-  chosen,              // the view is looked at, for `detail`, n x m px
-  few_candidates,      // exact tests of n candidates are cheaper than a further view
-  enough_views,        // as many as a run looks at
-  given_up,            // the view removes no candidate: it is more work than n pairs of intervals
-  keeps_sample,        // the view keeps all of a sample of the candidates
-  sweep,               // boxes of n objects overlap, which have m triangles; `detail`
-  join_kept,           // boxes of what is kept
-  join_patches,        // boxes of what is kept in different patches, and of all in one patch
-  join_all,            // boxes of all triangles
-  join_unresolvable,   // no view can resolve the scene
-  join_uneven,         // triangles lie too unevenly for blocks and views; a tree of boxes decides
-  join_many_blocks,    // boxes of more than n pairs of blocks overlap: as above
-  join_many_tests,     // the view `detail` is more work than n pairs of intervals: as above
-  predicates,          // exact predicates on the candidates
-  no_candidates,       // there is no candidate to decide
-  every_pair,          // every pair is accounted for
-  not_asked,           // --no-verify
-  near_boxes,          // of n pairs of objects; m bounds of boxes were compared
-  inside_not_asked,    // --inside no
+  full,           // --full: nothing is left out
+  regions,        // n pairs of objects' boxes overlap
+  meetings,       // n such pairs, m objects are tested against themselves
+  crowded,        // too many such pairs to list; m as above
+  block_pairs,    // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
+                  // `detail` were compared, since a corner moved; empty: all
+  only_blocks,    // nothing else can meet: no view is needed
+  boxes_meet,     // of triangles of different objects, n pairs: what meets none takes no part
+  many_in_front,  // a triangle is culled only in front of all that its box overlaps
+  boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
+  no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
+  no_triangle_meets,    // no triangle meets the box of another object
+  nothing_to_look_at,   // the boxes decide: no device is needed
+  device,               // `detail` answered
+  shaders,              // the canvas, on GL with context and shaders, for the fattener `detail`
+  fattener,             // `detail`; n triangles are beyond its budget and kept
+  unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
+  unresolvable_view,    // pixel space cannot resolve the scene in the view
+  nothing_left,         // no triangle is left
+  set_unchanged,        // what the passes store has not changed since the last visit of the view
+  passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
+  few_left,             // n triangles are left, at most m are enough
+  few_to_test,          // n triangles are left: m or fewer are cheaper to test
+  patches_cut,          // n patches of at most m triangles
+  patches_whole,        // n objects, none of more than m triangles: each is one patch
+  few_objects,          // n objects take part, fewer than m: one seldom hides all of another
+  rounds_given,         // n rounds were asked for
+  all_views,            // a triangle is culled where every view clears it
+  little_culled,        // the round culled n of m triangles, a smaller part than a round is worth
+  owners,               // every triangle is an owner by itself
+  clusters_given,       // sizes of clusters are given
+  clusters_large,       // occlusion queries on many triangles
+  clusters_small,       // occlusion queries on n triangles or fewer
+  clusters_flags,       // flags are read back at once
+  views_chosen,         // by the scene
+  views_given,          // by the caller
+  chosen,               // the view is looked at, for `detail`, n x m px
+  few_candidates,       // exact tests of n candidates are cheaper than a further view
+  enough_views,         // as many as a run looks at
+  given_up,             // the view removes no candidate: it is more work than n pairs of intervals
+  keeps_sample,         // the view keeps all of a sample of the candidates
+  sweep,                // boxes of n objects overlap, which have m triangles; `detail`
+  join_kept,            // boxes of what is kept
+  join_patches,         // boxes of what is kept in different patches, and of all in one patch
+  join_all,             // boxes of all triangles
+  join_unresolvable,    // no view can resolve the scene
+  join_uneven,          // triangles lie too unevenly for blocks and views; a tree of boxes decides
+  join_many_blocks,     // boxes of more than n pairs of blocks overlap: as above
+  join_many_tests,      // the view `detail` is more work than n pairs of intervals: as above
+  predicates,           // exact predicates on the candidates
+  no_candidates,        // there is no candidate to decide
+  every_pair,           // every pair is accounted for
+  not_asked,            // --no-verify
+  near_boxes,           // of n pairs of objects; m bounds of boxes were compared
+  inside_not_asked,     // --inside no
   // Rules by which pixels decide, in a plan.
   if_more_left,        // if more than n triangles are left (n = 0: any)
   if_more_candidates,  // if more than n candidates are left for each triangle that takes part

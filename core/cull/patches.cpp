@@ -26,6 +26,8 @@ bool share_a_vertex(const Scene& scene, const TrianglePair& pair) {
                      [&](std::uint32_t v) { return std::find(b.begin(), b.end(), v) != b.end(); });
 }
 
+}  // namespace
+
 std::vector<std::uint32_t> triangles_of_marked(const Scene& scene) {
   std::vector<std::uint32_t> out;
   for (const Object& object : scene.objects) {
@@ -36,31 +38,46 @@ std::vector<std::uint32_t> triangles_of_marked(const Scene& scene) {
   return out;
 }
 
+namespace {
+
+// Per object, how many triangles of an ascending list it has.
+std::vector<std::uint32_t> counts_in(const Scene& scene, std::span<const std::uint32_t> list) {
+  std::vector<std::uint32_t> counts;
+  auto at = list.begin();
+  for (const Object& object : scene.objects) {
+    const auto end =
+        std::lower_bound(at, list.end(), object.first_triangle + object.triangle_count);
+    counts.push_back(static_cast<std::uint32_t>(end - at));
+    at = end;
+  }
+  return counts;
+}
+
 }  // namespace
 
-std::uint32_t usual_patch_size(const Scene& scene) {
-  std::uint32_t largest = 0;
-  for (const Object& object : scene.objects) {
-    if (object.self) largest = std::max(largest, object.triangle_count);
-  }
+std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t> marked) {
+  const std::vector<std::uint32_t> counts = counts_in(scene, marked);
+  const std::uint32_t largest = counts.empty() ? 0 : std::ranges::max(counts);
   return std::clamp(largest / kPatches, kLeastPatch, kMostPatch);
 }
 
-Patches cut_patches(const Scene& scene, std::span<const Box> boxes, std::uint32_t size) {
+Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
+                    std::span<const std::uint32_t> marked, std::uint32_t size) {
   if (size == 0) throw std::logic_error("cut_patches: patches of no triangle");
   Patches out{.size = size, .owner = std::vector<std::uint32_t>(scene.triangles.size())};
-  const std::vector<std::uint32_t> order =
-      spatial_order(triangles_of_marked(scene), owners(scene), boxes);
+  const std::vector<std::uint32_t> order = spatial_order(marked, owners(scene), boxes);
+  const std::vector<std::uint32_t> counts = counts_in(scene, marked);
   std::uint32_t next = 0;  // owner
   std::size_t at = 0;      // in `order`, where objects ascend
-  for (const Object& object : scene.objects) {
-    const std::uint32_t first = object.first_triangle, count = object.triangle_count;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    std::fill_n(out.owner.begin() + object.first_triangle, object.triangle_count, next);
     if (!object.self) {
-      std::fill_n(out.owner.begin() + first, count, next++);
+      ++next;
       continue;
     }
-    for (std::uint32_t i = 0; i < count; ++i) out.owner[order[at++]] = next + i / size;
-    const std::uint32_t patches = (count + size - 1) / size;
+    for (std::uint32_t i = 0; i < counts[o]; ++i) out.owner[order[at++]] = next + i / size;
+    const std::uint32_t patches = std::max<std::uint32_t>(1, (counts[o] + size - 1) / size);
     out.count += patches;
     out.cut |= patches > 1;
     next += patches;
@@ -73,13 +90,7 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
                                        std::span<const std::uint8_t> bits, bool neighbours) {
   const auto owner = [&](std::uint32_t t) { return patches.owner[t]; };
   std::vector<TrianglePair> pairs = box_join(boxes, patches.owner, live);
-  if (!bits.empty()) {
-    std::erase_if(pairs, [&](const TrianglePair& pair) {
-      const bool ordered = owner(pair.a) < owner(pair.b);
-      const std::uint32_t earlier = ordered ? pair.a : pair.b, later = ordered ? pair.b : pair.a;
-      return (bits[earlier] & kL) || (bits[later] & kF);
-    });
-  }
+  if (!bits.empty()) remove_cleared(bits, patches.owner, pairs);
   // The triangles of marked objects, patch after patch.
   std::vector<std::uint32_t> members = triangles_of_marked(scene);
   std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -101,6 +112,26 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,
+                        std::span<const std::uint32_t> owner) {
+  PairsToDraw out;
+  for (const TrianglePair& pair : pairs) {
+    const bool drawn = owner[pair.a] != owner[pair.b] && !share_a_vertex(scene, pair);
+    (drawn ? out.drawn : out.other).push_back(pair);
+  }
+  return out;
+}
+
+void remove_cleared(std::span<const std::uint8_t> bits, std::span<const std::uint32_t> owner,
+                    std::vector<TrianglePair>& pairs) {
+  std::erase_if(pairs, [&](const TrianglePair& pair) {
+    if (owner[pair.a] == owner[pair.b]) return false;
+    const auto [earlier, later] =
+        owner[pair.a] < owner[pair.b] ? pair : TrianglePair{pair.b, pair.a};
+    return (bits[earlier] & kL) || (bits[later] & kF);
+  });
 }
 
 }  // namespace farcull

@@ -20,13 +20,18 @@ struct Patches {
                                      // no owner has triangles of two objects.
 };
 
-/// The fixed rule: a sixteenth of the triangles of the largest object that is marked `self`, but at
-/// least 256 and at most 4096.
-std::uint32_t usual_patch_size(const Scene& scene);
+/// The triangles of objects that are marked `self`, ascending.
+std::vector<std::uint32_t> triangles_of_marked(const Scene& scene);
 
-/// Cuts the triangles of each marked object, in the order of spatial_order(), into patches of
-/// `size`; the last of an object may be smaller. boxes: per triangle of the scene. size: 1 or more.
-Patches cut_patches(const Scene& scene, std::span<const Box> boxes, std::uint32_t size);
+/// The fixed rule: a sixteenth of the triangles that the largest object has among `marked`, but at
+/// least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
+std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t> marked);
+
+/// Cuts `marked` (as above) object by object, in the order of spatial_order(), into patches of
+/// `size`; the last of an object may be smaller. Other triangles of a marked object belong to its
+/// first patch. boxes: per triangle of the scene. size: 1 or more.
+Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
+                    std::span<const std::uint32_t> marked, std::uint32_t size);
 
 /// The pairs that are left to test: all a < b with overlapping boxes that are both in `live` and of
 /// different owners, or inside one patch of a marked object, live or not. A pair of different
@@ -38,5 +43,20 @@ Patches cut_patches(const Scene& scene, std::span<const Box> boxes, std::uint32_
 std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> boxes,
                                        const Patches& patches, std::span<const std::uint32_t> live,
                                        std::span<const std::uint8_t> bits, bool neighbours = true);
+
+/// Which of some pairs drawing can take away.
+struct PairsToDraw {
+  std::vector<TrianglePair> drawn;  // of different owners, without a common vertex
+  std::vector<TrianglePair> other;  // all others: every view finds that they touch, or their owner
+                                    // is one
+};
+/// owner: per triangle of the scene; see CullSettings::owners.
+PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,
+                        std::span<const std::uint32_t> owner);
+
+/// Takes away the pairs of different owners of which a bit proves that they do not meet (theorem
+/// 2): L of the earlier owner's triangle, or F of the later one's. bits: as CullResult::bits.
+void remove_cleared(std::span<const std::uint8_t> bits, std::span<const std::uint32_t> owner,
+                    std::vector<TrianglePair>& pairs);
 
 }  // namespace farcull

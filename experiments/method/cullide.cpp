@@ -7,6 +7,7 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/native/lanes.h"
+#include "core/pairs/boxes_before_pixels.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 #include "offsets/offsets.h"
@@ -73,10 +74,11 @@ Stage join_stage(const DrawPlan& work) {
           .unit = Unit::pairs};
 }
 
-// Cuts the objects that are tested against themselves.
-Stage cut(const Scene& scene, Patches& patches) {
+// Cuts the triangles of objects that are tested against themselves.
+Stage cut(const Scene& scene, std::span<const Box> boxes, std::span<const std::uint32_t> marked,
+          Patches& patches) {
   const Stopwatch watch;
-  patches = cut_patches(scene, triangle_boxes(scene), usual_patch_size(scene));
+  patches = cut_patches(scene, boxes, marked, usual_patch_size(scene, marked));
   return {.kind = StageKind::patches,
           .ran = patches.cut,
           .reason = patches.cut ? Reason::patches_cut : Reason::patches_whole,
@@ -163,37 +165,100 @@ void add_members(const Scene& scene, Candidates& out) {
   out.triangles = std::move(all);
 }
 
+// Boxes of objects, as published: what takes part, and where.
+void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
+  const RunOptions& options = plan.options;
+  if (!work.self && has_self(scene)) {
+    const std::vector<std::uint32_t> marked = triangles_of_marked(scene);
+    plan.trace.push_back(cut(scene, triangle_boxes(scene), marked, work.patches));
+  }
+  const Stopwatch watch;
+  const bool self = work.self || work.patches.cut;
+  work.regions = find_regions(scene, {.self = self, .full = options.full});
+  plan.trace.push_back(boxes_stage(scene, work.regions, self, options.full));
+  plan.trace.back().ms = watch.ms();
+}
+
+// Boxes of triangles: all pairs whose boxes overlap. False: they do not decide here.
+bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
+  const RunOptions& options = plan.options;
+  const Stopwatch watch;
+  Stage stage{.kind = StageKind::boxes, .unit = Unit::triangles};
+  stage.in = stage.out = scene.triangles.size();
+  const std::optional<std::vector<TrianglePair>> pairs =
+      pairs_of_boxes(scene, options.ignored, options.neighbours, threads);
+  if (!pairs) {
+    stage.kind = StageKind::blocks;
+    stage.reason = Reason::boxes_decide_little;
+    stage.ms = watch.ms();
+    plan.trace.push_back(stage);
+    return false;
+  }
+  // Each object is one owner, until it is known what is drawn of those that collide with
+  // themselves.
+  work.pairs = split_pairs(scene, *pairs, join_owners(scene));
+  work.regions = regions_of(scene, work.pairs->drawn);
+  stage.ran = true;
+  stage.reason = Reason::boxes_meet;
+  stage.n = pairs->size();
+  stage.out = work.regions.triangles.size();
+  stage.ms = watch.ms();
+  plan.trace.push_back(stage);
+  if (!has_self(scene)) {
+    work.patches.owner = owners(scene);
+    return true;
+  }
+  std::vector<std::uint32_t> marked;
+  std::ranges::set_intersection(work.regions.triangles, triangles_of_marked(scene),
+                                std::back_inserter(marked));
+  plan.trace.push_back(cut(scene, work.regions.triangle_boxes, marked, work.patches));
+  work.pairs = split_pairs(scene, *pairs, work.patches.owner);
+  work.regions = regions_of(scene, work.pairs->drawn);
+  return true;
+}
+
+// The stage that says why nothing is drawn; without a reason: something is.
+Stage nothing_to_draw(const RunOptions& options, const DrawPlan& work) {
+  Stage stage{.kind = StageKind::draw, .unit = Unit::triangles};
+  const Regions& regions = work.regions;
+  const bool may_test_instead = boxes_of(options) == BoxLevel::enough && promises(options) &&
+                                (options.device.empty() || is_cpu(options.device));
+  if (regions.triangles.empty()) {
+    stage.reason = work.patches.count > 0   ? Reason::nothing_to_look_at
+                   : regions.places.empty() ? Reason::no_boxes_overlap
+                                            : Reason::no_triangle_meets;
+  } else if (may_test_instead && !work.pairs) {
+    stage.reason = Reason::many_in_front;
+  } else if (may_test_instead &&
+             work.pairs->drawn.size() < kPairsWorthDrawing * regions.triangles.size()) {
+    stage.reason = Reason::few_candidates;
+    stage.n = work.pairs->drawn.size();
+  }
+  return stage;
+}
+
 }  // namespace
 
-void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
+void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
   const RunOptions& options = plan.options;
-  const bool self = tests_self_alone(options.method);
   DrawPlan work;
-  work.self = self;
-  if (!self && has_self(scene)) plan.trace.push_back(cut(scene, work.patches));
-  const Stopwatch watch;
+  work.self = tests_self_alone(options.method);
+  const bool objects = boxes_of(options) == BoxLevel::objects;
+  if (objects || !compare_boxes(scene, threads, plan, work)) find_places(scene, plan, work);
   if (options.objects_alone && work.patches.cut) {
     throw Error("{level}", "an object that is tested against itself is asked in patches",
                 "leave {level} objects or the self-collision out");
   }
-  work.regions = find_regions(scene, {.self = self || work.patches.cut, .full = options.full});
-  const Regions& regions = work.regions;
-  plan.trace.push_back(boxes_stage(scene, regions, self || work.patches.cut, options.full));
-  plan.trace.back().ms = watch.ms();
-  work.settings = settings_of(options, regions.triangles.size());
+  work.settings = settings_of(options, work.regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
-  if (regions.triangles.empty()) {
-    plan.trace.push_back({.kind = StageKind::draw,
-                          .reason = work.patches.count > 0   ? Reason::nothing_to_look_at
-                                    : regions.places.empty() ? Reason::no_boxes_overlap
-                                                             : Reason::no_triangle_meets,
-                          .unit = Unit::triangles});
+  if (const Stage stage = nothing_to_draw(options, work); stage.reason != Reason::none) {
+    plan.trace.push_back(stage);
   } else {
     work.fatteners = fatteners_of(options);
     CullSettings first = work.settings;
     first.fattener = work.fatteners.front();
     plan.ahead.push_back(setup_stage(first.fattener));
-    const std::vector<Stage> drawn = planned_stages(scene, regions, first);
+    const std::vector<Stage> drawn = planned_stages(scene, work.regions, first);
     plan.ahead.insert(plan.ahead.end(), drawn.begin(), drawn.end());
     for (std::size_t k = 1; k < work.fatteners.size(); ++k) {
       Stage stage = offset_stage(work.fatteners[k]);
@@ -214,6 +279,7 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   Candidates out;
   out.by = std::vector<ViewReport>();
   if (work.fatteners.empty()) {
+    if (!work.pairs) out.triangles = work.regions.triangles;
     out.device.note = reason_of(plan.trace.back()) + ": nothing to draw";
   } else {
     cull_by_offsets(scene, work, plan.options, session, progress, out);
@@ -222,7 +288,14 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   if (progress) progress("joining boxes");
   const std::uint64_t left = out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
-  if (work.patches.count > 0) {
+  if (work.pairs) {
+    out.pairs = work.pairs->drawn;
+    if (!out.bits.empty()) remove_cleared(out.bits, work.patches.owner, out.pairs);
+    const std::size_t drawn = out.pairs.size();
+    out.pairs.insert(out.pairs.end(), work.pairs->other.begin(), work.pairs->other.end());
+    std::ranges::inplace_merge(out.pairs, out.pairs.begin() + static_cast<std::ptrdiff_t>(drawn));
+    out.triangles = members_of(out.pairs, scene.triangles.size());
+  } else if (work.patches.count > 0) {
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
     add_members(scene, out);

@@ -114,6 +114,9 @@ bool take_device(const std::string& text, RunOptions& options) {
   return is_device(text);
 }
 
+// The words of BoxLevel, in its order.
+constexpr const char* kBoxLevels[] = {"objects", "triangles", "enough"};
+
 // The methods that have an option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
@@ -232,6 +235,34 @@ const Option kOptions[] = {
      .value =
          [](Run o) {
            return text_if(draws(o.method), query_of(o) == QueryMode::flags ? "flags" : "occlusion");
+         }},
+    {.name = "boxes",
+     .type = "objects|triangles|enough",
+     .help = "which boxes come before drawing. objects: a triangle\n"
+             "is drawn if its box meets that of another object, as\n"
+             "published; triangles: that of a triangle of one; enough:\n"
+             "the same, and nothing is drawn if exact tests of the\n"
+             "pairs take less time; default enough for far, objects\n"
+             "for cullide and quick-cullide",
+     .serves = drawing_levels,
+     .take =
+         [](Given text, RunOptions& o) {
+           const auto known = std::ranges::find(kBoxLevels, text);
+           if (known == std::end(kBoxLevels)) return false;
+           o.boxes = static_cast<BoxLevel>(known - std::begin(kBoxLevels));
+           return true;
+         },
+     .kind = "choice",
+     .remedy = "give objects, triangles or enough",
+     .unusual =
+         [](Run o) {
+           return only_if(o.boxes.has_value(), kBoxLevels[static_cast<std::size_t>(boxes_of(o))]);
+         },
+     .copy = copy_value<&RunOptions::boxes>,
+     .value =
+         [](Run o) {
+           return text_if(drawing_levels(traits(o.method)),
+                          kBoxLevels[static_cast<std::size_t>(boxes_of(o))]);
          }},
     {.name = "clusters",
      .type = "LIST|none",

@@ -77,6 +77,12 @@ DepthMode depth_of(const RunOptions& options) {
   return options.depth.value_or(fattens(options.method) ? DepthMode::fragment : DepthMode::fixed);
 }
 
+BoxLevel boxes_of(const RunOptions& options) {
+  // Nothing is left out with `full`, and of whole objects only their boxes are asked.
+  const bool usual = fattens(options.method) && !options.full && !options.objects_alone;
+  return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
+}
+
 QueryMode query_of(const RunOptions& options) {
   // One step a triangle: flags would wait for each of them.
   const bool steps = tests_self_alone(options.method);

@@ -26,6 +26,11 @@ inline constexpr Method kDefaultMethod = Method::far_pairs;
 /// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 
+/// What boxes decide before anything is drawn. objects: which triangles meet the box of another
+/// object, as published. triangles: which meet the box of a triangle of one. enough: the same, and
+/// nothing is drawn if exact tests of the pairs that are left take less time.
+enum class BoxLevel : std::uint8_t { objects, triangles, enough };
+
 struct RunOptions {
   Method method = kDefaultMethod;
   bool method_is_default = false;  // nobody named it, so the record says why it is this one
@@ -38,11 +43,12 @@ struct RunOptions {
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
-  int rounds = 0;                    // at most; 0: until one changes nothing, or far's rule
-  ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
-  bool objects_alone = false;        // objects are culled, their triangles are not; not s-cullide
-  bool conservative = false;         // a fragment in each pixel touched; not far
-  std::string views = {};            // "": x,y,z, but chosen by the scene for far-pairs
+  int rounds = 0;                      // at most; 0: until one changes nothing, or far's rule
+  ClearRule clear = ClearRule::any;    // how many views have to clear a triangle
+  bool objects_alone = false;          // objects are culled, their triangles are not; not s-cullide
+  bool conservative = false;           // a fragment in each pixel touched; not far
+  std::optional<BoxLevel> boxes = {};  // default: enough for far, objects for the CULLIDE family
+  std::string views = {};              // "": x,y,z, but chosen by the scene for far-pairs
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even where a software
                             // renderer answers; hardware, software or a number: that GL device;
                             // "": GL where hardware answers, else the cores of the CPU
@@ -138,6 +144,7 @@ int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
+BoxLevel boxes_of(const RunOptions& options);
 /// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);

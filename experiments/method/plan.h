@@ -1,6 +1,7 @@
 // Everything about a run that needs no pixels. `farcull plan` prints it, find() executes it.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct DrawPlan {
   CullSettings settings;            // but for the fattener
   bool self = false;                // triangles of marked objects are owners
   Patches patches;                  // of far, where an object is tested against itself; else empty
+  /// All pairs whose boxes overlap, where boxes of triangles come before drawing; the owners of
+  /// `patches` are set then. Empty: boxes of objects alone do.
+  std::optional<PairsToDraw> pairs = {};
 };
 
 struct Plan {

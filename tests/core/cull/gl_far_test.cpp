@@ -29,6 +29,8 @@ Session& session() {
 
 Record run(const Scene& scene, int resolution, RunOptions options = {.method = Method::far}) {
   options.resolution = resolution;
+  // Both forms of boxes before pixels; what exact tests alone would decide is drawn too.
+  if (!options.boxes) options.boxes = resolution % 2 ? BoxLevel::triangles : BoxLevel::objects;
   return run(scene, options, session());
 }
 

@@ -2,7 +2,11 @@
 // allow nothing is missed; without one of the parts of the argument pairs are lost.
 #include "core/cull/patches.h"
 
+#include <numeric>
+
+#include "core/boxes/join.h"
 #include "core/cull/pass.h"
+#include "core/pairs/boxes_before_pixels.h"
 #include "tests/lab/far.h"
 #include "verify/worst_canvas.h"
 
@@ -13,14 +17,16 @@ enum class Twin {
   none,
   inside_not_joined,  // pairs inside a patch are left out
   other_division,     // bits of one division are used for another
-  order_reversed      // bits are read as if the owners were in the opposite order
+  order_reversed,     // bits are read as if the owners were in the opposite order
+  not_drawn           // every fifth triangle of a drawn pair is not drawn
 };
 
 struct Asked {
   std::string views = "x,y,z";
   int resolution = 16;
   std::uint32_t patch = 4;
-  double factor = 1;  // on the radius of the budget
+  bool boxes_first = false;  // boxes of triangles say what is drawn
+  double factor = 1;         // on the radius of the budget
   Twin twin = Twin::none;
 };
 
@@ -33,8 +39,24 @@ struct Found {
 // Cuts, culls, joins and accounts for every pair.
 Found far_self_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
                   const Asked& asked) {
-  const Regions regions = find_regions(scene, {.self = true});
-  Patches patches = cut_patches(scene, regions.triangle_boxes, asked.patch);
+  std::vector<std::uint32_t> all(scene.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const std::vector<Box> boxes = triangle_boxes(scene);
+  const std::vector<TrianglePair> box_pairs = box_join(boxes, join_owners(scene), all);
+  Regions regions = asked.boxes_first
+                        ? regions_of(scene, split_pairs(scene, box_pairs, join_owners(scene)).drawn)
+                        : find_regions(scene, {.self = true});
+  std::vector<std::uint32_t> marked;
+  std::ranges::set_intersection(regions.triangles, triangles_of_marked(scene),
+                                std::back_inserter(marked));
+  Patches patches = cut_patches(scene, boxes, marked, asked.patch);
+  PairsToDraw pairs;
+  if (asked.boxes_first) {
+    pairs = split_pairs(scene, box_pairs, patches.owner);
+    regions = regions_of(scene, pairs.drawn);
+  }
+  if (asked.twin == Twin::not_drawn)
+    std::erase_if(regions.triangles, [](std::uint32_t t) { return t % 5 == 0; });
   const CullSettings settings{.views = parse_views(asked.views),
                               .resolution = asked.resolution,
                               .fattener = fattener,
@@ -42,26 +64,28 @@ Found far_self_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
                               .owners = patches.owner};
   const CullResult result = cull(scene, regions, settings, canvas);
   if (asked.twin == Twin::other_division)
-    patches = cut_patches(scene, regions.triangle_boxes, asked.patch + 1);
+    patches = cut_patches(scene, boxes, marked, asked.patch + 1);
   if (asked.twin == Twin::order_reversed) {
     const auto owners = static_cast<std::uint32_t>(scene.triangles.size());
     for (std::uint32_t& owner : patches.owner) owner = owners - owner;
   }
-  std::vector<TrianglePair> pairs =
-      join_patches(scene, regions.triangle_boxes, patches, result.live, result.bits);
+  std::vector<TrianglePair> left;
+  if (asked.boxes_first) {
+    remove_cleared(result.bits, patches.owner, pairs.drawn);
+    std::ranges::merge(pairs.drawn, pairs.other, std::back_inserter(left));
+  } else {
+    left = join_patches(scene, boxes, patches, result.live, result.bits);
+  }
   if (asked.twin == Twin::inside_not_joined) {
-    std::erase_if(pairs, [&](const TrianglePair& pair) {
+    std::erase_if(left, [&](const TrianglePair& pair) {
       return patches.owner[pair.a] == patches.owner[pair.b];
     });
   }
-  const Accounting accounting = account(scene, pairs);
-  std::vector<std::uint32_t> all(scene.triangles.size());
-  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
-  const std::size_t boxes = box_join(regions.triangle_boxes, join_owners(scene), all).size();
+  const Accounting accounting = account(scene, left);
   return {.missed = accounting.false_negatives,
           .colliding = all_colliding_pairs(scene, {.threads = 1}).pairs.size(),
           .culled = regions.triangles.size() - result.live.size(),
-          .avoided = boxes - pairs.size()};
+          .avoided = box_pairs.size() - left.size()};
 }
 
 // Sheets of n x n squares with common vertices, rolled and crumpled so that they pierce themselves
@@ -106,7 +130,8 @@ Asked asked_of(std::uint64_t seed) {
   const auto any = [&](const auto& of) { return of[random.below(static_cast<int>(of.size()))]; };
   return {.views = any(lab::property_views()),
           .resolution = random.below(3) ? 64 : any(lab::property_resolutions()),
-          .patch = static_cast<std::uint32_t>(1 + random.below(40))};
+          .patch = static_cast<std::uint32_t>(1 + random.below(40)),
+          .boxes_first = random.below(2) == 1};
 }
 
 // The sums over scenes, of the same seeds for every twin.
@@ -162,6 +187,10 @@ TEST(FarSelfTwin, BitsReadInTheOppositeOrderLosePairs) {
   EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::order_reversed).missed, 0u);
 }
 
+TEST(FarSelfTwin, TrianglesOfDrawnPairsThatAreNotDrawnLosePairs) {
+  EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::not_drawn).missed, 0u);
+}
+
 // Scene `seed` of a family of extreme scenes, its objects marked, and how it is asked about: in
 // small patches, since few pairs are to be inside one, which needs no radius.
 std::pair<Scene, Asked> extreme(const lab::Family& family, const Fattener& fattener,
@@ -173,7 +202,8 @@ std::pair<Scene, Asked> extreme(const lab::Family& family, const Fattener& fatte
   return {scene,
           {.views = given.views,
            .resolution = given.resolution,
-           .patch = 1 + static_cast<std::uint32_t>(seed) % 3}};
+           .patch = 1 + static_cast<std::uint32_t>(seed) % 3,
+           .boxes_first = seed % 2 == 1}};
 }
 
 TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
@@ -211,7 +241,8 @@ TEST(Patches, AreOwnersOfAtMostTheirSizeInsideTheirObjects) {
   for (int seed = 0; seed < 40; ++seed) {
     const Scene scene = crumpled(seed);
     const std::uint32_t size = asked_of(seed).patch;
-    const Patches patches = cut_patches(scene, triangle_boxes(scene), size);
+    const Patches patches =
+        cut_patches(scene, triangle_boxes(scene), triangles_of_marked(scene), size);
     ASSERT_EQ(patches.owner.size(), scene.triangles.size());
     std::map<std::uint32_t, std::uint32_t> members;
     std::uint32_t beyond = 0, count = 0;  // owners of the objects before
@@ -238,7 +269,7 @@ TEST(Patches, AreOwnersOfAtMostTheirSizeInsideTheirObjects) {
     EXPECT_EQ(patches.count, count);
     EXPECT_EQ(patches.cut, cut);
   }
-  EXPECT_THROW(cut_patches(crumpled(0), triangle_boxes(crumpled(0)), 0), std::logic_error);
+  EXPECT_THROW(cut_patches(crumpled(0), triangle_boxes(crumpled(0)), {}, 0), std::logic_error);
 }
 
 TEST(Patches, LeaveToTestWhatTheContractSays) {
@@ -246,7 +277,8 @@ TEST(Patches, LeaveToTestWhatTheContractSays) {
     const Scene scene = crumpled(seed);
     const std::vector<Box> boxes = triangle_boxes(scene);
     const std::vector<std::uint32_t> object = owners(scene);
-    const Patches patches = cut_patches(scene, boxes, asked_of(seed).patch);
+    const Patches patches =
+        cut_patches(scene, boxes, triangles_of_marked(scene), asked_of(seed).patch);
     lab::Random random(seed);
     std::vector<std::uint8_t> bits;
     std::vector<std::uint32_t> live;
@@ -285,7 +317,7 @@ TEST(Patches, TrianglesOfTwoObjectsAreNoNeighboursWhateverTheyShare) {
   const std::vector<Box> boxes = triangle_boxes(scene);
   const std::vector<std::uint32_t> live = {0, 1, 2};
   for (const std::uint32_t size : {1u, 4u}) {
-    const Patches patches = cut_patches(scene, boxes, size);
+    const Patches patches = cut_patches(scene, boxes, triangles_of_marked(scene), size);
     const auto pairs = [&](bool neighbours) {
       return join_patches(scene, boxes, patches, live, {}, neighbours);
     };
@@ -298,7 +330,7 @@ TEST(Patches, HaveASixteenthOfTheLargestMarkedObjectWithinBounds) {
   const auto size = [](std::uint32_t marked, std::uint32_t other) {
     Scene scene;
     scene.objects = {{"marked", 0, marked, true}, {"other", marked, other, false}};
-    return usual_patch_size(scene);
+    return usual_patch_size(scene, triangles_of_marked(scene));
   };
   EXPECT_EQ(size(32000, 1000000), 2000u);
   EXPECT_EQ(size(100, 1000000), 256u);

@@ -62,9 +62,38 @@ TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
   EXPECT_FALSE(record.found.device.note.empty());
 }
 
-TEST(Planner, SaysWhatItLeavesOut) {
+TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
   const Scene scene = make_builtin_scene("two-spheres");
   RunOptions far{.method = Method::far};
+  Plan planned = plan(scene, far);
+  EXPECT_EQ(decision(planned, "draw"), "left out");
+  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::few_candidates);
+  const Record exact = run(scene, {.method = Method::exact});
+  const Record enough = run(scene, far);
+  EXPECT_EQ(enough.collisions.pairs, exact.collisions.pairs);
+  EXPECT_EQ(enough.found.count, exact.found.count);
+  EXPECT_TRUE(enough.found.views().empty());
+  // Asked to draw all the same, in windows where triangles meet: fewer pairs, the same answer.
+  far.boxes = BoxLevel::triangles;
+  planned = plan(scene, far);
+  EXPECT_EQ(decision(planned, "fatten x, round 1"), "runs");
+  Session native("native");
+  const Record drawn = run(scene, far, native);
+  EXPECT_EQ(drawn.collisions.pairs, exact.collisions.pairs);
+  EXPECT_LT(drawn.found.count, exact.found.count);
+  far.boxes = BoxLevel::objects;
+  const Record published = run(scene, far, native);
+  EXPECT_LE(drawn.found.triangle_count, published.found.triangle_count);
+  EXPECT_LT(drawn.found.views()[0].pixel_size, published.found.views()[0].pixel_size);
+  // What promises nothing is drawn: its answer depends on it.
+  far.boxes = {};
+  far.radius.factor = 0.9;
+  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+}
+
+TEST(Planner, SaysWhatItLeavesOut) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far{.method = Method::far, .boxes = BoxLevel::objects};
   EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
   EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
@@ -118,6 +147,7 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
   Scene scene = make_builtin_scene("two-spheres");
   RunOptions options;
   options.method = Method::far;
+  options.boxes = BoxLevel::objects;
   EXPECT_FALSE(has(plan(scene, options), StageKind::patches));
   scene.objects[0].self = true;  // of 5120 triangles, so its patches have 320
   const Plan planned = plan(scene, options);

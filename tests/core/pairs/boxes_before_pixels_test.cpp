@@ -1,0 +1,92 @@
+#include "core/pairs/boxes_before_pixels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/base/random.h"
+#include "core/boxes/block.h"
+#include "tests/lab/reference.h"
+
+namespace farcull {
+namespace {
+
+// Objects of small triangles that are scattered in a cube, and of some that cross it.
+Scene scattered(std::uint64_t seed) {
+  RandomNumbers random(seed);
+  Scene scene;
+  const auto point = [&](double size) {
+    return Vec3(random.between(-size, size), random.between(-size, size),
+                random.between(-size, size));
+  };
+  const std::size_t objects = 1 + random.below(5);
+  for (std::size_t o = 0; o < objects; ++o) {
+    Object object{.name = std::to_string(o)};
+    object.first_triangle = static_cast<std::uint32_t>(scene.triangles.size());
+    object.self = random.below(3) == 0;
+    object.triangle_count = static_cast<std::uint32_t>(random.below(120));
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      const Vec3 at = point(1);
+      const double size = random.below(20) ? 0.1 : 1;
+      const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+      for (int corner = 0; corner < 3; ++corner) scene.vertices.push_back(at + point(size));
+      scene.triangles.push_back({first, first + 1, t % 2 ? first - 1 : first + 2});
+    }
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
+// By comparing all boxes.
+std::vector<TrianglePair> expected(const Scene& scene, std::span<const ObjectPair> ignored,
+                                   bool neighbours) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> out;
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool boxes_overlap) {
+    const bool ask = neighbours || !reference::neighbours(scene, pair);
+    if (boxes_overlap && ask &&
+        !std::ranges::count(ignored, ObjectPair{owner[pair.a], owner[pair.b]}))
+      out.push_back(pair);
+  });
+  return out;
+}
+
+TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {
+  std::size_t found = 0, undecided = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    const Scene scene = scattered(seed);
+    std::vector<ObjectPair> ignored;
+    if (seed % 3 == 0 && scene.objects.size() > 1) ignored.push_back({0, 1});
+    const bool neighbours = seed % 2 == 0;
+    const auto pairs = pairs_of_boxes(scene, ignored, neighbours, 1);
+    if (!pairs) {
+      ++undecided;
+      continue;
+    }
+    EXPECT_EQ(*pairs, expected(scene, ignored, neighbours)) << seed;
+    found += pairs->size();
+  }
+  EXPECT_GT(found, 10000u);
+  EXPECT_LT(undecided, 100u);
+}
+
+TEST(BoxesBeforePixels, PlacesHoldWhereTheBoxesOfTwoTrianglesMeet) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Scene scene = scattered(seed);
+    const auto pairs = pairs_of_boxes(scene, {}, true, 1);
+    if (!pairs) continue;
+    const Regions regions = regions_of(scene, *pairs);
+    EXPECT_EQ(regions.triangles, members_of(*pairs, scene.triangles.size()));
+    for (const auto& [a, b] : *pairs) {
+      EXPECT_EQ(regions.triangle_boxes[a].lo, grown_box(scene, a, 0).lo);
+      const Box common = intersection(grown_box(scene, a, 0), grown_box(scene, b, 0));
+      EXPECT_TRUE(std::ranges::any_of(regions.places, [&](const Box& place) {
+        return (place.lo.array() <= common.lo.array()).all() &&
+               (place.hi.array() >= common.hi.array()).all();
+      })) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace farcull
