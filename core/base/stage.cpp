@@ -124,8 +124,8 @@ std::string reason_of(const Stage& stage) {
       return "pairs of triangles of different objects whose boxes meet: " + n +
              "; what meets none is not drawn";
     case Reason::many_in_front:
-      return "boxes of triangles overlap often, and only a triangle in front of all that its box "
-             "overlaps is culled: exact tests are cheaper";
+      return "only a triangle in front of all that its box overlaps is culled, and boxes do not say "
+             "that these are few: exact tests are cheaper";
     case Reason::boxes_decide_little:
       return "boxes of triangles meet too often, or lie too unevenly, to be compared first";
     case Reason::no_boxes_overlap:
