@@ -62,7 +62,7 @@ namespace {
 
 constexpr std::uint64_t kDriftSeed = 8;
 
-struct Part {
+struct ObjectAtRest {
   Box box;
   std::vector<std::uint32_t> vertices;  // each once
 };
@@ -70,7 +70,7 @@ struct Part {
 // The scene without frames and its objects.
 struct Rest {
   std::vector<Vec3> vertices;
-  std::vector<Part> parts;
+  std::vector<ObjectAtRest> parts;
 };
 
 std::shared_ptr<const Rest> rest_of(const Scene& scene) {
@@ -78,7 +78,7 @@ std::shared_ptr<const Rest> rest_of(const Scene& scene) {
   rest->vertices = scene.vertices;
   std::vector<std::uint8_t> seen(scene.vertices.size(), 0);
   for (const Object& object : scene.objects) {
-    Part& part = rest->parts.emplace_back();
+    ObjectAtRest& part = rest->parts.emplace_back();
     part.box = Box::empty();
     for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
       for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
@@ -108,7 +108,7 @@ Motion pass_through(const Scene& scene) {
 Motion pulse(const Scene& scene) {
   return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
     for (std::size_t o = 0; o < rest->parts.size(); ++o) {
-      const Part& part = rest->parts[o];
+      const ObjectAtRest& part = rest->parts[o];
       const Vec3 middle = centre(part.box);
       const double radius = (part.box.hi.z() - part.box.lo.z()) / 2;
       const double phase = 0.25 * static_cast<double>(o);
@@ -126,7 +126,7 @@ Motion pulse(const Scene& scene) {
 Motion drift(const Scene& scene) {
   return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
     shapes::Random random(kDriftSeed);
-    for (const Part& part : rest->parts) {
+    for (const ObjectAtRest& part : rest->parts) {
       const Vec3 way = random.direction();
       if (part.box.is_empty()) continue;
       const Vec3 by = std::sin(shapes::kTurn * now.time) * diagonal(part.box) * way;

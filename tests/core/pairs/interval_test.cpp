@@ -38,6 +38,7 @@ namespace farcull::interval {
 namespace farcull::interval_bare {
 using namespace farcull::glsl;
 #include "core/pairs/interval.glsl"
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare
 
 #define float Chance
@@ -45,6 +46,7 @@ namespace farcull::interval_bare_chance {
 using namespace farcull::glsl_chance;
 #include "core/pairs/interval.glsl"
 #undef float
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare_chance
 
 #undef FAR_PAIR_ROUNDING
@@ -54,6 +56,7 @@ namespace farcull::interval_chance {
 using namespace farcull::glsl_chance;
 #include "core/pairs/interval.glsl"
 #undef float
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_chance
 
 namespace farcull {
