@@ -29,12 +29,14 @@ namespace farcull::interval {
 namespace farcull::interval_bare {
 using namespace farcull::glsl;
 #include "core/pairs/interval.glsl"
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare
 
 #define float Chance
 namespace farcull::interval_bare_chance {
 using namespace farcull::glsl_chance;
 #undef float
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare_chance
 
 #undef FAR_PAIR_ROUNDING
@@ -43,6 +45,7 @@ using namespace farcull::glsl_chance;
 namespace farcull::interval_chance {
 using namespace farcull::glsl_chance;
 #undef float
+#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_chance
 
 namespace farcull {
