@@ -35,6 +35,7 @@ using namespace farcull::glsl;
 #define float Chance
 namespace farcull::interval_bare_chance {
 using namespace farcull::glsl_chance;
+#include "core/pairs/interval.glsl"
 #undef float
 #include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare_chance
@@ -44,6 +45,7 @@ using namespace farcull::glsl_chance;
 #define float Chance
 namespace farcull::interval_chance {
 using namespace farcull::glsl_chance;
+#include "core/pairs/interval.glsl"
 #undef float
 #include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_chance
