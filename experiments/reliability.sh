@@ -55,23 +55,32 @@ device=(${DEVICE:+--device "$DEVICE"})
 
 # mesh_scene SCENE: FAR on a scene and its copies.
 mesh_scene() {
-  local scene copy resolutions methods risk offset resolution lost
+  local scene copy resolutions methods boxes
   for copy in "" @far @tiny @huge @ground; do
     scene=$1$copy resolutions=128,1024 methods=far,exact
     if [[ -z $copy ]]; then resolutions=64,128,256,512,1024,2048 methods=far,cullide,exact; fi
-    build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
-      "${device[@]}" --json "$out/$scene.json" || failed+=("$scene")
-    # Pairs at risk. Where there are none, "0 missed" does not show that the radius is large enough.
-    risk=
-    for offset in obb exact; do
-      for resolution in ${resolutions//,/ }; do
-        lost=$(build/farcull run "$scene" --method far --offset $offset --resolution "$resolution" --radius 0.9 \
-          "${device[@]}" --json - | sed -nE 's/^ *"false_negatives": ([0-9]+),?$/\1/p') || true
-        risk+=" $offset $resolution px ${lost:-?},"
-      done
+    for boxes in objects triangles; do
+      # Few triangles are drawn after boxes of triangles, so the same pairs may be at risk in finer pixels.
+      if [[ $boxes == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
+      build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
+        --boxes $boxes "${device[@]}" --json "$out/$scene.$boxes.json" || failed+=("$scene")
+      risk_of "$scene" $boxes "$resolutions"
     done
-    printf 'at risk at 0.9 of the radius:%s\n\n' "${risk%,}"
   done
+}
+
+# risk_of SCENE BOXES RESOLUTIONS: prints how many pairs are at risk. Where there are none, "0 missed" does not show that the radius
+# is large enough.
+risk_of() {
+  local risk='' offset resolution lost
+  for offset in obb exact; do
+    for resolution in ${3//,/ }; do
+      lost=$(build/farcull run "$1" --method far --offset $offset --resolution "$resolution" --radius 0.9 --boxes "$2" \
+        "${device[@]}" --json - | sed -nE 's/^ *"false_negatives": ([0-9]+),?$/\1/p') || true
+      risk+=" $offset $resolution px ${lost:-?},"
+    done
+  done
+  printf 'at risk at 0.9 of the radius, boxes of %s:%s\n\n' "$2" "${risk%,}"
 }
 
 # pairs_run SCENE [OPTIONS]: far-pairs by both back ends.

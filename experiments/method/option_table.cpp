@@ -242,8 +242,8 @@ const Option kOptions[] = {
              "is drawn if its box meets that of another object, as\n"
              "published; triangles: that of a triangle of one; enough:\n"
              "the same, and nothing is drawn if exact tests of the\n"
-             "pairs take less time; default enough for far, objects\n"
-             "for cullide and quick-cullide",
+             "pairs take less time; default enough for far where\n"
+             "it promises to miss nothing, else objects",
      .serves = drawing_levels,
      .take =
          [](Given text, RunOptions& o) {

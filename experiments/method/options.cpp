@@ -78,8 +78,10 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 BoxLevel boxes_of(const RunOptions& options) {
-  // Nothing is left out with `full`, and of whole objects only their boxes are asked.
-  const bool usual = fattens(options.method) && !options.full && !options.objects_alone;
+  // Where nothing is promised, it is the published form. Nothing is left out with `full`, and of whole
+  // objects only their boxes are asked.
+  const bool usual = fattens(options.method) && promises(options) && !options.full &&
+                     !options.objects_alone;
   return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
 }
 

@@ -47,7 +47,7 @@ struct RunOptions {
   ClearRule clear = ClearRule::any;    // how many views have to clear a triangle
   bool objects_alone = false;          // objects are culled, their triangles are not; not s-cullide
   bool conservative = false;           // a fragment in each pixel touched; not far
-  std::optional<BoxLevel> boxes = {};  // default: enough for far, objects for the CULLIDE family
+  std::optional<BoxLevel> boxes = {};  // default: enough where far promises, else objects
   std::string views = {};              // "": x,y,z, but chosen by the scene for far-pairs
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even where a software
                             // renderer answers; hardware, software or a number: that GL device;

@@ -85,9 +85,12 @@ TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
   const Record published = run(scene, far, native);
   EXPECT_LE(drawn.found.triangle_count, published.found.triangle_count);
   EXPECT_LT(drawn.found.views()[0].pixel_size, published.found.views()[0].pixel_size);
-  // What promises nothing is drawn: its answer depends on it.
-  far.boxes = {};
+  // What promises nothing is drawn, and in the published form unless another one is given.
   far.radius.factor = 0.9;
+  far.boxes = BoxLevel::enough;
+  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+  far.boxes = {};
+  EXPECT_EQ(boxes_of(far), BoxLevel::objects);
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
 }
 
