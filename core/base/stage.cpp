@@ -121,15 +121,17 @@ std::string reason_of(const Stage& stage) {
     case Reason::only_blocks:
       return "boxes of runs decide: no view is needed";
     case Reason::boxes_meet:
-      return "pairs of triangles of different objects whose boxes meet: " + n +
-             "; what meets none is not drawn";
+      return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::many_in_front:
-      return "only a triangle in front of all that its box overlaps is culled, and boxes do not say "
-             "that these are few: exact tests are cheaper";
+      return "only a triangle in front of all that its box overlaps is culled, and boxes do not "
+             "say "
+             "that these are few: exact tests are usually cheaper";
     case Reason::boxes_decide_little:
       return "boxes of triangles meet too often, or lie too unevenly, to be compared first";
     case Reason::no_boxes_overlap:
       return "no two objects' boxes overlap" + apart + ", none is tested against itself";
+    case Reason::no_box_pairs:
+      return "no boxes of two triangles that could collide overlap";
     case Reason::no_triangle_meets:
       return "no triangle meets the box of another object";
     case Reason::nothing_to_look_at:
@@ -188,6 +190,8 @@ std::string reason_of(const Stage& stage) {
     case Reason::chosen:
       return stage.detail + (stage.n > 0 ? ": " + number(stage.n) + " x " + number(stage.m) + " px"
                                          : std::string());
+    case Reason::few_pairs:
+      return "exact tests of " + counted(stage.n, "pair", "pairs") + " are cheaper than one view";
     case Reason::few_candidates:
       return "exact tests of " + counted(stage.n, "candidate", "candidates") +
              " are cheaper than a further view";
@@ -201,6 +205,8 @@ std::string reason_of(const Stage& stage) {
       if (stage.detail.empty()) return "boxes of objects, then of their triangles";
       return "boxes of " + objects(stage.n) + " overlap, which have " + triangles(stage.m) + "; " +
              stage.detail;
+    case Reason::not_cleared:
+      return "those of the pairs above that drawing did not clear";
     case Reason::join_kept:
       return "boxes of what is kept";
     case Reason::join_patches:

@@ -56,6 +56,7 @@ enum class Reason : std::uint8_t {
   many_in_front,  // a triangle is culled only in front of all that its box overlaps
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
+  no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // the boxes decide: no device is needed
   device,               // `detail` answered
@@ -82,11 +83,13 @@ enum class Reason : std::uint8_t {
   views_chosen,         // by the scene
   views_given,          // by the caller
   chosen,               // the view is looked at, for `detail`, n x m px
+  few_pairs,            // exact tests of n pairs are cheaper than one view
   few_candidates,       // exact tests of n candidates are cheaper than a further view
   enough_views,         // as many as a run looks at
   given_up,             // the view removes no candidate: it is more work than n pairs of intervals
   keeps_sample,         // the view keeps all of a sample of the candidates
   sweep,                // boxes of n objects overlap, which have m triangles; `detail`
+  not_cleared,          // pairs that boxes found, but for those that drawing cleared
   join_kept,            // boxes of what is kept
   join_patches,         // boxes of what is kept in different patches, and of all in one patch
   join_all,             // boxes of all triangles

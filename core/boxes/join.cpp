@@ -172,9 +172,10 @@ constexpr std::size_t kLeast = 4096;
 
 std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
-                                   std::span<const std::uint32_t> items, std::size_t most) {
+                                   std::span<const std::uint32_t> items, std::size_t most,
+                                   unsigned threads) {
   std::vector<TrianglePair> pairs, some;
-  OrderedPairs join(boxes, owners, items, chunks_for(items.size(), kLeast) > 1 ? 0 : 1);
+  OrderedPairs join(boxes, owners, items, items.size() < kLeast ? 1 : threads);
   while (!join.at_end() && pairs.size() <= most) {
     join.next(std::max<std::size_t>(most, 1), some);
     pairs.insert(pairs.end(), some.begin(), some.end());

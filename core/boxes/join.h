@@ -18,11 +18,12 @@ namespace farcull {
 
 /// All pairs a < b of `items` (indices into boxes and owners) of different owners whose closed
 /// boxes overlap, sorted. Exact: compares doubles only. Empty boxes overlap nothing. If there are
-/// more than `most`, returns most + 1 of them.
+/// more than `most`, returns most + 1 of them. threads: 0 for as many as there are cores; changes
+/// no answer.
 std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
                                    std::span<const std::uint32_t> items,
-                                   std::size_t most = SIZE_MAX);
+                                   std::size_t most = SIZE_MAX, unsigned threads = 1);
 
 /// Owners for box_join() that count pairs inside objects marked `self` too: a triangle of one is an
 /// owner by itself.

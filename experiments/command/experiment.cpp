@@ -97,7 +97,6 @@ int FamilyCommand::run() {
   options.device = farcull::device_of(device_);
   options.verify = !no_verify_;
   options.method = Method::far;  // for all that draw: the scene chooses no views
-  options.boxes = BoxLevel::objects;  // the published forms
   take_given("views", views_, options);
   take_given("query", query_, options);
   const Outputs outputs = checked(outputs_, scene_files(arguments_.scenes, arguments_.range));

@@ -70,7 +70,9 @@ Stage offset_stage(const Fattener& fattener) {
 Stage join_stage(const DrawPlan& work) {
   return {.kind = StageKind::join,
           .ran = true,
-          .reason = work.patches.count > 0 ? Reason::join_patches : Reason::join_kept,
+          .reason = work.pairs               ? Reason::not_cleared
+                    : work.patches.count > 0 ? Reason::join_patches
+                                             : Reason::join_kept,
           .unit = Unit::pairs};
 }
 
@@ -211,9 +213,13 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   std::vector<std::uint32_t> marked;
   std::ranges::set_intersection(work.regions.triangles, triangles_of_marked(scene),
                                 std::back_inserter(marked));
-  plan.trace.push_back(cut(scene, work.regions.triangle_boxes, marked, work.patches));
+  Stage patches = cut(scene, work.regions.triangle_boxes, marked, work.patches);
   work.pairs = split_pairs(scene, *pairs, work.patches.owner);
   work.regions = regions_of(scene, work.pairs->drawn);
+  patches.in = stage.out;
+  patches.out = work.regions.triangles.size();
+  patches.unit = Unit::triangles;
+  plan.trace.push_back(patches);
   return true;
 }
 
@@ -224,14 +230,16 @@ Stage nothing_to_draw(const RunOptions& options, const DrawPlan& work) {
   const bool may_test_instead = boxes_of(options) == BoxLevel::enough && promises(options) &&
                                 (options.device.empty() || is_cpu(options.device));
   if (regions.triangles.empty()) {
-    stage.reason = work.patches.count > 0   ? Reason::nothing_to_look_at
+    stage.reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
+                       ? Reason::nothing_to_look_at
+                   : work.pairs             ? Reason::no_box_pairs
                    : regions.places.empty() ? Reason::no_boxes_overlap
                                             : Reason::no_triangle_meets;
   } else if (may_test_instead && !work.pairs) {
     stage.reason = Reason::many_in_front;
   } else if (may_test_instead &&
              work.pairs->drawn.size() < kPairsWorthDrawing * regions.triangles.size()) {
-    stage.reason = Reason::few_candidates;
+    stage.reason = Reason::few_pairs;
     stage.n = work.pairs->drawn.size();
   }
   return stage;
@@ -286,7 +294,8 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   }
   const Stopwatch join;
   if (progress) progress("joining boxes");
-  const std::uint64_t left = out.triangles.size();
+  const std::uint64_t left =
+      work.pairs ? work.pairs->drawn.size() + work.pairs->other.size() : out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
   if (work.pairs) {
     out.pairs = work.pairs->drawn;
@@ -300,7 +309,8 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
     add_members(scene, out);
   } else {
-    out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles);
+    out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles,
+                         SIZE_MAX, session.threads());
   }
   out.count = out.pairs.size();
   Stage stage = join_stage(work);

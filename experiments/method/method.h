@@ -72,11 +72,13 @@ std::string method_names(const std::function<bool(const Traits&)>& can = {});
 inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool chooses_views(Method method) { return traits(method).chooses_views; }
+inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
+/// Boxes of objects or of triangles say what it draws.
+inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
 /// In views, on a canvas or without one.
 inline bool looks(Method method) { return draws(method) || chooses_views(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }
-inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
 inline bool takes_clearance(Method method) { return traits(method).takes_clearance; }
 
 }  // namespace farcull

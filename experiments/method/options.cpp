@@ -51,6 +51,10 @@ void validate(const RunOptions& options, const GivenOptions& given) {
                 "use {depth} fragment, or {offset} obb");
   }
   refuse_idle(options, given);
+  if (options.full && boxes_of(options) != BoxLevel::objects) {
+    throw Error("{boxes}", "of triangles leave out what {full} asks for",
+                "leave one of the two out");
+  }
   if (options.objects_alone && options.clusters && !options.clusters->empty()) {
     throw Error("{clusters}", "are of triangles, which {level} objects never asks",
                 "leave one of the two out");
@@ -78,10 +82,10 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 BoxLevel boxes_of(const RunOptions& options) {
-  // Where nothing is promised, it is the published form. Nothing is left out with `full`, and of whole
-  // objects only their boxes are asked.
-  const bool usual = fattens(options.method) && promises(options) && !options.full &&
-                     !options.objects_alone;
+  // Where nothing is promised, it is the published form. Nothing is left out with `full`, and of
+  // whole objects only their boxes are asked.
+  const bool usual =
+      fattens(options.method) && promises(options) && !options.full && !options.objects_alone;
   return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -191,6 +192,7 @@ struct ViewRun {
 ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Session& session) {
   options.views = view;
   options.depth_format = DepthFormat::float32;
+  if (takes_boxes(options.method)) options.boxes = BoxLevel::objects;  // the published form
   Plan planned = plan(scene, options);
   // The method's own offset alone, to the end, without clusters: the picture is about this view.
   auto& work = std::get<DrawPlan>(planned.work);
@@ -318,9 +320,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
                        .shaded = false});
   }
   std::vector<TrianglePair> missed;
-  for (const TrianglePair& pair : truth.pairs) {
-    if (bits[pair.a] == 3 || bits[pair.b] == 3) missed.push_back(pair);
-  }
+  std::ranges::set_difference(truth.pairs, run.found.pairs, std::back_inserter(missed));
   const std::vector<std::uint32_t> lost = members_of(missed);
   result.missed = missed.size();
   result.missed_triangles = lost.size();

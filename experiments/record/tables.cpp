@@ -242,8 +242,14 @@ std::string device_work_line(const Record& record) {
 }
 
 // The window that was looked at where the scene chose.
+// Whether boxes left so little that nothing was drawn.
+bool was_not_drawn(const Record& r) {
+  return draws(r.options.method) && boxes_of(r.options) == BoxLevel::enough &&
+         r.found.views().empty();
+}
+
 std::string resolution_text(const Record& r) {
-  if (!looks(r.options.method)) return "-";
+  if (!looks(r.options.method) || was_not_drawn(r)) return "-";
   if (resolution_of(r.options) > 0) return std::to_string(resolution_of(r.options));
   for (const PairView& view : r.found.pair_views()) {
     if (view.looked) return fmt::format("auto {}", std::max(view.width, view.height));
@@ -458,6 +464,11 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   out += self ? ";\n+ neighbours: colliding pairs of triangles of one object that share a vertex "
                 "position.\n"
               : ".\n";
+  if (std::ranges::any_of(records, was_not_drawn)) {
+    out +=
+        "- for far: nothing was drawn, since boxes leave few pairs; --boxes triangles draws "
+        "them.\n";
+  }
   if (reference) {
     out +=
         "x exact: cull + exact ms over those of the method exact in this run\n"

@@ -44,7 +44,6 @@ TEST(SweepJoin, NothingToJoin) {
   EXPECT_TRUE(box_join(boxes, Indices{4, 4, 4}, all(3)).empty());
 }
 
-// All extents are zero, so no axis is better than another (0 / 0).
 TEST(SweepJoin, EqualPointsAllMeet) {
   const std::vector<Box> boxes(20, Box{Vec3(1, 2, 3), Vec3(1, 2, 3)});
   expect_as_brute_force(boxes, all(20), all(20));
@@ -60,7 +59,7 @@ TEST(SweepJoin, EmptyBoxesMeetNothingEvenWhenEmptyAlongOneAxisOnly) {
   }
 }
 
-// Lengths and extents overflow; the order of -0.0 and 0.0 must not matter.
+// The order of -0.0 and 0.0 must not matter.
 TEST(SweepJoin, TheEndsOfTheDoubles) {
   const std::vector<Box> boxes = {{Vec3::Constant(-DBL_MAX), Vec3::Constant(DBL_MAX)},
                                   {Vec3::Constant(-DBL_MAX), Vec3::Constant(-DBL_MAX)},
@@ -106,6 +105,29 @@ TEST(SweepJoin, AsBruteForceOnManyBoxesOfEveryShape) {
     }
     expect_as_brute_force(boxes, owners, all(count));
     if (HasFatalFailure()) return;
+  }
+}
+
+// More than a thread takes alone, in any number of threads, and no more pairs than asked for.
+TEST(SweepJoin, StopsAfterTheMostAndTakesAnyNumberOfThreads) {
+  Random random(302);
+  std::vector<Box> boxes;
+  Indices owners;
+  for (std::uint32_t k = 0; k < 6000; ++k) {
+    const Vec3 at = random.cube(10);
+    boxes.push_back({at, at + Vec3(random.cube(0.5).cwiseAbs())});
+    owners.push_back(k % 7);
+  }
+  const Pairs expected = brute_force(boxes, owners, all(6000));
+  ASSERT_GT(expected.size(), 1000u);
+  for (const unsigned threads : {1u, 3u, 0u}) {
+    EXPECT_EQ(box_join(boxes, owners, all(6000), SIZE_MAX, threads), expected);
+    for (const std::size_t most : {std::size_t{0}, std::size_t{1}, expected.size() - 1}) {
+      const Pairs some = box_join(boxes, owners, all(6000), most, threads);
+      ASSERT_EQ(some.size(), most + 1);
+      EXPECT_TRUE(std::equal(some.begin(), some.end(), expected.begin()));
+    }
+    EXPECT_EQ(box_join(boxes, owners, all(6000), expected.size(), threads), expected);
   }
 }
 

@@ -30,7 +30,10 @@ Session& session() {
 Record run(const Scene& scene, int resolution, RunOptions options = {.method = Method::far}) {
   options.resolution = resolution;
   // Both forms of boxes before pixels; what exact tests alone would decide is drawn too.
-  if (!options.boxes) options.boxes = resolution % 2 ? BoxLevel::triangles : BoxLevel::objects;
+  if (!options.boxes)
+    options.boxes = (static_cast<std::size_t>(resolution) + scene.triangles.size()) % 2
+                        ? BoxLevel::triangles
+                        : BoxLevel::objects;
   return run(scene, options, session());
 }
 

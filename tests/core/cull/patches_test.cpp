@@ -18,7 +18,7 @@ enum class Twin {
   inside_not_joined,  // pairs inside a patch are left out
   other_division,     // bits of one division are used for another
   order_reversed,     // bits are read as if the owners were in the opposite order
-  not_drawn           // every fifth triangle of a drawn pair is not drawn
+  not_drawn           // every second triangle of a drawn pair is not drawn, so none hides another
 };
 
 struct Asked {
@@ -56,13 +56,16 @@ Found far_self_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
     regions = regions_of(scene, pairs.drawn);
   }
   if (asked.twin == Twin::not_drawn)
-    std::erase_if(regions.triangles, [](std::uint32_t t) { return t % 5 == 0; });
+    std::erase_if(regions.triangles, [](std::uint32_t t) { return t % 2 == 0; });
   const CullSettings settings{.views = parse_views(asked.views),
                               .resolution = asked.resolution,
                               .fattener = fattener,
                               .radius = {.published = false, .factor = asked.factor},
                               .owners = patches.owner};
-  const CullResult result = cull(scene, regions, settings, canvas);
+  CullResult result = cull(scene, regions, settings, canvas);
+  if (asked.twin == Twin::not_drawn) {  // only the bits of what was drawn lose pairs
+    for (std::uint32_t t = 0; t < result.bits.size(); t += 2) result.bits[t] = 0;
+  }
   if (asked.twin == Twin::other_division)
     patches = cut_patches(scene, boxes, marked, asked.patch + 1);
   if (asked.twin == Twin::order_reversed) {
@@ -145,6 +148,7 @@ Found crumpled_sum(const Fattener& fattener, int scenes, Twin twin = Twin::none,
     const std::uint64_t seed = promises ? nth_seed(n, scenes) : n;
     Asked asked = asked_of(seed);
     asked.twin = twin;
+    asked.boxes_first |= twin == Twin::not_drawn;
     asked.factor = factor;
     const Found found = far_self_on(canvas, crumpled(seed), fattener, asked);
     if (promises) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/base/random.h"
 #include "core/boxes/block.h"
@@ -70,20 +71,25 @@ TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {
   EXPECT_LT(undecided, 100u);
 }
 
-TEST(BoxesBeforePixels, PlacesHoldWhereTheBoxesOfTwoTrianglesMeet) {
+TEST(BoxesBeforePixels, PlacesAreWhereTheBoxesOfTwoTrianglesMeet) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Scene scene = scattered(seed);
     const auto pairs = pairs_of_boxes(scene, {}, true, 1);
     if (!pairs) continue;
     const Regions regions = regions_of(scene, *pairs);
     EXPECT_EQ(regions.triangles, members_of(*pairs, scene.triangles.size()));
+    const std::vector<std::uint32_t> owner = owners(scene);
+    std::map<std::uint32_t, Box> places;  // by the object of the first triangle
     for (const auto& [a, b] : *pairs) {
       EXPECT_EQ(regions.triangle_boxes[a].lo, grown_box(scene, a, 0).lo);
-      const Box common = intersection(grown_box(scene, a, 0), grown_box(scene, b, 0));
-      EXPECT_TRUE(std::ranges::any_of(regions.places, [&](const Box& place) {
-        return (place.lo.array() <= common.lo.array()).all() &&
-               (place.hi.array() >= common.hi.array()).all();
-      })) << seed;
+      places.try_emplace(owner[a], Box::empty())
+          .first->second.add(intersection(grown_box(scene, a, 0), grown_box(scene, b, 0)));
+    }
+    ASSERT_EQ(regions.places.size(), places.size()) << seed;
+    std::size_t at = 0;
+    for (const auto& [object, place] : places) {
+      EXPECT_EQ(regions.places[at].lo, place.lo) << seed;
+      EXPECT_EQ(regions.places[at++].hi, place.hi) << seed;
     }
   }
 }

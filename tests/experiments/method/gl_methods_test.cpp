@@ -25,7 +25,7 @@ RunOptions options_of(Method method, int resolution = 64) {
   RunOptions options;
   options.method = method;
   options.resolution = resolution;
-  if (!tests_self_alone(method)) options.boxes = BoxLevel::objects;  // so that something is drawn
+  if (takes_boxes(method)) options.boxes = BoxLevel::objects;  // so that something is drawn
   return options;
 }
 

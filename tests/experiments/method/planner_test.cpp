@@ -67,7 +67,7 @@ TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
   RunOptions far{.method = Method::far};
   Plan planned = plan(scene, far);
   EXPECT_EQ(decision(planned, "draw"), "left out");
-  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::few_candidates);
+  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::few_pairs);
   const Record exact = run(scene, {.method = Method::exact});
   const Record enough = run(scene, far);
   EXPECT_EQ(enough.collisions.pairs, exact.collisions.pairs);
@@ -92,6 +92,40 @@ TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
   far.boxes = {};
   EXPECT_EQ(boxes_of(far), BoxLevel::objects);
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+}
+
+TEST(Planner, BoxesBeforePixelsGiveTheAnswerOfExactInsideObjectsToo) {
+  Session native("native");
+  for (const std::string name : {"crumpled:3000", "rope:3000", "random-soup", "needles"}) {
+    Scene scene = make_builtin_scene(name);
+    for (Object& object : scene.objects) object.self = true;
+    const Record exact = run(scene, {.method = Method::exact});
+    for (const BoxLevel boxes : {BoxLevel::objects, BoxLevel::triangles, BoxLevel::enough}) {
+      RunOptions far{.method = Method::far, .resolution = 256};
+      far.boxes = boxes;
+      const Record record = run(scene, far, native);
+      EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs) << name;
+      EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << name;
+      EXPECT_EQ(record.verification->false_negatives, 0) << name;
+    }
+  }
+}
+
+// Two triangles that share a vertex are no drawn pair, and boxes of others do not overlap.
+TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
+  Scene scene = lab::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}},
+                               {{Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}}});
+  scene.triangles[1][0] = scene.triangles[0][0];
+  const RunOptions far{.method = Method::far};
+  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::nothing_to_look_at);
+  EXPECT_EQ(run(scene, far).collisions.pairs.size(), 1u);
+  const auto at = [](double x) {
+    return std::array{Vec3(x, x, x), Vec3(x + 1, x, x), Vec3(x, x + 1, x)};
+  };
+  const Scene apart = lab::scene_of({{at(0), at(10)}, {at(5), at(15)}});
+  EXPECT_EQ(stage_named(plan(apart, far), "draw").reason, Reason::no_box_pairs);
+  EXPECT_EQ(stage_named(plan(make_builtin_scene("needles"), far), "draw").reason,
+            Reason::many_in_front);
 }
 
 TEST(Planner, SaysWhatItLeavesOut) {
