@@ -115,7 +115,7 @@ TEST(SweepJoin, StopsAfterTheMostAndTakesAnyNumberOfThreads) {
   Indices owners;
   for (std::uint32_t k = 0; k < 6000; ++k) {
     const Vec3 at = random.cube(10);
-    boxes.push_back({at, at + Vec3(random.cube(0.5).cwiseAbs())});
+    boxes.push_back({at, at + Vec3(random.cube(2).cwiseAbs())});
     owners.push_back(k % 7);
   }
   const Pairs expected = brute_force(boxes, owners, all(6000));

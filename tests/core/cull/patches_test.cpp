@@ -66,8 +66,10 @@ Found far_self_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
   if (asked.twin == Twin::not_drawn) {  // only the bits of what was drawn lose pairs
     for (std::uint32_t t = 0; t < result.bits.size(); t += 2) result.bits[t] = 0;
   }
-  if (asked.twin == Twin::other_division)
+  if (asked.twin == Twin::other_division) {
     patches = cut_patches(scene, boxes, marked, asked.patch + 1);
+    pairs = split_pairs(scene, box_pairs, patches.owner);
+  }
   if (asked.twin == Twin::order_reversed) {
     const auto owners = static_cast<std::uint32_t>(scene.triangles.size());
     for (std::uint32_t& owner : patches.owner) owner = owners - owner;

@@ -53,7 +53,7 @@ rows(r"""
 0 the default of plan | plan two-spheres | ^default    no --method: far-pairs[ ]
 0 named | run two-spheres --method far-pairs --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
 
-0 plan | plan far-apart --method far | ^draw +left out +no two objects | ^not asked +whether an object meets itself:
+0 plan | plan far-apart --method far | ^draw +left out +no boxes of two triangles | ^not asked +whether an object meets itself:
 0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +runs[ ] | ^verify +left out[ ]
 0 plan as JSON | plan two-spheres --method far-pairs --json - | "decision": "depends"
 0 plan of self-collision | plan folded.obj --method far-pairs --self | ^self +1 object is tested against itself

@@ -70,6 +70,7 @@ void expect_explained(const std::vector<std::string>& words) {
 Record record_of(const Scene& scene, Method method) {
   RunOptions options;
   options.method = method;
+  if (takes_boxes(method)) options.boxes = BoxLevel::objects;  // so that something is drawn
   options.device = looks(method) ? "native" : "";
   options.resolution = looks(method) ? 64 : 0;
   options.method_is_default = true;
