@@ -6,7 +6,7 @@
 
 #include "core/boxes/join.h"
 #include "core/cull/pass.h"
-#include "core/pairs/boxes_before_pixels.h"
+#include "core/pairs/regions.h"
 #include "tests/lab/far.h"
 #include "verify/worst_canvas.h"
 

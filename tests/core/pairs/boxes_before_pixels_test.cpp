@@ -1,4 +1,4 @@
-#include "core/pairs/boxes_before_pixels.h"
+#include "core/pairs/regions.h"
 
 #include <gtest/gtest.h>
 
