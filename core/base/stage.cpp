@@ -123,9 +123,8 @@ std::string reason_of(const Stage& stage) {
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::many_in_front:
-      return "only a triangle in front of all that its box overlaps is culled, and boxes do not "
-             "say "
-             "that these are few: exact tests are usually cheaper";
+      return "boxes of triangles do not decide, and only a triangle in front of all that its box "
+             "overlaps is culled: exact tests usually take less time";
     case Reason::boxes_decide_little:
       return "boxes of triangles meet too often, or lie too unevenly, to be compared first";
     case Reason::no_boxes_overlap:

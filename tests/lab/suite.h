@@ -1,9 +1,9 @@
 // A suite of a few pairs and one mesh to corrupt.
 #pragma once
 
+#include "core/base/bytes.h"
 #include "experiments/suite/writer.h"
 #include "tests/lab/test.h"
-#include "core/base/bytes.h"
 
 namespace farcull::lab {
 

@@ -6,8 +6,8 @@
 
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
-#include "verify/exact.h"
 #include "verify/certificate/box_pairs.h"
+#include "verify/exact.h"
 
 namespace farcull {
 namespace {

@@ -2,10 +2,10 @@
 #include "experiments/generators/pair_generators.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
-#include "verify/within.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
+#include "verify/within.h"
 
 namespace farcull {
 namespace {

@@ -27,8 +27,8 @@
 
 namespace farcull {
 
-/// The pairs that a scene does not ask about: those inside an object that is not `self`. No number of
-/// pairs met, missed or proved speaks of them, so whoever reports one reports this as well.
+/// The pairs that a scene does not ask about: those inside an object that is not `self`. No number
+/// of pairs met, missed or proved speaks of them, so whoever reports one reports this as well.
 struct NotAsked {
   std::uint64_t objects = 0;                         // that are not tested against themselves
   std::uint64_t pairs = 0;                           // of two triangles inside one of them

@@ -165,7 +165,9 @@ inline std::string text_of(const World& world, int n) {
 /// Expects that a line of docs/model.md begins so.
 inline void expect_on_page(const std::string& text) {
   const std::string page = "\n" + read_text(FARCULL_TEST_DIR "/../docs/model.md");
-  EXPECT_NE(page.find("\n" + text), std::string::npos) << "docs/model.md has no line that begins so:\n" << text;
+  EXPECT_NE(page.find("\n" + text), std::string::npos)
+      << "docs/model.md has no line that begins so:\n"
+      << text;
 }
 
 }  // namespace farcull::model

@@ -6,8 +6,8 @@
 #include "offsets/offsets.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/scenes.h"
-#include "verify/solid_lines.h"
 #include "verify/kernel_cases.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace {

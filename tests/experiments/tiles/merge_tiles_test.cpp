@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/bytes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/tiles/run_tile.h"
 #include "tests/lab/test.h"
-#include "core/base/bytes.h"
 
 namespace farcull {
 namespace {

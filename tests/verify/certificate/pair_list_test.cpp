@@ -1,13 +1,13 @@
 // The list of colliding pairs, its hash, and what a scene does not ask.
 #include "verify/certificate/pair_list.h"
 
+#include "core/base/bytes.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/certificate.h"
-#include "core/base/bytes.h"
 #include "verify/exact.h"
 
 namespace farcull {
