@@ -52,7 +52,7 @@ enum class Reason : std::uint8_t {
   block_pairs,    // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                   // `detail` were compared, since a corner moved; empty: all
   only_blocks,    // nothing else can meet: no view is needed
-  boxes_meet,     // of triangles of different objects, n pairs: what meets none takes no part
+  boxes_meet,     // of triangles, n pairs that are asked about: what is in none takes no part
   many_in_front,  // a triangle is culled only in front of all that its box overlaps
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)

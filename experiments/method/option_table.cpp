@@ -121,7 +121,7 @@ constexpr const char* kBoxLevels[] = {"objects", "triangles", "enough"};
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
-bool drawing_levels(const Traits& t) { return t.draws && !t.tests_self_alone; }
+bool drawing_levels(const Traits& t) { return takes_boxes(t.method); }
 bool drawing_triangles(const Traits& t) { return t.draws && !t.fattens; }
 bool looking(const Traits& t) { return t.draws || t.chooses_views; }
 
