@@ -12,7 +12,8 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=../experiments/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
-readonly flags='-O0 -g0 -flto=auto -Wodr -Wlto-type-mismatch'
+# Files that the assembler embeds are seen from their own part alone, so there is one part.
+readonly flags='-O0 -g0 -flto=auto -flto-partition=one -Wodr -Wlto-type-mismatch'
 
 # The lines of a log in which the compiler names two types or functions that differ.
 differ() { grep -E '\[-W(odr|lto-type-mismatch)\]' "$1" | sort -u; }

@@ -1,5 +1,6 @@
 // A tree of boxes is asked about one item after the other, some side by side: the pairs of an item
-// a are those with b > a, so that pairs in the order of a are in order.
+// a are those with b > a, so that pairs in the order of a are in order. Where owners are few, their
+// leaves stand one owner after the other, and an item is compared with later owners alone.
 //
 // Trees of blocks are asked about one block after the other. Triangles stand in lanes of sixteen
 // boxes as floats, which are compared with each other; boxes that touch in floats are compared
@@ -25,8 +26,9 @@ HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 
 std::uint64_t find_leaves_here(const BoxTree<double>& tree, const WideBoxes<double>* blocks,
-                               const Box& box, std::vector<std::uint32_t>& leaves) {
-  return boxes::for_overlapping_leaves(tree, blocks, boxes::OneBox<double>(box), 0,
+                               const Box& box, std::uint32_t least,
+                               std::vector<std::uint32_t>& leaves) {
+  return boxes::for_overlapping_leaves(tree, blocks, boxes::OneBox<double>(box), least,
                                        [&](std::uint32_t leaf) { leaves.push_back(leaf); });
 }
 
@@ -161,12 +163,23 @@ HWY_EXPORT(find_leaves_here);
 namespace {
 
 std::uint64_t find_leaves(const BoxTree<double>& tree, const WideBoxes<double>* blocks,
-                          const Box& box, std::vector<std::uint32_t>& leaves) {
-  return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, leaves);
+                          const Box& box, std::uint32_t least, std::vector<std::uint32_t>& leaves) {
+  return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, least, leaves);
 }
 
 // Below so many items a second thread costs more than it saves.
 constexpr std::size_t kLeast = 4096;
+// Pairs that are found at a time, so that they stay in caches until they are copied.
+constexpr std::size_t kPortion = std::size_t{1} << 18;
+
+// Makes room for some more pairs, and for as many as there will be if the items to come have as
+// many, but at most for eight times as many: each growth copies the list.
+void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
+  const std::size_t needed = pairs.size() + more;
+  if (needed <= pairs.capacity()) return;
+  const double factor = std::clamp(1 / join.share(), 1.0, 8.0);
+  pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
+}
 
 }  // namespace
 
@@ -177,7 +190,8 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
   std::vector<TrianglePair> pairs, some;
   OrderedPairs join(boxes, owners, items, items.size() < kLeast ? 1 : threads);
   while (!join.at_end() && pairs.size() <= most) {
-    join.next(std::max<std::size_t>(most, 1), some);
+    join.next(std::clamp<std::size_t>(most, 1, kPortion), some);
+    make_room(join, some.size(), pairs);
     pairs.insert(pairs.end(), some.begin(), some.end());
   }
   if (pairs.size() > most) pairs.resize(most + 1);
@@ -217,9 +231,27 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
   plant();
 }
 
+namespace {
+
+// Whether owners ascend with the items and are at most as many as a node has children, so that
+// leaves in their order cost a few nodes more, and no overlap inside an owner is looked at.
+bool are_few(std::span<const std::uint32_t> owners) {
+  std::size_t changes = 0;
+  for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
+    if (owners[k] < owners[k - 1]) return false;
+    changes += owners[k] != owners[k - 1];
+  }
+  return changes < kWide;
+}
+
+}  // namespace
+
 void OrderedPairs::plant() {
   order_.resize(boxes_.size());
   spatial_order(boxes_, order_);
+  by_owner_ = are_few(owner_);
+  if (by_owner_)
+    std::ranges::stable_sort(order_, {}, [&](std::uint32_t item) { return owner_[item]; });
   std::vector<Box> leaves(boxes_.size());
   for (std::size_t k = 0; k < leaves.size(); ++k) leaves[k] = boxes_[order_[k]];
   blocks_.resize(blocks_of_tree(leaves.size()));
@@ -245,20 +277,21 @@ void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>
 
 }  // namespace
 
-// Returns how many blocks were compared.
-std::uint64_t OrderedPairs::append(std::uint32_t a, std::vector<std::uint32_t>& found,
-                                   std::vector<std::uint64_t>& marks,
-                                   std::vector<TrianglePair>& out) const {
+void OrderedPairs::append(std::uint32_t a, Part& part) const {
+  std::vector<std::uint32_t>& found = part.found;
   found.clear();
-  const std::uint64_t compared = find_leaves(tree_, blocks_.data(), boxes_[a], found);
+  // Items ascend with their owners then, so as many leaves as items have this owner or one before.
+  const auto least = by_owner_ ? std::ranges::upper_bound(owner_, owner_[a]) - owner_.begin() : 0;
+  part.compared +=
+      find_leaves(tree_, blocks_.data(), boxes_[a], static_cast<std::uint32_t>(least), found);
   for (std::uint32_t& leaf : found) leaf = order_[leaf];
-  std::erase_if(found, [&](std::uint32_t b) { return b <= a || owner_[a] == owner_[b]; });
-  sort_marked(found, marks);
+  if (!by_owner_)
+    std::erase_if(found, [&](std::uint32_t b) { return b <= a || owner_[a] == owner_[b]; });
+  sort_marked(found, part.marks);
   for (const std::uint32_t b : found) {
     const TrianglePair pair{items_[a], items_[b]};
-    if (!ignored_ || !(*ignored_)(pair)) out.push_back(pair);
+    if (!ignored_ || !(*ignored_)(pair)) part.pairs.push_back(pair);
   }
-  return compared;
 }
 
 void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
@@ -266,30 +299,27 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   if (at_end()) return;
   const auto left = static_cast<std::uint32_t>(boxes_.size()) - next_;
   const std::uint32_t asked = std::min(asked_, left);
-  struct Part {
-    std::vector<TrianglePair> pairs;
-    std::uint32_t done = 0;  // triangles whose pairs these are
-    std::uint64_t compared = 0;
-    bool complete = false;
-  };
-  std::vector<Part> parts(chunks_for(asked, 16, threads_));
-  const std::size_t most_of_part = std::max<std::size_t>(most / parts.size(), 1);
-  for_chunks(asked, parts.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    Part& part = parts[chunk];
-    std::vector<std::uint32_t> found;
-    std::vector<std::uint64_t> marks(items_.size() / 64 + 1, 0);
+  const std::size_t chunks = chunks_for(asked, 16, threads_);
+  if (parts_.size() < chunks) parts_.resize(chunks);
+  const std::size_t most_of_part = std::max<std::size_t>(most / chunks, 1);
+  for_chunks(asked, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Part& part = parts_[chunk];
+    part.pairs.clear();
+    part.done = 0;
+    part.compared = 0;
+    part.marks.resize(items_.size() / 64 + 1);
     for (std::size_t k = begin; k < end && part.pairs.size() < most_of_part; ++k, ++part.done)
-      part.compared += append(next_ + static_cast<std::uint32_t>(k), found, marks, part.pairs);
+      append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
   // A part that is not complete would leave a gap before the next one, which is asked again.
   bool full = false;
-  for (const Part& part : parts) {
+  for (std::size_t chunk = 0; chunk < chunks && !full; ++chunk) {
+    const Part& part = parts_[chunk];
     out.insert(out.end(), part.pairs.begin(), part.pairs.end());
     next_ += part.done;
     compared_ += part.compared;
     full = !part.complete;
-    if (full) break;
   }
   if (full) {
     asked_ = std::max<std::uint32_t>(asked_ / 2, 1);

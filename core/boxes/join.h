@@ -47,13 +47,26 @@ class OrderedPairs {
   /// one item more for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == boxes_.size(); }
+  /// The share of the items whose pairs have been given, 0 .. 1.
+  double share() const {
+    return boxes_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(boxes_.size());
+  }
   /// Blocks of sixteen boxes that the items asked about were compared with; the same whatever
   /// the threads and `most`.
   std::uint64_t compared() const { return compared_; }
 
  private:
-  std::uint64_t append(std::uint32_t a, std::vector<std::uint32_t>& found,
-                       std::vector<std::uint64_t>& marks, std::vector<TrianglePair>& out) const;
+  // The pairs of some items that follow one another. Kept from call to call, since new memory is
+  // cleared by the system, which takes longer than to find the pairs.
+  struct Part {
+    std::vector<TrianglePair> pairs;
+    std::uint32_t done = 0;  // items whose pairs these are
+    std::uint64_t compared = 0;
+    bool complete = false;
+    std::vector<std::uint32_t> found;
+    std::vector<std::uint64_t> marks;
+  };
+  void append(std::uint32_t a, Part& part) const;
 
   void plant();  // the tree
 
@@ -63,11 +76,13 @@ class OrderedPairs {
   std::vector<std::uint32_t> items_;  // ascending
   std::vector<Box> boxes_;            // per item, grown
   std::vector<std::uint32_t> order_;  // the item of each leaf of the tree, by its place in items_
+  bool by_owner_ = false;             // leaves of one owner follow those of the one before
   std::vector<WideBoxes<double>> blocks_;
   BoxTree<double> tree_;
   std::uint64_t compared_ = 0;
   std::uint32_t next_ = 0;      // the first item whose pairs have not been given
   std::uint32_t asked_ = 1024;  // to ask about at a time
+  std::vector<Part> parts_;
 };
 
 // Pairs of blocks whose boxes overlap, and the pairs of their triangles whose boxes do, on lanes

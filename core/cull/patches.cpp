@@ -20,10 +20,7 @@ constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;
 
 bool share_a_vertex(const Scene& scene, const TrianglePair& pair) {
-  const auto& a = scene.triangles[pair.a];
-  const auto& b = scene.triangles[pair.b];
-  return std::any_of(a.begin(), a.end(),
-                     [&](std::uint32_t v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+  return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
 }
 
 }  // namespace

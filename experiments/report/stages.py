@@ -1,0 +1,140 @@
+"""`python3 stages.py PROGRAM PAGE FIGURE [SCENE...]`: what each stage of FAR takes away and what it costs.
+
+FAR runs in its three forms (--boxes objects, triangles, enough) in turn with the method exact, every run in a process
+of its own. PAGE is written as Markdown, FIGURE as SVG. `bash experiments/results.sh stages` starts it.
+"""
+import datetime
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+import matplotlib
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+ROUNDS, SIDE = 5, 256  # runs of each form, pixels of a view
+SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres "
+          "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers fans stack "
+          "mannequin-devil+self").split()
+FORMS = ["objects", "triangles", "enough", "exact"]
+PARTS = {"boxes": "#e69f00", "views": "#0072b2", "pairs": "#56b4e9", "exact tests": "#009e73"}
+
+
+def part_of(stage):
+    """Which part a stage belongs to: "views" are fattening, drawing and what opens the canvas."""
+    name = stage["name"].split()[0]
+    if name in ("boxes", "runs", "patches"):
+        return "boxes"
+    return {"join": "pairs", "exact": "exact tests"}.get(name, "views")
+
+
+def run(program, scene, form):
+    """Milliseconds of each part, the triangles that boxes and each view of round 1 left, pairs tested, pairs found."""
+    name, *flags = scene.split("+")
+    words = ["--method", "exact"] if form == "exact" else ["--method", "far", "--boxes", form, "--device", "native",
+                                                           "--resolution", str(SIDE)]
+    out = subprocess.run([program, "run", name, *words, *(f"--{flag}" for flag in flags), "--json", "-"],
+                         capture_output=True, text=True)
+    if out.returncode not in (0, 1):
+        sys.exit(f"stages: {scene}, {form}: {out.stderr.strip()}")
+    record = json.loads(out.stdout)
+    ms, left = dict.fromkeys(PARTS, 0.0), {}
+    for stage in record["stages"]:
+        if not stage["ran"]:
+            continue
+        ms[part_of(stage)] += stage["ms"]
+        if stage["unit"] == "triangles" and part_of(stage) in ("boxes", "views") and "round 2" not in stage["name"]:
+            words = stage["name"].split()
+            left["boxes" if words[0] in ("boxes", "patches") else words[-1].rstrip(",")] = stage["out"]
+    return {"ms": ms, "left": left, "triangles": record["scene"]["triangles"], "tested": record["candidate_pairs"],
+            "found": record["all_colliding_pairs"]}
+
+
+def measure(program, scenes):
+    out = {}
+    for scene in scenes:
+        print(f"stages: {scene}", file=sys.stderr)
+        runs = {form: [] for form in FORMS}
+        for _ in range(ROUNDS):
+            for form in FORMS:
+                runs[form].append(run(program, scene, form))
+        found = {one["found"] for of in runs.values() for one in of}
+        if len(found) != 1:
+            sys.exit(f"stages: {scene}: the forms find different pairs: {sorted(found)}")
+        base = statistics.median(sum(one["ms"].values()) for one in runs["exact"])
+        out[scene] = {form: of[0] | {"share": {part: statistics.median(one["ms"][part] for one in of) / base
+                                               for part in PARTS},
+                                     "total": [sum(one["ms"].values()) / base for one in of]}
+                      for form, of in runs.items()}
+    return out
+
+
+def draw(results, path):
+    pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
+    figure, axes = pyplot.subplots(figsize=(7, 0.55 * len(results) + 0.6), layout="constrained")
+    most = 2.0
+    labels, places = [], []
+    for k, (scene, forms) in enumerate(results.items()):
+        for j, form in enumerate(FORMS):
+            y, x = k * 5 + j, 0.0
+            for part, colour in PARTS.items():
+                width = forms[form]["share"][part]
+                axes.barh(y, width, left=x, height=0.85, color=colour, label=part if k == j == 0 else None)
+                x += width
+            labels.append(f"{scene}  {form}" if j == 0 else form)
+            places.append(y)
+            if x > most:
+                axes.text(most, y, f" {x:.1f}", va="center", ha="left", clip_on=False, fontsize=6)
+    axes.set_yticks(places, labels, fontsize=6)
+    axes.set_xlim(0, most)
+    axes.invert_yaxis()
+    axes.set_xlabel("time over that of the method exact")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.0), ncols=4, frameon=False)
+    axes.axvline(1, color="black", linewidth=0.5)
+    figure.savefig(path, metadata={"Date": None})
+
+
+def table(results):
+    rows = ["| scene | form | triangles | boxes leave | view 1 | 2 | 3 | pairs tested | boxes | views | pairs | tests | "
+            "all (least - most) |", "|" + "---|" * 13]
+    for scene, forms in results.items():
+        for form in FORMS:
+            one = forms[form]
+            left = list(one["left"].items())
+            views = [f"{out:,}" for name, out in left if name != "boxes"][:3]
+            boxes = f"{one['left']['boxes']:,}" if "boxes" in one["left"] else "-"
+            shares = " | ".join(f"{one['share'][part]:.2f}" for part in PARTS)
+            total = sorted(one["total"])
+            rows.append(f"| {scene.replace('+', ' --')} | {form} | {one['triangles']:,} | {boxes} | "
+                        f"{' | '.join(views + ['-'] * (3 - len(views)))} | {one['tested']:,} | {shares} | "
+                        f"**{statistics.median(total):.2f}** ({total[0]:.2f} - {total[-1]:.2f}) |")
+    return rows
+
+
+def main():
+    program, page, picture, *scenes = sys.argv[1:]
+    results = measure(program, scenes or SCENES)
+    draw(results, picture)
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    load = os.getloadavg()[0]
+    lines = [
+        "# What each stage of FAR takes away and costs", "",
+        "Made again by `bash experiments/results.sh stages`, which writes this page.", "",
+        f"- **Device:** {os.cpu_count()} cores, no GPU; the native canvas at {SIDE} px, offset `obb` and what follows it.",
+        f"- **Commit:** {version}, {datetime.date.today()}.",
+        f"- **Load:** {load:.1f} at the end; medians of {ROUNDS} runs in turn, each in a process of its own.", "",
+        "Times are shares of the time of `exact` (boxes and exact tests) on the same scene. *Boxes*: comparing boxes of "
+        "objects, runs and triangles. *Views*: fattening, drawing, asking. *Pairs*: the join of what is left, or taking "
+        "what drawing cleared from the list. *Tests*: exact predicates. Forms are those of `--boxes`; `enough` is the "
+        "default. A view's column says how many triangles are left after it in round 1.", "",
+        "**Where pixels add nothing:** compare *tests* of the form `enough` with *views* of the form `triangles`. Even a "
+        "culling that removed every pair for nothing could save no more than these tests. A scene gains by drawing only if "
+        "its views take less.", "",
+        f"![Stages](figures/{pathlib.Path(picture).name})", "", *table(results), ""]
+    pathlib.Path(page).write_text("\n".join(lines), encoding="utf-8")
+
+
+main()
