@@ -1,5 +1,5 @@
-# Writes OUT with the commit of SOURCE, only where it changed. Where tracked files differ from the commit, "-dirty-" and a hash
-# of the difference follow: two such trees are not one.
+# Writes OUT with the commit of SOURCE, only if it changed. If tracked files differ from the commit, "-dirty-" and a hash of
+# the difference follow, so that two such trees have different names.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(NOT commit)
@@ -13,7 +13,7 @@ if(commit MATCHES "-dirty$")
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${commit}\"\n")
 
-# Beside it PROBED, with a hash of all that a verdict about a device rests on: kernels, probes, and what runs them.
+# Writes PROBED as well: a hash of all sources that a verdict about a device depends on: kernels, probes, and what runs them.
 if(PROBED)
   file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/*/* ${SOURCE}/core/boxes/* ${SOURCE}/core/pairs/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/view/budget.*
        ${SOURCE}/core/canvas/* ${SOURCE}/core/scene/pair_sort.* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/solid_lines.h

@@ -76,7 +76,7 @@ unset "${!MESA_@}" "${!GALLIUM_@}" "${!LP_@}" "${!EGL_@}" "${!__EGL_@}" VK_DRIVE
 # Mesa takes any Gallium driver for its software device only where this is set.
 export LIBGL_ALWAYS_SOFTWARE=true
 
-# under DRIVER COMMAND...: verdicts about a device are those of this driver and this program alone.
+# under DRIVER COMMAND...: runs the command with this driver, and with verdicts of this driver and this program alone.
 under() {
   local -a variables
   read -ra variables <<<"${settings[$1]}"
@@ -84,7 +84,7 @@ under() {
 }
 sql() { sqlite3 -separator ' | ' :memory: "$@"; }
 
-# measure DRIVER: doctor.json or refused, and results/ of the study.
+# measure DRIVER: writes doctor.json or refused, and results/ of the study.
 measure() {
   local -i status=0
   local folder=$out/$1
@@ -140,7 +140,7 @@ broken_table() {
   echo '| driver | probe that fails | measured | bound | unit |'
   echo '|---|---|---|---|---|'
   for driver in "${chosen[@]}"; do
-    # Of noop all fail.
+    # All probes of noop fail.
     if [[ ! -e $out/$driver/doctor.json || $driver == noop ]]; then continue; fi
     sql "SELECT '| $driver', (p.value ->> 'assumption') || ' ' || (p.value ->> 'name'),
       CASE WHEN p.value ->> 'samples' = 0 OR p.value ->> 'unit' = '' THEN 'broke off: ' || replace(p.value ->> 'note', '|', '/')

@@ -52,7 +52,7 @@ if [[ -e $out/commit && $(<"$out/commit") != "$version, $device" ]]; then
   refuse "$out is of $(<"$out/commit"); this is $version, $device; name another folder with --out"
 fi
 echo "$version, $device" >"$out/commit"
-# The scripts called below build nothing: it would be another program if a file was edited meanwhile.
+# The scripts called below must build nothing: if a file was edited meanwhile, it would be another program.
 export FARCULL_BUILT=yes DEVICE=$device XDG_CACHE_HOME=$out/cache
 
 began=$SECONDS
@@ -202,7 +202,7 @@ failed=()
 for file in "$out"/steps/*; do
   if [[ $(<"$file") == 1\ * ]]; then failed+=("${file##*/}"); fi
 done
-# section HEADING PATTERNS...: what the parts that are done said.
+# section HEADING PATTERNS...: prints the output of the parts that are done.
 # shellcheck disable=SC2016 # the backticks are those of the page
 section() {
   local heading=$1 pattern part status seconds

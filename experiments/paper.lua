@@ -1,6 +1,6 @@
--- What pandoc does with docs/reliability.md and docs/budget.md besides the usual: plain 2^-23,
--- sqrt(2) and <= become formulas, the mark of an ended proof stands at the right, and links between
--- the pages lose their targets, since both are one paper.
+-- A filter of pandoc for docs/reliability.md and docs/budget.md: plain 2^-23, sqrt(2) and <= become
+-- formulas, the mark at the end of a proof stands at the right, and links between the pages lose
+-- their targets, since both are one paper.
 local relations = { ["<="] = "\\le", [">="] = "\\ge", ["+-"] = "\\pm" }
 
 local function formula(text) return pandoc.Math("InlineMath", text) end

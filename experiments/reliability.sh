@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The promise, measured on large inputs. Each form prints a table, keeps its records in a folder of build/, and fails if a pair is
+# Measures the promise on large inputs. Each form prints a table, keeps its records in a folder of build/, and fails if a pair is
 # missed or an answer is wrong.
 #   bash experiments/reliability.sh [SCENE...]             build/reliability: FAR with both offsets is compared with the method exact
 #     on the packaged scenes, at resolutions 64 to 2048; with fewer resolutions copies of the scenes as well: moved by 1e6 along the
@@ -14,8 +14,8 @@
 #     second half of its objects moved away by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene, and of 100,000 small random scenes
 #     (`random`; RANDOM_SCENES). Each is compared with the truth in rational numbers (tests/experiments/method/distance_truth.h), to
 #     the bit. An hour or two on one core.
-# Of motion and distances what has a record of this commit does not run again; remove the folder to begin again. Without a GPU the
-# native canvas draws; DEVICE=software (or another --device) asks for GL.
+# motion and distances skip what has a record of this commit; remove the folder to begin again. Without a GPU the native canvas
+# draws; DEVICE=software (or another --device) asks for GL.
 set -euo pipefail
 
 form=meshes
@@ -137,7 +137,7 @@ ask_distances() {
   fi
 }
 
-# distances_of SCENE: moved apart; or `random`, in parts, each of which has a record.
+# distances_of SCENE: the distances of a scene moved apart; or of `random`, in parts, each with a record.
 distances_of() {
   local count=${RANDOM_SCENES:-100000} first step diagonals
   if [[ $1 == random ]]; then

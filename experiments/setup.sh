@@ -16,7 +16,7 @@ exec </dev/null
 # cron leave out.
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin"
 
-# What the program needs, and what CMake looks for when it configures the tests.
+# Packages that the program needs, and that CMake looks for when it configures the tests.
 farcull_packages=(
   # tools
   g++ cmake ninja-build pkg-config git
@@ -40,11 +40,12 @@ farcull_packages=(
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
-# What only tests need, which skip what is missing and name it: the test of the report opens the page
-# in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on the disk;
-# the browser alone takes 290 MB); another one makes the paper a PDF (32 MB to fetch, 202 MB on the
-# disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors;
-# those of the Python module take pytest and hypothesis, and install it into a virtual environment.
+# Packages that only tests need; a test names and skips what is missing. The test of the report opens
+# the page in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on
+# the disk; the browser alone takes 290 MB). Another one makes the paper a PDF (32 MB to fetch, 202 MB
+# on the disk); another one reads the manual and tries completion. gappa proves the bounds of rounding
+# errors. Those of the Python module take pytest and hypothesis, and install it into a virtual
+# environment.
 farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended lmodern
   librsvg2-bin mandoc groff-base man-db zsh fish python3-pytest python3-hypothesis python3-venv python3-pip)
 
@@ -77,8 +78,8 @@ farcull_install() {
   farcull_apt_get install --yes --no-install-recommends "$@"
 }
 
-# Whether nothing is to be installed or built: in a folder that experiments/pack.sh made, and in scripts that
-# a script calls which has built (FARCULL_BUILT).
+# Whether nothing is to be installed or built: in a folder that experiments/pack.sh made, or if the calling
+# script has built (FARCULL_BUILT).
 farcull_is_built() { [[ -n ${FARCULL_BUILT-} || -e $farcull_root/packed ]]; }
 
 # Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and

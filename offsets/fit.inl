@@ -26,7 +26,7 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 // ---- rounding outward ----
 
 // A float at or above x, at most two above the smallest. x + |x| 2^-24 is half a unit in the last place above x or more, and
-// rounding to nearest takes at most that back; the second factor pays for the rounding of these doubles, the last term for
+// rounding to nearest takes at most that back; the second factor covers the rounding of these doubles, the last term
 // subnormal floats.
 FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
@@ -40,10 +40,10 @@ FAR_KERNEL double fit_above(double z, double radius) {
 
 // ---- the proxy's rectangle ----
 
-// A rectangle, four corners x, y counterclockwise, that contains the image of the points fattened by a disc, inside
-// |x| <= bound_x, |y| <= bound_y: along the longest image of an edge where that fits (the tight direction for slivers, a fair
-// one for all else), else aligned with the axes and cut off. Corners are rounded to the nearest float, which the budget's term
-// "input" pays for.
+// A rectangle, four corners x, y counterclockwise, that contains the image of the points fattened by a disc, inside |x| <=
+// bound_x, |y| <= bound_y: along the longest image of an edge where that fits (the tight direction for slivers, a fair one
+// for all else), else aligned with the axes and cut off. Corners are rounded to the nearest float, which the budget's term
+// "input" covers.
 FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double bound_x, double bound_y, double* corners) {
   double ux = 1.0;
   double uy = 0.0;

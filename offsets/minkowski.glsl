@@ -4,11 +4,11 @@
 // The solid: hull(v0, v1, v2) + ball(r), cut by zlo <= z <= zhi; a degenerate triangle makes it a capsule or a ball.
 //   s0 = (m, zlo), s1 = (v0 - m, r), s2 = (v1 - m, zhi), s3 = (v2 - m, -); r <= 2^20
 // Its surface is three spheres, three cylinders along the edges and the two shifted triangles. The line's first and last
-// contact with each part is found in plain float arithmetic; what that is good for is a normal. Any normal n bounds the
-// solid by the halfspace n . p <= max n . v_i + r |n|, so the bound that is returned does not depend on how well the
-// contact was computed; where it was computed well, the halfspace touches the solid there (docs/budget.md, "The exact
-// offset"). But it must be one n: the same bits in its extent, in its length and in the halfspace. In GLSL a variable that is
-// not `precise` may be computed anew, and otherwise, at each use; so every variable that holds a normal is precise, and so are
+// contact with each part is found in plain float arithmetic, and only serves to choose a normal. Any normal n bounds the
+// solid by the halfspace n . p <= max n . v_i + r |n|, so the bound that is returned does not depend on how well the contact
+// was computed; where it was computed well, the halfspace touches the solid there (docs/budget.md, "The exact offset"). But
+// it must be one n: the same bits in its extent, in its length and in the halfspace. In GLSL a variable that is not
+// `precise` may be computed anew, and otherwise, at each use; so every variable that holds a normal is precise, and so are
 // the parameters through which a function gives one back (docs/budget.md, "One normal").
 
 // An upper bound of the solid's extent along n, from the origin m.
@@ -132,7 +132,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   plane.z = -plane.z;
   hit = far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit) && hit;
 
-  // Aside of the triangle's image.
+  // Pixels beside the triangle's image: the direction from it in the image.
   FAR_PRECISE vec4 aside = s4;
   aside.x = 0.0f;
   aside.y = 0.0f;

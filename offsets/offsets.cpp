@@ -1,5 +1,5 @@
-// The fits on scalars; then of each offset its kernel as scalar C++ and on the worst device, and
-// the primitives that carry it.
+// The fits on scalars; then, for each offset, its kernel as scalar C++ and on the worst device, and
+// its fatteners.
 #include "offsets/offsets.h"
 
 #include <algorithm>
@@ -172,8 +172,8 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// The normals that the kernel is free to choose come out better on the worst device now and then.
-// This machine's floats are among those that GLSL allows, so they bound it too.
+// Now and then the worst device chooses better normals than this machine. This machine's floats are
+// among those that GLSL allows, so they bound it too.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

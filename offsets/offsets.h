@@ -1,5 +1,5 @@
-// The offsets: what is drawn in place of a primitive, so that each point within the radius of it is
-// inside.
+// Offsets: solids that are drawn in place of a primitive and contain each point within the radius
+// of it.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ Fattener minkowski_fattener();
 /// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
 /// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off at
 /// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
-/// the budget's term "input" pays for.
+/// the budget's term "input" covers.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
                                      const ProxyBounds& bounds);
 

@@ -19,7 +19,7 @@ inline float nearest(double x) {
 constexpr double kFitHalfUlp = 0x1.00001p-24;
 /// The smallest float above 0.
 constexpr double kFitSubnormal = 0x1p-149;
-/// Error of a depth less or plus a radius, relative to the sum of their magnitudes.
+/// Error of a depth minus or plus a radius, relative to the sum of their magnitudes.
 constexpr double kFitDepth = 0x1p-50;
 /// Error of a projection onto a direction of the box, relative to the sum of the magnitudes of its
 /// terms; also of an upper bound of a direction's length.

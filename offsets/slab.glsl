@@ -24,7 +24,7 @@ FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT
   FAR_PRECISE float e = (abs(sx) + abs(sy)) * kEightU + kTiny;
   FAR_PRECISE float h = (slab.w + e) * kUp;
   float steep = abs(slab.z);
-  if (FAR_UNIFORM(steep < kParallel)) {  // the slab is all but parallel to the line
+  if (FAR_UNIFORM(steep < kParallel)) {  // the slab is nearly parallel to the line
     FAR_PRECISE float slack = steep * reach * kUp;
     FAR_PRECISE float limit = (h + slack) * kUp;
     return abs(s) <= limit;

@@ -35,7 +35,6 @@ namespace farcull {
 
 void PairSet::add(const TrianglePair& pair) {
   ++count;
-  // The finalizer of SplitMix64: sums of its values differ for different sets of one size.
   std::uint64_t x = std::uint64_t{pair.a} << 32 | pair.b;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
   x = (x ^ x >> 27) * 0x94d049bb133111ebu;
@@ -261,7 +260,7 @@ class Tree {
   std::uint32_t root_ = kNone;
 };
 
-/// Pairs of objects that are ignored. Written anew here: what culled uses core/scene/scene.
+/// Pairs of objects that are ignored. Written anew, as the culling code uses core/scene/scene.
 class Ignored {
  public:
   Ignored(const Scene& scene, std::span<const ObjectPair> pairs)
@@ -429,8 +428,8 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   const std::vector<Bounds> bounds = bounds_of_triangles(scene);
   const std::uint64_t disjoint = Tree(scene, bounds, clearance).join(visit);
   unkept.decide();
-  // A kept pair with disjoint boxes is a mistake upstream, but kept it is: it leaves the class that
-  // comes later.
+  // A kept pair with disjoint boxes is a mistake upstream, but it counts as kept: it leaves the
+  // class that comes later.
   const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(
       kept.begin(), kept.end(),
       [&](const TrianglePair& pair) { return !meet(bounds[pair.a], bounds[pair.b], clearance); }));

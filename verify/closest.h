@@ -69,13 +69,13 @@ struct Closest {
 
 /// Closest points of the closed triangles. Where they share a point: distance 0, and a common point
 /// twice. The answer depends on the corners and their order alone. With a and b exchanged the
-/// distance is the same; the points are, where no others are as near.
+/// distance is the same; so are the points, unless others are as near.
 Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The square of the distance alone.
 SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The first of the pairs, in their order, that no other of them is nearer than.
+/// The first of the pairs, in their order, at the least distance.
 struct NearestPair {
   TrianglePair pair;
   Closest closest;

@@ -46,7 +46,7 @@ constexpr unsigned corners_of(const Feature& f) {
   return f.kind == FeatureKind::edge ? 1u << f.index | 1u << edge_end(f.index) : 7u;
 }
 
-/// A pair of points, one of each feature, that the difference of both is perpendicular to.
+/// Two points, one of each feature, whose difference is perpendicular to both features.
 template <class Integer>
 struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0

@@ -189,7 +189,7 @@ bool farther(const Box& a, const Box& b, double most) {
   return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
 }
 
-/// Not below the distance.
+/// At least the distance.
 double upper_bound(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   if (filter_planes(a, b) == Triage::yes) return 0;
   return filters::distance_bounds<FilterBounds>(a, b).upper;

@@ -139,7 +139,7 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
+// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
 constexpr std::size_t kAhead = 8;
 // Enough work for each turn to pay for the shared counter, little enough to balance.
 constexpr std::size_t kBlock = 1024;
@@ -175,8 +175,8 @@ class BlockDecider {
   }
 
  private:
-  /// Those that are no neighbours by an index become others_; returns how many. Without branches,
-  /// which would often be foretold wrongly.
+  /// Puts the pairs that are no neighbours by an index into others_; returns how many. No branches,
+  /// which would often be mispredicted.
   std::size_t set_aside(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -279,7 +279,7 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   require_clearance("decide_first", question.clearance);
   require_pairs(scene, candidates);
   if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
-  // As many candidates more each time: where few of them collide, threads have enough to do. The
+  // Twice as many candidates each time: if few of them collide, threads have enough to do. The
   // number of threads decides nothing, so that `decided` and `complete` are the same for any.
   std::size_t step = kFirstStep;
   FirstCollisions out;

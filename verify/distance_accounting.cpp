@@ -1,9 +1,8 @@
-// Each object has a tree of boxes over its triangles. Of every two objects that are asked about the
-// trees are joined: two nodes whose boxes are farther apart than the threshold of these objects
-// settle all their pairs at once, and so does an answer of 0, before which alone another pair could
-// matter. What is left
-// is decided pair by pair: by two parallel planes in doubles, then in integers, as the checker of
-// certificates does it (verify/certificate/integer_distance.h).
+// Each object has a tree of boxes over its triangles. The trees of every two objects that are asked
+// about are joined. Two nodes settle all their pairs at once if their boxes are farther apart than
+// the threshold of these objects, or if all come after an answer of 0: only a pair before it could
+// matter. What is left is decided pair by pair: by two parallel planes in doubles, then in
+// integers, as the checker of certificates does it (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
 #include <algorithm>
@@ -309,7 +308,7 @@ class Undecided {
       return Class::planes;
     if (pair.asked->self && share_position(s, t)) return Class::neighbours;
     if (!length) return Class::nearer;
-    // Before the answer no pair is as near, behind it none is nearer.
+    // No pair before the answer may be as near, and none behind it nearer.
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return Class::exact;
@@ -382,7 +381,7 @@ class Join {
     } else {
       two(trees_.root(a), trees_.root(b));
     }
-    // An answer whose boxes are too far apart is wrong, but an answer.
+    // An answer whose boxes are too far apart is wrong, but still counts as an answer.
     const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
     result_.answers += answers_.size();
     result_.farther_by_boxes -= passed;

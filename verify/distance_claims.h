@@ -33,13 +33,13 @@ class DistanceClaims {
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// The distance within which the objects a <= b may have no pair that was not answered.
+  /// The distance within which every pair of the objects a <= b had to be answered.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
   /// Whether objects a <= b are asked about.
   bool asked(std::uint32_t a, std::uint32_t b) const;
-  /// Answers that cannot be right, by themselves or among the others; all answers decide.
+  /// How many answers cannot be right, by themselves or among all the others.
   std::uint64_t wrong(unsigned threads) const;
 
  private:

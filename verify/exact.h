@@ -107,9 +107,9 @@ struct FirstCollisions {
   bool complete = true;       // all were decided, and not more than the limit collide
 };
 
-/// The first `limit` candidates that collide, neighbours among them. Decides a block of candidates
-/// after the other and stops when it has as many; the others stay undecided. Preconditions: the
-/// candidates are sorted, limit > 0. Throws as decide().
+/// The first `limit` candidates that collide, neighbours among them. Decides candidates block by
+/// block and stops when it has that many; the others stay undecided. Preconditions: the candidates
+/// are sorted, limit > 0. Throws as decide().
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 

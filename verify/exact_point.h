@@ -33,9 +33,8 @@ bool bounded(const ExactPoint& point, float entry, float exit);
 /// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly
 /// and cut off to a double. Not positive where it is bounded. Precondition: finite samples.
 double beyond(const ExactPoint& point, float entry, float exit);
-/// The same for depths of a depth buffer: the larger of entry - D and D - exit for D = 1/2 +
-/// z(point)
-/// * scale, exactly.
+/// The same for depths of a depth buffer, where D is z(point) * scale + 1/2: the larger of entry -
+/// D and D - exit, exactly.
 double beyond_stored(const ExactPoint& point, float entry, float exit, float scale);
 
 }  // namespace farcull

@@ -91,7 +91,7 @@ using Point = PointOf<kBatch>;
 #include "verify/filter_planes.inl"
 #undef FAR_FILTER
 
-// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
+// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
 constexpr std::size_t kAhead = 8;
 
 /// Coordinates of pairs: row 3 k + axis is of corner k of a, row 9 + 3 k + axis of corner k of b.

@@ -30,8 +30,8 @@ using Vector = closest::Vector<Rational>;
 
 Vector exact(const Vec3& p) { return {Rational(p[0]), Rational(p[1]), Rational(p[2])}; }
 
-/// The sign of d . (u x v) where u = p - x, v = q - x; and of a third corner's w . (u x v) where
-/// d = w is one as well.
+/// The sign of d . (u x v) where u = p - x, v = q - x; if d_is_corner, d is a third corner, and the
+/// sign is that of (d - x) . (u x v).
 int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool d_is_corner) {
   const auto u = filters::difference(p, x), v = filters::difference(q, x);
   const filters::Triple w =

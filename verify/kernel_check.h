@@ -46,7 +46,7 @@ KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 std::vector<IntervalCase> interval_kernel_cases(std::uint64_t seed, std::size_t count);
-/// All in one window; its slices never decrease with z, in which order they are.
+/// All in one window, in the order of z, along which slices never decrease.
 std::vector<SliceCase> slice_kernel_cases(std::uint64_t seed, std::size_t count);
 
 }  // namespace farcull

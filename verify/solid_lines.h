@@ -136,10 +136,10 @@ namespace farcull::minkowski_line {
 
 // A line along z and a triangle fattened by a ball, as the floats of a Solid say it
 // (offsets/minkowski.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d =
-// c - m in the image; p a point of the triangle. The ball about p cuts the line in the chord m.z +
-// p.z
-// -+ sqrt(r^2 - |d - p.xy|^2), and the solid's interval is the hull of all chords, so any p is a
-// test of a kernel: decided with rationals wherever long doubles leave a doubt.
+// c - m in the image; p a point of the triangle; root = sqrt(r^2 - |d - p.xy|^2). The ball about p
+// cuts the line in the chord from m.z + p.z - root to m.z + p.z + root, and the solid's interval is
+// the hull of all chords, so any p is a test of a kernel: decided with rationals wherever long
+// doubles leave a doubt.
 
 using rational::Q;
 using Real = long double;

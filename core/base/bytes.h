@@ -17,8 +17,8 @@ namespace farcull {
 
 std::string to_base64(std::span<const std::uint8_t> bytes);
 
-/// Empty if to_base64() gives this text for no bytes; so the bits that padding leaves over have to
-/// be 0.
+/// The bytes whose to_base64() is the text; empty if there are none. So the unused bits before the
+/// padding have to be 0.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
 // FNV-1a, the hash of fingerprints: 64 bits over a sequence of bytes.
@@ -44,7 +44,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-// SHA-256 (FIPS 180-4), as `sha256sum` computes it: what a certificate names the list of pairs by.
+// SHA-256 (FIPS 180-4), as `sha256sum` computes it; a certificate names its list of pairs by it.
 
 class Sha256 {
  public:

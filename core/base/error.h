@@ -29,9 +29,9 @@ class Error : public std::runtime_error {
 /// The text as its reader writes parameters: by the name alone, unless the program has another
 /// spelling.
 std::string spelled(const std::string& text);
-/// The program's spelling of a parameter's name, such as --depth-format on a command line; empty:
-/// it has no such parameter, so the text stays as it is (a file may be called a{b}.obj). To be
-/// called before any thread runs.
+/// Sets how the program spells a parameter's name, such as --depth-format on a command line.
+/// `spelling` returns an empty text for a name that is no parameter; the text then stays as it is
+/// (a file may be called a{b}.obj). To be called before any thread runs.
 void spell_parameters(std::string (*spelling)(const std::string& name));
 
 }  // namespace farcull

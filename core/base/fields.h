@@ -1,5 +1,5 @@
-// The fields of a struct: its members with their names. Whatever writes, adds up or compares the
-// struct member by member reads them from here, so that a new member is one word more.
+// The fields of a struct: its members with their names. Code that writes, adds up or compares a
+// struct member by member uses them, so that a new member has to be named only once more.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@
 
 namespace farcull {
 
-/// The first name of "a, b, c", which is taken away from the list.
+/// Removes the first name from the list "a, b, c" and returns it.
 constexpr std::string_view take_field_name(std::string_view& names) {
   const std::size_t end = names.find(',');
   const std::string_view name = names.substr(0, end);

@@ -1,6 +1,6 @@
-// Arithmetic shows how the thread computes; its operands are volatile, so that it is done at run
-// time. <cfenv> sets and restores the environment. C libraries keep flushing in fenv_t and turn it
-// off in FE_DFL_ENV; if one does not, the arithmetic that follows shows it.
+// Finds out by arithmetic how the thread computes; the operands are volatile, so that it is done at
+// run time. <cfenv> sets and restores the environment. C libraries keep flushing in fenv_t and turn
+// it off in FE_DFL_ENV; if one does not, the arithmetic that follows shows it.
 #include "core/base/floating_point.h"
 
 #include <array>

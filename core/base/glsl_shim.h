@@ -60,7 +60,7 @@ inline vec4 abs(vec4 a) { return {abs(a.x), abs(a.y), abs(a.z), abs(a.w)}; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
-// What a kernel writes for bool, ?: and global constants, since pixels may be lanes of a vector
+// Kernels write these for bool, ?: and global constants, since pixels may be lanes of a vector
 // (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c): as a condition of `if`, where c is the same for
 // all lanes.
 #define FAR_CONSTANT const float

@@ -61,8 +61,8 @@ class Worst {
  private:
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
 
-  // a + b; a double beyond it on the side of `sign` where double rounds too. Knuth's two-sum: what
-  // the rounding lost, exactly.
+  // a + b rounded up (`sign` 1) or down (-1), to the next double if to-nearest went the other way.
+  // `lost` is the exact rounding error, by Knuth's two-sum.
   static double sum(double a, double b, double sign) {
     const double s = a + b, part = s - a;
     const double lost = (a - (s - part)) + (b - part);

@@ -1,4 +1,4 @@
-// Threads that are kept: to start one takes as long as a small step of a query.
+// A pool of threads, since starting a thread takes as long as a small step of a query.
 #include "core/base/parallel.h"
 
 #include <atomic>
@@ -36,7 +36,7 @@ class WorksFor {
   const std::atomic<bool>* before_;
 };
 
-// How long a thread looks for work, or for the end of it, before it sleeps: steps of a query follow
+// How long a thread spins for work, or for the end of it, before it sleeps: steps of a query follow
 // each other faster than a sleeping thread wakes.
 constexpr std::chrono::microseconds kSpin{50};
 
@@ -119,7 +119,7 @@ class Pool {
     return k;
   }
 
-  // Starts threads until there are as many, if the system allows. The mutex is held.
+  // Starts threads until there are `count`, if the system allows. The mutex is held.
   void need_threads(std::size_t count) {
     const SignalsBlocked blocked;
     try {
@@ -128,7 +128,7 @@ class Pool {
         ++threads_;
       }
     } catch (const std::exception&) {
-      // Those that there are do it, at worst the caller alone.
+      // The threads that exist do the work, at worst the caller alone.
     }
   }
 

@@ -17,14 +17,14 @@
 
 namespace farcull {
 
-/// Calls part(data, k) once for each k in 0 .. parts - 1, the first here and the others in threads
-/// that are kept for the next call, or here where none is free: so calls may be nested. Returns
-/// when all have returned. part throws nothing.
+/// Calls part(data, k) once for each k in 0 .. parts - 1: the first in the calling thread, the
+/// others in pooled threads, or in the calling thread if none is free, so calls may be nested.
+/// Returns when all have returned. part throws nothing.
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
-/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, side by side
-/// where threads are free, rounding to nearest with subnormals kept whatever the caller does. No
-/// chunk may wait for another one. The first exception of the lowest chunk is thrown again here.
+/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if
+/// threads are free, rounding to nearest with subnormals kept, whatever the caller does. No chunk
+/// may wait for another. The first exception of the lowest chunk is thrown again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -97,9 +97,9 @@ class StoppableCall {
   StoppableCall(const StoppableCall&) = delete;
   StoppableCall& operator=(const StoppableCall&) = delete;
 
-  /// Asks the work to stop at its next stop_point(). It may end otherwise before it gets there.
+  /// Asks the work to stop at its next stop_point(). The work may end before it gets there.
   void stop();
-  /// Waits until the work has ended, but no longer than this. Whether it has ended.
+  /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
   /// Waits until the work has ended. Throws what it threw: Stopped where it was stopped.
   void finish();

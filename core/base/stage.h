@@ -1,6 +1,6 @@
 // A stage of a run: what is done, or left out, and why. A plan lists the stages that are to come, a
 // trace those that were. The same structure serves both, so a run can be compared with its plan.
-// And how a long computation reports the stage where it stands.
+// Also the callback by which a long computation reports its current stage.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ enum class StageKind : std::uint8_t {
 /// The things that a stage counts.
 enum class Unit : std::uint8_t { none, triangles, pairs, views };
 
-/// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
+/// Why a stage runs, was left out, or how it went. n, m and `detail` are those of Stage.
 enum class Reason : std::uint8_t {
   none,
   full,           // --full: nothing is left out
@@ -52,7 +52,7 @@ enum class Reason : std::uint8_t {
   block_pairs,    // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                   // `detail` were compared, since a corner moved; empty: all
   only_blocks,    // nothing else can meet: no view is needed
-  boxes_meet,     // of triangles, n pairs that are asked about: what is in none takes no part
+  boxes_meet,     // n pairs of triangles are asked about; triangles in none take no part
   many_in_front,  // a triangle is culled only in front of all that its box overlaps
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
@@ -103,7 +103,7 @@ enum class Reason : std::uint8_t {
   not_asked,            // --no-verify
   near_boxes,           // of n pairs of objects; m bounds of boxes were compared
   inside_not_asked,     // --inside no
-  // Rules by which pixels decide, in a plan.
+  // In a plan: conditions that pixels will decide.
   if_more_left,        // if more than n triangles are left (n = 0: any)
   if_more_candidates,  // if more than n candidates are left for each triangle that takes part
   if_changed,          // if the round before changed something
@@ -127,7 +127,7 @@ struct Stage {
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
   std::uint64_t queries = 0;      // slots asked
-  // Against plain CULLIDE's passes on the same live triangles; Quick-CULLIDE and FAR fill them.
+  // Fewer than plain CULLIDE's passes take on the same live triangles; by Quick-CULLIDE and FAR.
   std::uint64_t draws_saved = 0;
   std::uint64_t queries_saved = 0;
 };

@@ -12,7 +12,7 @@
 
 namespace farcull {
 
-/// The number at the beginning of `text`, which is removed from it. A decimal number as of
+/// Removes the number at the beginning of `text` and returns it. A decimal number as of
 /// std::from_chars: no leading space and no '+'. Empty, and `text` unchanged, if it begins with no
 /// number or T cannot hold the number.
 template <class T>
@@ -42,7 +42,7 @@ inline std::string grouped(std::uint64_t n) {
   return out;
 }
 
-/// A number and what agrees with it: "1 pair", "1,234 pairs", "1 triangle is left".
+/// A number and the words that agree with it: "1 pair", "1,234 pairs", "1 triangle is left".
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);
 }

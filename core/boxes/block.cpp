@@ -8,11 +8,11 @@
 namespace farcull {
 namespace {
 
-// Triangles whose corners are fetched ahead.
+// How many triangles ahead corners are prefetched.
 constexpr std::uint32_t kAhead = 16;
 constexpr float kLargest = std::numeric_limits<float>::max();
 
-// The bounds of points, and as floats.
+// The bounds of points; relative_to() converts them to floats.
 #ifdef __SSE2__
 struct Bounds {
   __m128d lo_xy, lo_z, hi_xy, hi_z;
@@ -82,7 +82,7 @@ Bounds of(const Box& box) {
   return out;
 }
 
-// Not grown.
+// The box of a triangle, not grown.
 Bounds bounds_of(const Scene& scene, std::uint32_t triangle) {
   const auto& [p, q, r] = scene.triangles[triangle];
   Bounds out = Bounds::of(scene.vertices[p]);
@@ -140,7 +140,7 @@ Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {
-    // They may lie anywhere, so they are fetched ahead.
+    // The corners may lie anywhere in memory, so they are prefetched.
     prefetch(scene, std::min(t + kAhead, last));
     const auto& [p, q, r] = scene.triangles[t];
     a.add(Bounds::of(scene.vertices[p]));
@@ -157,7 +157,6 @@ Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, dou
   const Bounds zero = Bounds::of(origin);
   Bounds all = Bounds::empty();
   for (std::uint32_t t = from; t < to; ++t) {
-    // Their corners may lie anywhere.
     prefetch(scene, std::min(t + kAhead, to - 1));
     const Bounds own = bounds_of(scene, t);
     all.add(own);
@@ -233,7 +232,7 @@ struct Spread {
   }
 };
 
-// The spread of a sample, without the eighths at both ends: a few boxes far away say nothing.
+// The spread of a sample, without an eighth at either end: few distant boxes must not decide it.
 Spread sampled_spread(std::span<const Placed> items) {
   constexpr std::size_t kMost = 32;
   const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
@@ -263,8 +262,8 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     Spread spread = sampled_spread(items);
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
-    // Boxes that reach across would make both parts as long. Each is set apart once, and only if
-    // they are not most of the items, so that the depth stays logarithmic.
+    // Boxes that span the whole spread would make both parts as long. Each is set apart once, and
+    // only if they are not most of the items, so that the depth stays logarithmic.
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;
@@ -275,7 +274,7 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
       items = items.subspan(large);
       at += large;
     }
-    // In the middle, but at the end of a node as high as there is in the range.
+    // Split near the middle, at the end of a node of the largest height that fits the range.
     std::size_t node = 1;
     while (node * kWide < items.size()) node *= kWide;
     const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;

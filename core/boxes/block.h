@@ -24,7 +24,7 @@
 
 namespace farcull {
 
-/// By how much each of two boxes grows so that they meet at that distance: half of it, rounded up.
+/// How far each of two boxes grows so that boxes at that distance meet: half of it, rounded up.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
@@ -88,8 +88,8 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 /// The empty box, which meets nothing.
 constexpr FloatBox kNowhere = {{kInfinite, kInfinite, kInfinite, 0},
                                {-kInfinite, -kInfinite, -kInfinite, 0}};
-/// The box relative to an origin (finite), rounded to float, but finite, so that none meets a
-/// missing one. An empty box becomes kNowhere.
+/// The box relative to a finite origin, rounded to finite floats, so that it never meets a missing
+/// box. An empty box becomes kNowhere.
 FloatBox relative(const Box& box, const Vec3& origin);
 /// True iff the closed boxes share a point.
 inline bool overlap(const FloatBox& a, const FloatBox& b) {
@@ -179,8 +179,8 @@ struct BoxTree {
 /// Blocks of a tree over so many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
-/// The tree over the boxes, with its blocks at blocks[at] and behind: blocks_of_tree() of them.
-/// boxes: of the leaves, which are overwritten.
+/// Makes the tree over the boxes, and writes its blocks_of_tree() blocks from blocks[at] on. boxes:
+/// of the leaves; they are overwritten.
 template <class Number>
 BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Number>> blocks,
                           std::size_t at) {
@@ -208,10 +208,10 @@ BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Nu
   return out;
 }
 
-/// An order in which boxes that follow one another lie together, for a tree over them. Each cut
-/// puts half of the boxes on either side, wherever they lie, and boxes that
-/// reach across most of the others stand before them. So a box far away, or a huge one,
-/// spoils no node but those that it is in. Any boxes, also infinite ones. O(n log n).
+/// Orders boxes for a tree over them, so that boxes that follow one another are close. Each cut
+/// puts half of the boxes on either side, wherever they lie; boxes that reach across most of the
+/// others come first. So a distant or huge box enlarges only the nodes that it is in. Any boxes,
+/// also infinite ones. O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

@@ -72,7 +72,7 @@ HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8);
 }
 
-/// All sixteen as bits.
+/// The same for all sixteen boxes, as bits.
 template <class Number>
 HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
                                           const OneBox<Number>& box) {
@@ -106,7 +106,7 @@ HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox
   return out;
 }
 
-/// The lowest bit, which is taken away. Precondition: there is one.
+/// Clears the lowest bit and returns its number. Precondition: there is one.
 HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
   bits &= bits - 1;

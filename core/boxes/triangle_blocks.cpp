@@ -15,7 +15,7 @@
 namespace farcull {
 namespace {
 
-// Triangles whose corners are fetched ahead.
+// How many triangles ahead corners are prefetched.
 constexpr std::size_t kAhead = 16;
 
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
@@ -34,7 +34,7 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
 }
 
 // The place of item k of a sample, in [0, 1): multiples of the golden ratio are as even as a grid,
-// without its period, since surfaces often have one.
+// but without a period, which surfaces often have.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
@@ -43,7 +43,7 @@ constexpr std::uint32_t kSampledBlocks = 64;
 // A sample of fewer blocks than this would cost as much as all of them.
 constexpr std::uint32_t kJudgedBlocks = 4 * kSampledBlocks;
 
-// The mean length of some blocks of an object if it has many and the mean says that they are
+// The mean length of a sample of an object's blocks, if it has many and the mean says that they are
 // scattered; else 0. `box` becomes the box of the sample.
 double sampled_length(const Scene& scene, const TriangleBlocks& blocks, std::uint32_t object,
                       Box& box) {
@@ -159,7 +159,7 @@ void keep_objects(ScatteredBoxes& scattered, const Keeps& keeps) {
   scattered.first.resize(kept);
 }
 
-// Fills in the boxes of the triangles of all its objects, and the boxes of these in `objects`.
+// Fills in the boxes of all triangles of its objects, and in `objects` those of the objects.
 void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
                     std::span<Box> objects) {
   std::size_t size = 0;
@@ -192,7 +192,7 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
   }
   out.objects.assign(objects, Box::empty());
   const double half = half_of(clearance);
-  std::vector<double> seems(objects, 0);  // the mean length of its blocks if it seems scattered
+  std::vector<double> seems(objects, 0);  // mean length of its blocks if it seems scattered
   if (scattered) {
     Box sampled = Box::empty();
     for (std::uint32_t o = 0; o < objects; ++o) {
@@ -223,7 +223,7 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
     if (seems[o] > 0 || is_scattered(out, o)) scattered->objects.push_back(o);
   }
   fill_scattered(scene, half, threads, *scattered, out.objects);
-  // A sample sees less than the whole box.
+  // The box of a sample is smaller than that of the object, so these are judged again.
   keep_objects(*scattered, [&](std::uint32_t o) {
     const std::uint32_t count = out.first[o + 1] - out.first[o];
     if (seems[o] == 0 || are_scattered(seems[o], count, out.objects[o])) return true;
@@ -266,7 +266,7 @@ void sort_by_code(UninitializedVector<Coded>& all, int bits) {
 // The cells of a grid over a box, and their places on a Morton curve.
 class MortonGrid {
  public:
-  // Cells half as wide as a block of a surface of so many triangles, about.
+  // Cells are about half as wide as a block of a surface with so many triangles.
   MortonGrid(const FloatBox& box, std::uint32_t triangles)
       : bits_(
             std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(triangles / 16.0))) + 1, 4, 10)),
@@ -280,7 +280,7 @@ class MortonGrid {
   // The code of the cell with the box's lower corner.
   std::uint32_t code(const FloatBox& box) const {
     const auto cell = [&](std::size_t axis) {
-      // By halves, which cannot be infinite.
+      // Halves, since the difference may be infinite.
       const float at = (0.5f * box.lo[axis] - 0.5f * lo_[axis]) * scale_;
       return spread(static_cast<std::uint32_t>(std::min(std::max(at, 0.0f), most_)));
     };

@@ -1,6 +1,6 @@
-// Blocks of triangles: those that stand together in a file mostly lie together, so the box of a
-// block speaks for all of them, and most are never touched one by one. Triangles that are scattered
-// are put in an order in which they lie together.
+// Blocks of triangles. Triangles that follow one another in a file are mostly close, so one box can
+// rule out a whole block, and most triangles are never looked at one by one. Scattered triangles
+// are put in an order in which they are close.
 #pragma once
 
 #include <cstddef>
@@ -88,8 +88,8 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
 /// Blocks in the order of the file; of scattered objects all triangles in Morton order, with lanes
 /// and a box for each block; of stretched objects in the order of spatial_order().
 TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Makes the boxes and lanes of such blocks again for triangles with corners that moved, and the
-/// boxes of the objects. moved: per block.
+/// Recomputes the boxes and lanes of such blocks where corners moved, and the boxes of the objects.
+/// moved: per block, whether a corner moved.
 void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
                   unsigned threads, TriangleBlocks& blocks);
 

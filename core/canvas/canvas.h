@@ -1,6 +1,6 @@
-// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas/canvas.h),
-// the cores of the CPU (core/native/canvas.h), and one that behaves as badly as the device
-// assumptions allow (verify/worst_canvas.h).
+// The few operations that culling needs of a rasterizer. Implementations: GL
+// (core/gl/canvas/canvas.h), the cores of the CPU (core/native/canvas.h), and one that behaves as
+// badly as the device assumptions allow (verify/worst_canvas.h).
 #pragma once
 
 #include <algorithm>
@@ -136,7 +136,7 @@ struct Step {
 /// where one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
 /// where nothing is stored nothing is seen. touching = false: only fragments behind it (GREATER),
 /// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
-/// contacts at equal depth are then not seen, so nothing is promised.
+/// contacts at equal depth are then not seen, so no guarantee holds.
 struct Pass {
   bool touching = true;
   std::uint32_t slots = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-// The part of one thread, whose drawables stand apart until all are joined.
+// The part of one thread, with drawables of its own until all parts are joined.
 class Part {
  public:
   Part(const Scene& scene, const Window& window, const Fattener& fattener, double radius)

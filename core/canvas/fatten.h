@@ -1,5 +1,5 @@
-// The stage between the scene and the canvas: what each triangle is drawn as in a view. The offset
-// arrives as a function, so that core alone, with raw triangles, is a complete CULLIDE.
+// The stage between the scene and the canvas: turns each triangle into what a view draws. The
+// offset arrives as a function, so that core alone, with raw triangles, is a complete CULLIDE.
 #pragma once
 
 #include <functional>
@@ -43,7 +43,7 @@ struct Fattener {
   /// px (>= 0).
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
-  /// Fattens what needs no clipping, to the same bits, many triangles at once; null: one by one.
+  /// The same bits for many triangles at once, all of which need no clipping; null: one by one.
   void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
@@ -58,7 +58,7 @@ struct FattenCounts {
 };
 
 /// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
-/// does not depend on them. `used`: drawables that are needed no more, whose memory is used again.
+/// does not depend on them. `used`: drawables no longer needed, whose memory is used again.
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
                  const Fattener& fattener, double radius, FattenCounts& counts,
                  Drawables used = {});

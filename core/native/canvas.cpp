@@ -122,7 +122,7 @@ void NativeCanvas::draw(const NativeJob& job, const Pass& pass) {
   const std::size_t bands =
       std::min<std::size_t>(chunks_for(pass.draws.size(), kLeast, options_.threads),
                             static_cast<std::size_t>(job.height));
-  // Rows at which another thread begins: where another share of all elements does.
+  // Rows at which the next thread begins: each has an equal share of all elements.
   std::vector<int> border(bands + 1, job.height);
   border[0] = 0;
   for (std::size_t b = 1; b < bands; ++b) {

@@ -17,9 +17,9 @@
 
 namespace farcull {
 
-/// Columns and rows behind a window's last that its buffer has as well: a block begins inside the
-/// window, and reads and writes back all its pixels. Of a row they keep what one thread writes back
-/// out of the next row, which may be another's.
+/// Columns and rows of the buffer beyond the window's last: a block begins inside the window, and
+/// reads and writes back all its pixels. The columns keep what a thread writes back in a row out of
+/// the next row, which may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
 /// The pixels of the window where an element may have a fragment: [x0, x1) x [y0, y1) from the

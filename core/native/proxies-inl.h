@@ -157,8 +157,8 @@ HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   }
 }
 
-/// The edges of a proxy, each with its inner side: a centre c is covered where no edge says no. The
-/// floats round; docs/budget.md, "The canvas on the CPU", bounds by how much.
+/// The edges of a proxy, each with its inner side: a centre c is covered if it is outside no edge.
+/// The floats round; docs/budget.md, "The canvas on the CPU", bounds by how much.
 struct ProxyEdges {
   Plain x[4], y[4], dx[4], dy[4];
 
@@ -210,7 +210,7 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
   // If not even the nearest or farthest depth of the solid changes a block, its lines need not be
-  // followed: the depth map is monotone, so none of theirs would.
+  // followed: the depth map is monotone, so no depth along them would either.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const vec4 s0 = uniform(s[0]), s1 = uniform(s[1]), s2 = uniform(s[2]), s3 = uniform(s[3]),
@@ -234,7 +234,7 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
     covered = covered && Kernel::interval({cx, cy}, s0, s1, s2, s3, s4, entry, exit);
     return take_fragments(job, verb, covered, verb == Verb::store ? entry : exit, at, y1 - y);
   };
-  // Blocks in a row are asked together where they are many.
+  // Many blocks in a row are tested against the edges together.
   const bool many = kLanes > 1 && range.x1 - range.x0 > 2 * kBlockWidth;
   for (int y = y0; y < y1; y += kBlockHeight) {
     if (!many) {

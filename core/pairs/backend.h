@@ -78,7 +78,7 @@ struct PairCounts {
   std::uint64_t undrawable = 0;  // triangles that the view could not show: joined by boxes
   // On a GL device, else 0: kernels that were started, and waits for results to be read.
   std::uint64_t dispatches = 0, readbacks = 0;
-  // How often the work was done again, since the room that was expected to do was too little.
+  // How often the work was done again, since it needed more room than expected.
   std::uint64_t redone = 0;
   bool given_up = false;  // there is more work than PairTask::most_tests; no pairs
   double prepare_ms = 0;  // to pixel space
@@ -104,9 +104,9 @@ constexpr int kMostCpuPixels = 32767;
 
 /// threads: 0 for as many as there are cores. memory: bytes, about, that the masks and lists of one
 /// part of the window may take in each thread; more entries split the window further, down to
-/// single pixels, which take what they need. An eighth of it on top holds which pairs were settled,
-/// and an eighth of it for all threads together pairs that may repeat; beyond that as many pairs
-/// are held as are distinct (core/scene/pair_sort.h). The answer depends on neither.
+/// single pixels, which take what they need. An eighth more holds the table of settled pairs, and
+/// another eighth, for all threads together, pairs that may repeat; beyond that as many pairs are
+/// held as are distinct (core/scene/pair_sort.h). The answer depends on neither.
 std::unique_ptr<PairBackend> cpu_pair_backend(unsigned threads = 0,
                                               std::size_t memory = std::size_t{256} << 20);
 

@@ -23,8 +23,8 @@ static_assert(kMostCpuPixels < 1 << 15);
 constexpr int kBandsPerThread = 8;
 constexpr int kLeastShift = 2;
 
-// Pairs that are held although they may repeat: this part of a thread's memory, in all threads
-// together, or so many, or as many as are distinct.
+// Pairs are held although they may repeat, up to this part of a thread's memory, in all threads
+// together, or so many, whichever is more, or as many as are distinct.
 constexpr std::size_t kBufferPart = 8;
 constexpr std::size_t kLeastBuffer = 4096;
 
@@ -168,7 +168,7 @@ class CpuPairs : public PairBackend {
     for (const auto& part : large_of) large_.insert(large_.end(), part.begin(), part.end());
   }
 
-  // Large triangles with each active one, in the rectangle of that one's bounds.
+  // Compares large triangles with each active one, in the rectangle of that one's bounds.
   void compare_large(const PairGrid& grid, std::size_t chunks, PairPool& found) {
     if (large_.empty()) return;
     const PairTask& task = grid.task();

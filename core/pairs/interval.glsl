@@ -24,7 +24,7 @@ FAR_KERNEL void far_bounds(vec4 a, vec4 b, vec4 c, vec4 widen, FAR_OUT(vec4) lo,
   hi = above;
 }
 
-// By how much a rectangle grows so that it speaks of the float triangle, whose real one has the bounds lo, hi.
+// How far a rectangle grows per axis, so that what the float triangle does in it covers the real one, whose bounds are lo, hi.
 FAR_KERNEL vec4 far_margin(vec4 lo, vec4 hi, vec4 widen) {
   FAR_PRECISE vec4 e = widen + kClipUnit * max(abs(lo), abs(hi));
   e.x = e.x + kClipUnit;
@@ -59,7 +59,7 @@ FAR_KERNEL void far_segment(FAR_INOUT(FarStrip) strip, float px, float pz, float
   strip.hi = max(strip.hi, s.z);
 }
 
-// Where an edge crosses the strip's two border lines; a line crosses an even number of edges, since each has only one end.
+// Where an edge crosses the strip's two border lines; a line crosses an even number of edges, since an edge has one of its ends.
 struct FarChords {
   vec4 first;  // x, z on the lower line; x, z on the upper line
   bool lower;  // the first crossing of that line has been seen
@@ -152,9 +152,9 @@ FAR_KERNEL int far_slice(float z, float steps_per_px, int first_step, int slices
   return slice < 63 ? slice : 63;
 }
 
-// The part of a cell, 0 .. last, that holds p; from: the cell's lower border (px), parts_per_px: a power of two. Exact for any
-// rounding: where p is inside the cell the subtraction is exact, elsewhere its sign or its excess is, and the product always is
-// (docs/budget.md, "Parts of a pixel"). A division by the side would be none of this.
+// The part of a cell, 0 .. last, that holds p; from: the cell's lower border (px), parts_per_px: a power of two. Exact for
+// any rounding: where p is inside the cell the subtraction is exact, elsewhere its sign or its excess is, and the product
+// always is (docs/budget.md, "Parts of a pixel"). A division by the side would not be exact.
 FAR_KERNEL int far_part(float p, float from, float parts_per_px, float last) {
   FAR_PRECISE float part = (p - from) * parts_per_px;
   return int(clamp(part, 0.0f, last));

@@ -106,8 +106,8 @@ class TileLists {
     float x0, y0, z0, x1, y1, z1;  // bounds, px
     std::uint16_t i0, j0;          // the first pixel of its bounds
     bool whole;                    // one interval in all its pixels
-    std::uint32_t number = 0;      // in the table of settled pairs, where its round is
-    std::uint32_t round = 0;       // this one
+    std::uint32_t number = 0;      // in the table of settled pairs, valid in `round`
+    std::uint32_t round = 0;       // of that table
     PairBounds bounds() const { return {{x0, y0, z0, 0}, {x1, y1, z1, 0}}; }
   };
   /// A triangle in a pixel or in a part of one.

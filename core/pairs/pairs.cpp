@@ -14,11 +14,11 @@
 namespace farcull {
 namespace {
 
-// As many triangles are compared with all others one by one: a join of all boxes would find every
-// pair of boxes that overlap, to keep few of them.
+// Up to so many triangles are compared with all others one by one: a join of all boxes would find
+// every pair of boxes that overlap, to keep few of them.
 constexpr std::size_t kComparedWithAll = 256;
 
-// Pairs that count of a few triangles (ascending) with all others whose grown boxes overlap theirs.
+// Pairs of a few triangles (ascending) and any others that count and whose grown boxes overlap.
 std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& regions,
                                        std::span<const std::uint32_t> few, double clearance) {
   const std::vector<std::uint32_t> owner = join_owners(scene);
@@ -46,9 +46,9 @@ bool neighbours_count(const Scene& scene, std::span<const std::uint32_t> owners,
          !share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
 }
 
-// Pairs whose grown boxes overlap, of the whole scene, by a tree over them, which finds them in
-// order: pairs that `keeps` leaves out are never listed. Portions are joined at the end, each freed
-// then, since a list that grows would take twice the memory.
+// Pairs of the whole scene whose grown boxes overlap. A tree over the boxes finds them in order, so
+// pairs that `keeps` leaves out are never listed. Portions are joined at the end and freed one by
+// one, since a list that grows would take twice the memory.
 template <class Keeps>
 std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& settings,
                                         unsigned threads, const Keeps& keeps,
@@ -78,7 +78,7 @@ std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& 
 }
 
 // Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
-// for triangles of which a view can say nothing.
+// for triangles that a view cannot show.
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
                                          std::span<const std::uint32_t> some,
                                          const PairSettings& settings, unsigned threads) {
@@ -90,7 +90,7 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
   });
 }
 
-// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
+// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
 constexpr std::size_t kAhead = 8;
 
 // Keeps the pairs whose boxes overlap, in order. owners: as neighbours_count() takes them.
@@ -174,7 +174,7 @@ class Finding {
     out_.stages.push_back(stage);
   }
 
-  // Views tell nothing about the next frame.
+  // Keeps what blocks decided for the next frame; views tell nothing about it.
   void remember() {
     memory_.complete = plan_.regions.triangles.empty();
     memory_.pairs = memory_.complete ? of_blocks_ : std::vector<TrianglePair>();
@@ -191,7 +191,7 @@ class Finding {
     return settings.views.empty() && !first_ && !(settings.full && looked_ < kMostPairViews);
   }
 
-  // Whether no further view is looked at; or sets skipped_ where this one would take nothing away.
+  // Whether no further view is looked at. Sets skipped_ if this one would take nothing away.
   bool stops_before(const PairChoice& choice) {
     const std::size_t triangles = plan_.regions.triangles.size();
     Stage stage = stage_of(choice);
@@ -271,8 +271,8 @@ class Finding {
     out_.stages.push_back(stage);
   }
 
-  // The candidates after a view whose raw pairs these are. A view says nothing about triangles that
-  // it cannot show.
+  // Takes away the candidates that are not among the raw pairs of a view. A view says nothing about
+  // triangles that it cannot show.
   void narrow(std::vector<TrianglePair> pairs) {
     const double clearance = plan_.settings.clearance;
     const std::vector<std::uint32_t>& bad = seen_.undrawable;

@@ -2,7 +2,7 @@
 // objects; else every pair whose boxes overlap and whose depth intervals overlap in a pixel of
 // every view that was looked along. A pair that intersects is among them (docs/reliability.md,
 // "Interval pairs" and "Boxes of runs"): between objects, and inside those that collide with
-// themselves. The method decides nothing exactly; that is verify's.
+// themselves. The method decides nothing exactly; verify/ does.
 //
 // A plan says what boxes of blocks decide, and which views decide the rest. The rules by which
 // directions and resolutions are chosen are fixed: the same scene and settings give the same plan.
@@ -79,12 +79,12 @@ struct PairSettings {
   bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
   bool blocks = true;    // false: views decide everything
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
-  /// Objects that are not tested against each other, as in_order() gives them. They cost culling
-  /// nothing; the candidates may still have such pairs.
+  /// Objects that are not tested against each other, as in_order() gives them. Culling spends no
+  /// work on them; the candidates may still have such pairs.
   std::vector<ObjectPair> ignored = {};
 };
 
-/// Everything about a scene that needs no pixels: who takes part, and which views are looked at.
+/// Everything about a scene that needs no pixels: which triangles take part, and which views.
 struct PairPlan {
   PairSettings settings;
   BlockMeetings blocks;             // decided without a view
@@ -106,8 +106,8 @@ struct PairPlan {
 
 /// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
 /// there are cores. memory: of the scene's last frame, planned and found with the same one; null:
-/// nothing is kept. Which triangles views decide about may depend on it, and no colliding pair
-/// does. Throws Error for a scene that is too large, std::logic_error for a clearance that is
+/// nothing is kept. It may change which triangles are left to views, but no colliding pair is lost
+/// by it. Throws Error for a scene that is too large, std::logic_error for a clearance that is
 /// negative or not finite.
 PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0,
                     PairMemory* memory = nullptr);
@@ -118,8 +118,8 @@ std::vector<Stage> planned_stages(const PairPlan& plan);
 
 /// Whether one of the two is in the list.
 bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair);
-/// The part of some pairs, evenly chosen of `from`, that a view would keep. For choices alone: no
-/// pair is lost either way. Precondition: there is a pair.
+/// The fraction of pairs that a view would keep, from an even sample of `from`. For choices alone:
+/// no pair is lost either way. Precondition: there is a pair.
 double kept_by(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
                double clearance, const std::vector<TrianglePair>& from);
 /// The window of a choice; empty if pixel space cannot resolve it.

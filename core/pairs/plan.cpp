@@ -1,4 +1,4 @@
-// A plan is made of boxes, blocks and views.
+// Makes the plan: what boxes of blocks decide, and which views are looked at for the rest.
 #include "core/pairs/pairs.h"
 
 #include <algorithm>
@@ -99,8 +99,8 @@ struct PairEstimate {
   std::vector<TrianglePair> sample;
 };
 
-// Boxes of a few triangles with those of some others. The eighth of the few that meets most is left
-// out, since one huge box says nothing about the others.
+// Compares the boxes of a few triangles with those of some others. The eighth of the few that meets
+// most is left out, since one huge box says nothing about the others.
 PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> triangles,
                              double clearance) {
   constexpr std::size_t kAsked = 32, kOthers = 8192;
@@ -178,7 +178,7 @@ std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
 
 enum class LastFrame : std::uint8_t { unknown, known, ignored };
 
-// Whether the memory knows the scene's last frame; unless that is ignored, it becomes this one.
+// Whether the memory knows the scene's last frame. Unless that is ignored, it then holds this one.
 LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemory& memory) {
   const bool complete = std::exchange(memory.complete, false);  // until this frame is found
   if (memory.patience.waits()) {
@@ -250,7 +250,7 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
     try_views(scene, threads, settings, parts, plan.choices);
   } else if (parts.join == Reason::none && !parts.rest.triangles.empty()) {
     plan.choices = choose_pair_views(scene, parts.rest, 0);
-    // No view parts triangles that lie on each other, and boxes are found faster.
+    // No view separates triangles that lie on each other, and boxes are faster.
     if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
                                          settings.clearance, parts.sample) > kKeptByView) {
       PairParts by_blocks = split(true);

@@ -139,13 +139,13 @@ bool TileWorker<Rules>::left_out(const Shown& a, const Shown& b) const {
   return share_index(a.vertices, b.vertices);
 }
 
-// Two whole triangles overlap in all their common pixels or in none: the first of these alone, in
-// the lower left corner of the common rectangle, reports them, or of its part in this tile. Both
-// are listed there if they are here: a list leaves an entry out by its slices alone, which are the
-// same in all pixels of a whole triangle, and two that overlap in depth have a common slice, which
-// is in conflict in every pixel that both meet. Bounds are cut to the limits before, so the limits
-// are the same everywhere. Where that pixel is crowded this one reports them too, since their
-// intervals may be finer there.
+// Two whole triangles overlap in all their common pixels or in none. Only the first of these in
+// this tile, the lower left corner of the common rectangle, reports them. Both are listed there if
+// they are here: a list leaves an entry out by its slices alone, which are the same in all pixels
+// of a whole triangle, and two that overlap in depth have a common slice, which is in conflict in
+// every pixel that both meet. Bounds are cut to the limits before, so the limits are the same
+// everywhere. If that pixel is crowded, this one reports them too, since their intervals may be
+// finer there.
 template <class Rules>
 void TileWorker<Rules>::fill_columns(std::span<const Entry> entries, const Place& place) {
   constexpr std::uint32_t kAlone = 0x80000000;  // a group of one
@@ -187,7 +187,7 @@ bool TileWorker<Rules>::reported_elsewhere(const Shown& a, const Shown& b,
          kCrowded;
 }
 
-// Puts pairs that a sweep found into the pool. In a tile with crowded pixels they are positions.
+// Puts pairs that a sweep found into the pool; in a tile with crowded pixels, by index.
 template <class Rules>
 void TileWorker<Rules>::keep(std::span<const TrianglePair> found, std::span<const Entry> entries,
                              const Place& place) {

@@ -1,5 +1,5 @@
 // A scene as a view sees it; and the choice of directions and resolutions, by estimates of the work
-// from a sample of triangles. Nothing depends on the estimates' accuracy but time.
+// from a sample of triangles. The estimates' accuracy affects only the time.
 #include "core/pairs/pairs.h"
 
 #include <Eigen/Eigenvalues>
@@ -137,11 +137,11 @@ constexpr int kLeastResolution = 32, kMostResolution = 4096;  // px
 
 // Work in units of one pixel that a triangle meets: measured ratios, rounded.
 constexpr double kPixelWork = 0.3;  // a pixel of the window, whether or not anything is there
-// Two intervals compared, for each that the estimate of evenly filled pixels gives: between objects
-// lists are uneven, which makes more tests.
+// Comparing two intervals, for each test that evenly filled pixels would need: lists between
+// objects are uneven, which makes more tests.
 constexpr double kTestWork = 2.5, kTestWorkSelf = 0.25;
-// The part of the pixels that triangles meet which the slices leave between different objects: at
-// least this, and more if triangles are deep.
+// Between different objects the slices leave at least this part of the pixels that triangles meet,
+// and more if triangles are deep.
 constexpr double kLeftBySlices = 0.15;
 // If triangles are deeper than this part of the scene in some view, their images lie too unevenly
 // for estimates: the sample itself is looked at, with this work for a test and for a pair.
@@ -348,7 +348,7 @@ std::vector<PairChoice> choose_pair_views(const Scene& scene, const PairRegions&
     const Scene part = scene_of(sample, scene);
     const PairRegions places = pair_regions(part, 0, false, 1);
     const auto backend = cpu_pair_backend(1);
-    // Those that meet few pixels first; who meets more than the best of them costs is not tried.
+    // Views that meet few pixels first; one whose pixels cost more than the best is not tried.
     for (Ranked& r : ranked) {
       r.work = met_work(sample, image_of(sample, r.choice.view), r.choice.resolution);
     }

@@ -5,8 +5,8 @@
 // grid, whose error can lose the nearest pair. Here it is every pair whose lower bound is at most a
 // certified upper bound, so no error of a grid enters: what is culled is provably farther apart.
 //
-// Bounds are of the doubles as given, any finite ones. Nothing is decided exactly; that is verify's
-// (verify/closest.h).
+// Bounds are of the doubles as given, any finite ones. Nothing is decided exactly here;
+// verify/closest.h does that.
 #pragma once
 
 #include <cstdint>
@@ -75,18 +75,18 @@ class ProximityTrees {
   /// need not be found. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// The same, but of others that are equally far the lower ones are enough. hints: in any order;
-  /// of those for the same two objects the first one counts. Where hints name k others of an
-  /// object, their distances bound its answer from the start.
+  /// The same, but among others that are equally far those with lower numbers are enough. hints: in
+  /// any order; of those for the same two objects the first one counts. Where hints name k others
+  /// of an object, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
   /// All pairs of triangles at most `within` apart, of different objects, and of one that is `self`
-  /// where they are no neighbours; and few besides, whose distance is `within` but for roundings.
-  /// Sorted, each once. Precondition: within is finite. Throws std::logic_error for a limit that is
-  /// none, and Error where there are more than `most`: these take some tens of bytes each at
-  /// most, and no others are held but some thousands.
+  /// where they are no neighbours; and a few that are farther only by roundings. Sorted, each once.
+  /// Precondition: within is finite. Throws std::logic_error for an invalid limit, and Error where
+  /// there are more than `most` pairs. Memory: at most some tens of bytes for each pair, and some
+  /// thousands of others.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 

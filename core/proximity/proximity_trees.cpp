@@ -87,7 +87,7 @@ std::vector<Search> begun_by_hints(const SceneTrees& trees, std::span<const Near
   return out;
 }
 
-// The k-th least bound: k other objects are at most so far.
+// The k-th least bound: k other objects are at most that far.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
   std::vector<double> upper;
@@ -176,8 +176,8 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
     counts.triangle_pairs += parts[o].triangle_pairs;
     std::ranges::move(found[o], std::back_inserter(founds));
   }
-  // Two objects may both have found each other. An answer holds all nearest pairs only where they
-  // are within its limit, which is so for one of them at least: so for that of the larger limit.
+  // Two objects may both have found each other; the answer with the larger limit is kept. An answer
+  // holds all nearest pairs if they are within its limit, as they are for one of the two at least.
   std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;
@@ -300,7 +300,7 @@ bool has(const Object& object, std::uint32_t triangle) {
   return triangle >= object.first_triangle &&
          triangle - object.first_triangle < object.triangle_count;
 }
-// The hint, if it is one: the first triangle of objects.a, the second one of objects.b.
+// Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
 bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
   return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
          has(scene.objects[objects.b], hint.b);

@@ -38,7 +38,7 @@ namespace farcull::near {
 // an origin: x = fl(point - origin) is off by u |x|. A dot product d.x has three products and two
 // sums: with the error of x, it is off by less than 5 u |d|.|x| (absolute values per axis). The
 // difference of two has one rounding more, of 2 u |d|.|x|: 12 u |d|.X in all, X the largest |x| per
-// axis. `gap` is 16 u, which covers the roundings of the doubt itself. The distance is at least the
+// axis. kGap is 16 u, which covers the roundings of the doubt itself. The distance is at least the
 // gap over the length of d.
 //
 // Points. Two points p, q are combined from the corners, taken relative to a corner of the first
@@ -47,18 +47,18 @@ namespace farcull::near {
 // (weights, against those divided by their sum) < 9 u R per axis of a point of the triangle, and so
 // is q. Their difference has one rounding of 2 u R: below 20.1 u R per axis, 35 u R in length. The
 // computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
-// all 55 u R; `point` is 64 u.
+// all 55 u R; kPoint is 64 u.
 //
 // Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on two
 // sides of its plane, and the edge passes all three of its sides in the same sense: the signs of
 // five determinants of differences of points. A difference is off by u of itself. Each of the six
 // products of three then is within (1 + u)^8 of the exact one, two sums included: a determinant is
-// off by less than 8.1 u of the sum of the products' magnitudes. `determinant` is 16 u, which
-// covers the roundings of that sum. Then the triangles share a point, and 0 is an upper bound.
+// off by less than 8.1 u of the sum of the products' magnitudes. kDeterminant is 16 u, which covers
+// the roundings of that sum. Then the triangles share a point, and 0 is an upper bound.
 //
 // Underflow: a product is off by at most 2^-1075, so a square of a length above 2^-900 is not
 // touched by it; shorter ones count as 2^-900 where the length shall be large enough, and give no
-// direction. Everything else that is lost that way is far below `absolute`.
+// direction. Everything else that is lost that way is far below kAbsolute.
 
 constexpr double kUnit = 0x1p-53;
 constexpr double kPoint = 64 * kUnit;
@@ -203,7 +203,7 @@ struct Search {
   std::vector<NodePair> open;     // to be looked at, the last one first
   std::vector<KeptPair> kept;
   bool everything = false;       // all pairs within the limit are kept, near or not
-  std::size_t kept_most = 1024;  // more than this: those that cannot be nearest are dropped first
+  std::size_t kept_most = 1024;  // beyond it, those that cannot be nearest are dropped
   ProximityCounts counts;
 
   double bound() const { return everything ? limit : std::min(upper, limit); }
@@ -231,8 +231,8 @@ Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double l
 /// Goes on until nothing is open, or `most` pairs of leaves were looked at.
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
 
-/// Pairs of leaves that a search looks at before it is asked whether it goes on. One that does is
-/// long, and is divided.
+/// Pairs of leaves that a search looks at in one go. A search that is not done then is long, and is
+/// divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
 /// A limit in world units, scaled and rounded up.
@@ -244,8 +244,8 @@ constexpr std::size_t kMostKept = 100'000'000;
 
 /// Throws Error if a search keeps more than `most` pairs.
 void require_room(const SceneTrees& trees, const Search& search, std::size_t most = kMostKept);
-/// Ends a search. What it finds and counts does not depend on the number of threads. Throws Error
-/// if it keeps more than `most` pairs.
+/// Runs a search to its end, divided. What it finds and counts does not depend on the number of
+/// threads. Throws Error if it keeps more than `most` pairs.
 void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search,
                    std::size_t most = kMostKept);
 

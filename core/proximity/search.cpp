@@ -101,7 +101,7 @@ class Searcher {
     return self_ ? search_.is_behind({std::min(lowest.a, lowest.b), 0}) : search_.is_behind(lowest);
   }
 
-  // Down to the pair of leaves that seems nearest, and from their nearest corners to a first bound.
+  // Descends to the pair of leaves that seems nearest; their nearest corners give a first bound.
   void descend() {
     NodePair at = search_.open.back();
     while (at.a_height > 0 || at.b_height > 0) {
@@ -300,8 +300,8 @@ class Searcher {
     if (!probing_) keep(bounds);
     batch.count = 0;
   }
-  // Triangles of two objects that have a corner in common meet. No edge need pierce a face then, as
-  // of equal objects and of fans, so that bounds do not tell.
+  // Triangles of two objects that have a corner in common meet. Then no edge need pierce a face, as
+  // in equal objects and in fans, so the bounds may not show it.
   void find_common_corners(BatchBounds& bounds) const {
     if (self_) return;
     const PairBatch& batch = memory_.batch;

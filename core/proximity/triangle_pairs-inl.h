@@ -1,7 +1,7 @@
-// Two triangles on each lane. Two closest points are guessed (Ericson, Real-Time Collision
-// Detection, 2005, sections 5.1.5 and 5.1.9; edges that pierce a face besides), and prove two
-// bounds however wrong the guess is: the points themselves that the triangles come as near, the
-// direction between them that they come no nearer (core/proximity/scene_trees.h).
+// A pair of triangles on each lane. Two closest points are guessed (Ericson, Real-Time Collision
+// Detection, 2005, sections 5.1.5 and 5.1.9; also edges that pierce a face). However wrong the
+// guess is, it proves two bounds: the points themselves an upper one, the direction between them a
+// lower one (core/proximity/scene_trees.h).
 #if defined(FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
 #undef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
@@ -133,7 +133,7 @@ class Guess {
     own_best = chosen(better, own, own_best);
     other_best = chosen(better, other, other_best);
   }
-  // On the line of one edge nearest to that of the other, then on each nearest to the point chosen.
+  // Nearest points of the lines, then on each edge the point nearest to the one chosen.
   HWY_INLINE void offer_edges(int i, int j) {
     const Point &u = a_.edge[i], &v = b_.edge[j];
     const Point w = a_.corner[i] - b_.corner[j];
@@ -281,7 +281,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   return out;
 }
 
-/// Bounds of the pairs of a batch. The numbers behind them are any.
+/// Bounds of the pairs of a batch. The lanes behind the last pair get arbitrary numbers.
 HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
   const Numbers n;
   for (std::size_t from = 0; from < batch.count; from += kLanes) {

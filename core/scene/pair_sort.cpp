@@ -14,7 +14,7 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// So many partners of one triangle may be marked instead of sorted.
+// From so many on, the partners of one triangle may be marked instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
 // Sorts the partners of one triangle and appends its pairs, each once. Many partners among few
@@ -87,7 +87,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
   }
   if (total == 0) return {};
   const std::uint64_t range = most - least + 1;
-  // Counting takes 32-bit places and is worth while where pairs are not few among the triangles.
+  // Counting takes 32-bit places, and pays unless pairs are few compared with the range.
   if (total < range / 16 || total > UINT32_MAX) {
     std::vector<TrianglePair> out;
     out.reserve(total);

@@ -30,10 +30,10 @@ std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&&
 /// added.
 class PairPool {
  public:
-  /// Takes pairs away that are not asked for. Of sorted pairs, which stay so; in any thread.
+  /// Removes pairs that are not asked for from sorted ones, which stay sorted; in any thread.
   using Narrow = std::function<void(std::vector<TrianglePair>&)>;
   /// lists: as many as threads add at the same time; buffer: pairs in all lists together; narrow:
-  /// of a list that is full, before its pairs go into the one of the distinct pairs. Null: none.
+  /// applied to a full list before its pairs join the distinct ones; null: not applied.
   PairPool(std::size_t lists, std::size_t buffer, Narrow narrow = {});
 
   void add(std::size_t list, const TrianglePair& pair) {
@@ -46,13 +46,13 @@ class PairPool {
     pairs.insert(pairs.end(), added.begin(), added.end());
     shrink_if_full(list);
   }
-  /// Room for `count` more pairs at the end of a list, all `value`, for those who write them there;
-  /// then shrink_if_full().
+  /// Room for `count` more pairs at the end of a list, all `value`, for the caller to overwrite;
+  /// then call shrink_if_full().
   std::span<TrianglePair> append(std::size_t list, std::size_t count, const TrianglePair& value);
   void shrink_if_full(std::size_t list) {
     if (lists_[list].pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
   }
-  /// Pairs in the lists and in that of the distinct pairs; while nobody adds.
+  /// Pairs in the lists and in that of the distinct pairs; only while no thread adds.
   std::size_t held() const;
   /// All pairs, sorted, each once; ends the pool.
   std::vector<TrianglePair> take(unsigned threads);

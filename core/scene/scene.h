@@ -109,8 +109,8 @@ std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_
 std::vector<std::uint32_t> owners(const Scene& scene);
 
 /// 16 hex digits: FNV-1a over the sizes of the objects, whether they are `self`, and the bits of
-/// the coordinates of all triangles, in order. Names do not count, nor do the ignored objects,
-/// which a record tells of by itself.
+/// the coordinates of all triangles, in order. Names do not count, nor do ignored objects, which a
+/// record lists separately.
 std::string scene_hash(const Scene& scene);
 
 /// Triangles in at least one of the pairs; ascending, each once. triangles: number of triangles of
@@ -133,11 +133,11 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: it answers about all objects, as in
+/// Throws Error if objects of the scene are ignored. who: what answers about all objects, as in
 /// "farcull distance".
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
-/// Tells of one pair of triangles after the other whether its objects are ignored.
+/// Tells whether the objects of a pair of triangles are ignored.
 class IgnoredObjects {
  public:
   /// As remove_ignored(). The scene is not kept.
@@ -158,8 +158,8 @@ class IgnoredObjects {
 /// Which corners moved between two frames of the same triangles and objects.
 class MovedCorners {
  public:
-  /// Compares the scene with that of the last call, and keeps a copy. False: there was none, or its
-  /// triangles or objects were others; nothing else may be asked then.
+  /// Compares the scene with that of the last call, and keeps a copy. Returns false if there was
+  /// none or its triangles or objects differ; then nothing else may be asked.
   bool update(const Scene& scene);
   /// The next update() returns false.
   void forget() { known_ = false; }
@@ -169,7 +169,7 @@ class MovedCorners {
     return (moved_[p] | moved_[q] | moved_[r]) != 0;
   }
 
-  /// Per triangle whether a corner of it did.
+  /// Per triangle whether a corner of it moved.
   std::vector<std::uint8_t> triangles(const Scene& scene) const;
 
  private:
@@ -200,8 +200,8 @@ class BackoffCounter {
   int frames_left_ = 0, next_ = 1;
 };
 
-/// Whether less than half of some of the pairs, evenly chosen, have a triangle that moved. Without
-/// a pair: whether nothing moved.
+/// Whether less than half of an even sample of the pairs have a triangle that moved. Without a
+/// pair: whether nothing moved.
 bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
                     std::span<const TrianglePair> pairs);
 

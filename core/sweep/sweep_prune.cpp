@@ -66,8 +66,7 @@ bool BoxSweep::before(const End& e, const End& f) {
 // included, since there lower ends come first. Insertion sort exchanges two ends iff their order
 // changed. So a pair that came to overlap was apart along some axis, where a lower end of one
 // passed an upper end of the other; a pair that came apart did so along some axis, where an upper
-// end passed a lower one. Whether it overlapped before and does now is asked of the boxes
-// themselves.
+// end passed a lower one. The boxes themselves tell whether it overlapped before and does now.
 const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   swaps_ = 0;
   std::vector<std::uint32_t> present;
@@ -141,12 +140,12 @@ namespace {
 /// The state of a triangle.
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
-/// The group of a triangle of a `self` object has nobody else in it.
+/// Marks a group of one: each triangle of a `self` object is alone in its group.
 constexpr std::uint32_t kAlone = 1u << 31;
 
 constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
 
-/// By lower ends, with the index of what is sorted.
+/// A lower end to sort by, and the index of what has it.
 struct Key {
   double lo;
   std::uint32_t index;
@@ -196,8 +195,8 @@ void SweepPrune::forget() {
   order_.clear();
 }
 
-/// Triangles whose box meets the box of another object, whose box meets that of their own, or which
-/// would have to be compared with more than kTries of those; and all of `self` objects.
+/// Finds the triangles whose box meets that of a partner, an object whose box meets that of their
+/// own, or that have more than kTries partners to compare; and all of `self` objects.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
@@ -247,8 +246,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// The axis along which boxes are shortest, compared with the extent of all, for the sweep. It
-/// stays what it was where another one is little better, since with it goes the order.
+/// Chooses the axis of the sweep: the one along which boxes are shortest, compared with the extent
+/// of all. It changes only if another one is clearly better, since the order is lost with it.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();
@@ -283,7 +282,7 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   while (bits_[0] + bits_[1] > most) --bits_[bits_[0] < bits_[1] ? 1 : 0];
 }
 
-/// The survivors; those of the last call stay in its order.
+/// Puts the survivors in order_; those of the last call stay in its order.
 void SweepPrune::renew_order(std::size_t triangles) {
   std::size_t kept = 0;
   for (const std::uint32_t t : order_) {

@@ -1,5 +1,5 @@
-// The places by a join of the objects' boxes; a triangle takes part where its box meets the box of
-// a partner of its object.
+// Finds the places by a join of the objects' boxes; a triangle takes part if its box meets the box
+// of a partner of its object.
 #include "core/view/regions.h"
 
 #include <algorithm>

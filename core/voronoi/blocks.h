@@ -51,7 +51,7 @@ struct Level {
   }
 };
 
-// Half the diagonal of a block whose sides are as much shorter, rounded up.
+// Half the diagonal of a block whose sides are `shorter` less, rounded up.
 inline float half_diagonal(const Block& block, int shorter) {
   float square = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -158,7 +158,7 @@ inline std::uint64_t distances_in(int slice, const VoronoiBricks& bricks) {
   return out;
 }
 
-/// Sorts them and leaves each once.
+/// Sorts the pairs and removes repeats.
 inline void sort_each_once(std::vector<ObjectPair>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -168,9 +168,9 @@ inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Calls form.look() for each block that matters of `whole`, which has all triangles, level by
-/// level, and form.add() with what the chunks of a level found, in order, before it looks at the
-/// next level. Form::Found: what a chunk finds.
+/// Walks down the blocks of `whole`, which has all triangles, level by level: calls form.look() for
+/// each block that matters, then form.add() with what each chunk of the level found, in order.
+/// Form::Found: what a chunk finds.
 template <class Form>
 void descend(Form& form, const Block& whole, std::size_t triangles, const VoronoiOptions& options,
              const Progress& progress, VoronoiCounts& counts) {
@@ -208,7 +208,7 @@ void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
   descend(form, Block{{0, 0, 0}, grid.cells, 0, triangles}, triangles, options, progress, counts);
 }
 
-/// slab(whole block, first slice, slice after the last one) for the slabs of the grid, kBrick
+/// Calls slab(whole block, first slice, slice after the last one) for the slabs of the grid, kBrick
 /// slices each, in order.
 template <class Slab>
 void for_slabs(const VoronoiGrid& grid, std::size_t triangles, const Slab& slab) {

@@ -149,7 +149,7 @@ class CpuDevice : public VoronoiDevice {
     return chunks_for(bricks.bricks.size(), 4, threads_);
   }
 
-  // work(chunk, cell, triangles, their bounds)
+  // Calls work(chunk, cell, triangles, their bounds) for each cell of the slice.
   template <class Work>
   void for_cells(int slice, const VoronoiBricks& bricks, const Work& work) const {
     for_chunks(bricks.bricks.size(), chunks(bricks),

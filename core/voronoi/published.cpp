@@ -9,8 +9,8 @@ namespace farcull {
 namespace voronoi {
 namespace {
 
-// Whether one object is nearer than another one to every point of a block: a test that is sharp
-// where both are far away, as distances from the middle of the block are not.
+// Whether one object is nearer than another one to every point of a block. Unlike distances from
+// the middle of the block, the test is sharp also where both are far away.
 //
 // Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
 // square of the distance from v is less than that from T everywhere if one of two bounds of their
@@ -171,13 +171,13 @@ class Published {
   // An object that may be one of the nearest two of a cell.
   struct Candidate {
     const Near* near;
-    std::size_t dominators = 0;  // of the others, by how many it is dominated
+    std::size_t dominators = 0;  // how many others dominate it
     std::size_t by = 0;          // one of them
   };
 
-  // The objects that may be among the nearest two of a cell of the block, ascending. None where
-  // every two that a cell may name have been named. slack: what a distance may change, from the
-  // cell at the centre to any other, more than another one does.
+  // The objects that may be among the nearest two of a cell of the block, ascending. Empty if every
+  // two that a cell may name have been named. slack: by how much more one distance may change than
+  // another, from the cell at the centre to any other.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();
@@ -190,7 +190,7 @@ class Published {
     for (std::size_t i = 0; i < candidates.size() && !adds; ++i) {
       for (std::size_t j = i + 1; j < candidates.size() && !adds; ++j) {
         const std::uint32_t a = candidates[i].near->object, b = candidates[j].near->object;
-        // Only where both are as near as any third one may be can they be the nearest two.
+        // They can be the nearest two only if both are as near as any third one may be.
         const auto third = std::find_if(least.begin(), least.end(), [&](const auto& upper) {
           return upper.second != a && upper.second != b;
         });
@@ -207,7 +207,7 @@ class Published {
     return out;
   }
 
-  // Whether the candidate is dominated by no other one than that.
+  // Whether no other candidate than `other` dominates this one.
   static bool only_by(const Candidate& candidate, std::size_t other) {
     return candidate.dominators == 0 || (candidate.dominators == 1 && candidate.by == other);
   }

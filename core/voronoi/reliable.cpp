@@ -1,7 +1,7 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). What is farther is culled by two rules. An
-// end is about as near to the cell as any triangle is. And it is no farther than half the distance
-// that is looked for, of which every point of space gives an upper bound.
+// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all others. An end is about
+// as near to the cell as any triangle is. And it is no farther than half the distance looked for,
+// of which every point of space gives an upper bound.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -56,7 +56,7 @@ class Reliable {
     last_.append(found.last);
   }
 
-  // The pairs of the cells that are left, now that all upper bounds are there.
+  // The pairs of the cells that are left, now that all upper bounds are known.
   std::vector<TrianglePair> pairs(const VoronoiOptions& options, VoronoiCounts& counts) const {
     const std::size_t lists = chunks_for(last_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
@@ -99,7 +99,7 @@ class Reliable {
   // Half the diagonal of a cell.
   float half_of_cell() const { return half_of({{0, 0, 0}, {1, 1, 1}, 0, 0}); }
 
-  // As note_upper() above, of all cells of a slice.
+  // As note_upper() below, for all cells of a slice.
   void note_upper(const std::vector<VoronoiNear>& slice) {
     for_cells(slice, [&](std::span<const VoronoiNear> cell) {
       const auto object_of = [&](const VoronoiNear& near) {
@@ -122,7 +122,7 @@ class Reliable {
     });
   }
 
-  // Adds the pairs of all cells of a slice, now that all upper bounds are there.
+  // Adds the pairs of all cells of a slice, now that all upper bounds are known.
   void add_pairs(const std::vector<VoronoiNear>& slice, PairPool& pool,
                  const VoronoiOptions& options) const {
     const float half = half_of_cell();
@@ -147,7 +147,7 @@ class Reliable {
     return block.is_cell() ? half * widening_ : half;
   }
 
-  // An object is no farther from another one than a way through the point.
+  // The distance to another object is at most that of the way through the point.
   static void note_upper(const Distances& distances, std::vector<float>& upper) {
     const auto least = distances.least_upper<2>();
     for (const Near& near : distances.objects()) {
@@ -159,7 +159,7 @@ class Reliable {
   // How far an end of a segment that is the shortest of this object may be from the point.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // Those of the triangles that may be an end; none where they are of one object.
+  // The triangles that may hold an end; none if all of these are of one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;

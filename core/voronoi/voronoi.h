@@ -16,9 +16,9 @@
 // block is left out if no cell in it can add to the answer.
 //
 // Both can also be computed slice by slice, on a device that rasterizes distances: on OpenGL
-// (core/gl/voronoi.h) or on the CPU, cell by cell. The CPU divides each slab of slices into bricks,
-// blocks of cells with the triangles that may matter there; the device computes the distances of
-// the cells of each brick from these triangles.
+// (core/gl/voronoi/voronoi.h) or on the CPU, cell by cell. The CPU divides each slab of slices into
+// bricks, blocks of cells with the triangles that may matter there; the device computes the
+// distances of the cells of each brick from these triangles.
 #pragma once
 
 #include <algorithm>
@@ -188,8 +188,8 @@ namespace farcull {
 
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
-  /// Half diagonals of a cell by which the reliable form widens it, 0 to 1. The proof
-  /// asks for 1; less is there to show that it is needed.
+  /// Half diagonals of a cell by which the reliable form widens it, 0 to 1. The proof asks for 1;
+  /// less only serves to show that it is needed.
   double widening = 1;
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   std::uint64_t most_pairs = std::uint64_t{1} << 27;  // of triangles, that the reliable form keeps
@@ -202,8 +202,8 @@ struct VoronoiCounts {
   std::uint64_t distances = 0;  // of a point and a triangle
 };
 
-/// Pairs of objects, sorted, each once: some cell has these two as its nearest objects. Of objects
-/// as near (as floats) the first counts. Objects without triangles have no neighbours.
+/// Pairs of objects, sorted, each once: some cell has these two as its nearest objects. Among
+/// equally near objects (as floats) the first counts. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;

@@ -103,7 +103,7 @@ BenchOptions BenchCommand::parse() const {
   options.device = device_of(device_);
   options.self = self_;
   options.seed = seed_of(scene_);
-  if (!distances_) validate(options);  // whose peers are others
+  if (!distances_) validate(options);  // --distances has other peers
   if (!is_cpu(options.device)) {
     RunOptions run;
     run.device = options.device;

@@ -41,8 +41,8 @@ Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxCheckedBytes), clean_name(path));
 }
 
-// The clearance that is asked about: --clearance, or that of the certificate, of several frames the
-// first one. One question for all frames.
+// The clearance to check: --clearance, or that of the certificate; with several frames that of the
+// first one, so that all frames answer one question.
 double clearance_of(const CheckArguments& arguments,
                     const std::optional<Certificate>& certificate) {
   return arguments.clearance.value_or(certificate ? certificate->clearance : 0);
@@ -73,14 +73,14 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// A certificate of distances says itself what was asked.
+// A certificate of distances names its question itself, so --pairs and --clearance are refused.
 void require_no_list(const CheckArguments& arguments) {
   if (arguments.pairs.empty() && !arguments.clearance) return;
   throw Error(arguments.clearance ? "--clearance" : "--pairs",
               "does not go with a certificate of distances", "leave it out");
 }
 
-// Text that a terminal can show, line by line.
+// Replaces what a terminal cannot show, line by line.
 std::string clean_lines(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -91,7 +91,7 @@ std::string clean_lines(const std::string& text) {
   return out;
 }
 
-// Whether the file is there and says that it is a certificate of distances.
+// Whether the file exists and its start is that of a certificate of distances.
 bool is_of_distances(const std::string& file) {
   std::array<char, 1024> start{};
   std::ifstream in(file, std::ios::binary);
@@ -107,7 +107,7 @@ CheckedDistances check_with(const std::string& path, DistanceCertificate certifi
   return out;
 }
 
-// Writes what was found about one scene. Checked: SceneCheck or CheckedDistances.
+// Writes the result for one scene. Checked: SceneCheck or CheckedDistances.
 template <class Checked>
 int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done) {
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
@@ -154,7 +154,7 @@ class FrameChecks {
     if (table_) write_output("-", names);
   }
 
-  // listed: pairs or distances; row: of the table.
+  // listed: number of pairs or distances; row: of the table.
   template <class Checked>
   void add(long frame, const Scene& scene, const Checked& check, std::uint64_t listed,
            std::string row) {
@@ -170,7 +170,7 @@ class FrameChecks {
     json_->add(Json::object(), one, verdicts_.json(wanted_));
   }
 
-  // proved: what is proved of each frame where all are; rest: what follows.
+  // proved: the sentence if every frame is proved; rest: the text after it.
   int finish(const std::string& proved, const std::string& rest = "") {
     if (json_) json_->finish();
     if (table_) write_output("-", "\n" + clean_lines(verdicts_.text(proved) + rest));
@@ -205,12 +205,12 @@ int check_distance_frames(const CheckArguments& arguments) {
   return checks.finish("the distances are exactly these, and no others were asked for");
 }
 
-// The certificate of a frame, whose file has to be there.
+// The certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
   const std::string file = numbered(arguments.certificate, frame);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
-    // The frames of a built-in motion are those up to its last one.
+    // A built-in motion has frames up to its last one, so a missing certificate can be made.
     const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
     const FrameRange& range = *arguments.frames;
     throw Error(file, "the file does not exist",
@@ -262,7 +262,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       (several ? "of the last frame's run: " : "") + unattested_text(last));
 }
 
-// Whether certificates are of frames and the frames are named, or neither.
+// Requires a number in the name of the certificate if, and only if, frames are named.
 void require_number(const std::string& certificate, bool frames) {
   if (certificate.empty() || is_numbered(certificate) == frames) return;
   if (frames) {
@@ -341,7 +341,7 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
-  // A scene of several names is of meshes alone, so a first name that is no mesh is a
+  // A scene of several names consists of meshes, so a first name that is no mesh is a
   // certificate's.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {

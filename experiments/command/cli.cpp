@@ -25,9 +25,9 @@
 
 namespace farcull {
 
-// `farcull help` prints what --help prints, or a text of docs/help, which is compiled in. `farcull
-// man` sets the same as a manual page in the language of man(7), line by line as it was written:
-// examples and lists stay what they are.
+// `farcull help` prints the text of --help, or a file of docs/help, which is compiled in. `farcull
+// man` prints the same texts as a manual page in the language of man(7). It keeps line breaks, so
+// examples and lists keep their form.
 
 namespace {
 
@@ -93,7 +93,7 @@ class HelpCommand {
   std::vector<std::string> words_;
 };
 
-// Text of roff that prints as it is, also what begins a line.
+// Escapes text so that roff prints it unchanged, also at the start of a line.
 std::string roff(const std::string& text) {
   std::string out;
   bool begins = true;
@@ -129,13 +129,13 @@ std::string roff(const std::string& text) {
 std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
 std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR"; }
 
-// Lines that are filled to the width of the page.
+// Text that roff fills to the width of the page.
 std::string filled(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return roff(text) + "\n";
 }
 
-// Lines that stay as they are.
+// Text whose line breaks roff keeps.
 std::string lines(const std::string& text) {
   std::string out = ".PP\n.nf\n";
   const std::size_t end = text.find_last_not_of('\n');
@@ -146,7 +146,7 @@ std::string lines(const std::string& text) {
       line += c;
       continue;
     }
-    // A line without text would be a break of roff's own.
+    // An empty line would be a break in roff, so it becomes `.sp`.
     if (line.empty()) {
       empty = true;
     } else {
@@ -188,7 +188,7 @@ void add(const DeclaredCommand& command, std::string& page) {
   for (const DeclaredCommand& below : command.commands) add(below, page);
 }
 
-// Every command with its options and the end of its help.
+// Lists every command with its options and the end of its help.
 std::string manual_page(const DeclaredCommand& program, const std::string& version) {
   std::string page = fmt::format(
       ".\\\" Made by `farcull man`.\n"
@@ -246,7 +246,7 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-// An error of CLI11 as an Error with a remedy. `app` is as the parse left it.
+// Turns an error of CLI11 into an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = "farcull";
@@ -263,7 +263,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
   const std::string text = error.what();
-  // Words that were not understood come first: they may be why something else is missing.
+  // Unknown words are reported first: they may be why something else is missing.
   const std::vector<std::string> words = app.remaining(true);
   if (!words.empty()) {
     const std::string& word = words.front();
@@ -295,7 +295,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   return Error(name, text, help);
 }
 
-// Options of the program itself.
+// Sets the options of the program itself.
 void describe(CLI::App& app) {
   app.get_formatter()->column_width(28);
   app.set_help_flag("-h,--help", "print this and exit");
@@ -316,7 +316,7 @@ void describe(CLI::App& app) {
       "  farcull doctor");
 }
 
-// Runs the command that the arguments name; the exit status.
+// Runs the command that the arguments name; returns the exit status.
 int dispatch(int argc, char** argv) {
   CLI::App app("farcull: collision culling that never misses.", "farcull");
   describe(app);
@@ -365,7 +365,7 @@ int command_line(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     complain(kOutOfMemory);
   } catch (const std::system_error& error) {
-    // Threads that cannot be started: each takes memory for its stack.
+    // The system could not start a thread; each needs memory for its stack.
     const bool memory = error.code() == std::errc::resource_unavailable_try_again ||
                         error.code() == std::errc::not_enough_memory;
     complain(memory ? kOutOfMemory : fault(error));

@@ -1,6 +1,6 @@
-// Declares options by CLI11, for all commands. Checks values and places of output before a command
-// runs: two paths are one file where device and inode are equal, links followed. A file that is
-// still to be made is known by its folder's device and inode, and its name.
+// Declares options with CLI11, for all commands. Checks values and output paths before a command
+// runs. Two paths are one file if device and inode are equal, with links followed. A file that does
+// not exist yet is identified by its folder's device and inode, and its name.
 #include "experiments/command/command.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@
 
 namespace farcull {
 
-// ---- all that the commands need of CLI11, so that its templates are compiled once ----
+// ---- all uses of CLI11 by the commands, so that its templates are compiled once ----
 
 namespace {
 
@@ -88,7 +88,7 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
         row.value);
     if (option != nullptr) option->type_name(row.type)->required(row.need == Need::must);
   }
-  command->footer("");  // that of the parent, which comes behind a function's text otherwise
+  command->footer("");  // else CLI11 appends the parent's footer to a function's text
   std::visit([&](const auto& text) { command->footer(text); }, footer);
   return command;
 }
@@ -107,7 +107,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
     before += (before.empty() ? "" : " ") + command->get_name();
     command = found;
   }
-  // The formatter itself, since App::help() describes the command that was parsed, which is `help`.
+  // Not App::help(): it describes the command that was parsed, which is `help`.
   return command->get_formatter()->make_help(
       command, before.empty() ? command->get_name() : before + " " + command->get_name(),
       CLI::AppFormatMode::Normal);
@@ -123,26 +123,26 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStandardOutput = "standard output";
 
-// The file of a path. A file that is still to be made is known by its folder and its name.
+// Identifies the file of a path. A file that does not exist yet has its folder's device and inode.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
-  std::string name;      // empty where the file exists
-  bool regular = false;  // or still to be made
+  std::string name;      // empty if the file exists
+  bool regular = false;  // true also if the file does not exist yet
 
   using Key = std::tuple<dev_t, ino_t, std::string>;
   Key key() const { return {device, inode, name}; }
 };
 
-// The file that writing to the path makes: a link to a file that is not there leads on to that
-// file. Beyond kMostLinks, where the system gives up, whatever is left.
+// The file that writing to the path creates: a link to a missing file is followed to that file.
+// Stops after kMostLinks, where the system gives up too.
 fs::path made_by(fs::path path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;  // the target alone where it is absolute
+    path = path.parent_path() / target;  // if the target is absolute, the result is the target
   }
   return path;
 }
@@ -158,7 +158,7 @@ std::optional<Identity> identity_of(const std::string& path) {
   return Identity{status.st_dev, status.st_ino, file.filename().string(), true};
 }
 
-// Whether a built-in scene, whatever its numbers and suffixes, is made of packaged meshes.
+// Whether a built-in scene, with any numbers and suffixes, is made of packaged meshes.
 bool needs_meshes(const std::string& name) {
   const BuiltinScene* const scene = find_builtin_scene(name);
   return scene != nullptr && scene->needs_meshes;
@@ -166,7 +166,7 @@ bool needs_meshes(const std::string& name) {
 
 std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOutput : file.path; }
 
-// Certificates are of one scene each.
+// A certificate holds one scene, so frames need one file each.
 void require_number(const std::string& certificate, bool frames) {
   if (is_numbered(certificate) == frames) return;
   if (frames) {
@@ -244,7 +244,7 @@ void TerminalProgress::clear() {
   if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
 }
 
-// A line that wraps could not be written over, so it is cut to the terminal as it is now.
+// Cuts the line to the current width of the terminal: a wrapped line could not be overwritten.
 void TerminalProgress::show(std::string line) {
   if (const unsigned columns = terminal_columns(stderr); columns > 1)
     line = line.substr(0, columns - 1);
@@ -342,7 +342,7 @@ bool Outputs::to_stdout() const {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames) {
   std::vector<NamedFile> files;
-  std::vector<std::string> to_try;  // of many files in one folder the first
+  std::vector<std::string> to_try;  // for each path the first of its files
   for (const auto& [option, path, example] :
        {std::tuple("--json", &outputs.json, "result.json"),
         std::tuple("--pairs", &outputs.pairs, "result.csv"),
@@ -351,16 +351,16 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("-o", &outputs.picture, "picture.png"),
         std::tuple("--html", &outputs.page, "page.html")}) {
     if (!*path) continue;
-    // By its other name, standard output would be written at two places at once.
+    // Under two names, standard output would be written at two positions at once.
     if (**path == "/dev/stdout") *path = "-";
     if ((*path)->empty())
       throw Error(option, "the path is empty", "name a file, or - for standard output");
-    // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
+    // `run a.off --json --pairs b.csv`: CLI11 takes `--pairs` as the value.
     if ((*path)->starts_with("-") && **path != "-") {
       throw Error(option, "its value is missing before '" + **path + "'",
                   "name a file, with ./ before a name that begins with -");
     }
-    // `run --json a.off b.off`: the mesh would be gone.
+    // `run --json a.off b.off` would overwrite the mesh.
     if (has_mesh_extension(**path)) {
       throw Error(option, **path + " is named like a mesh and would be overwritten",
                   std::string("name the file to write first, as in ") + option + " " + example);

@@ -1,8 +1,8 @@
-// The commands of the program, and what they declare: each names its options, and is run by what it
-// gives back. Commands include this in place of <CLI/CLI.hpp>, which takes seconds of every file
-// that includes it: only command.cpp, cli.cpp and compare_main.cpp do.
+// The commands of the program. Each add_...() declares its options and returns a Command, whose
+// run() executes it. Commands include this file and not <CLI/CLI.hpp>, which costs seconds of
+// compile time per file: only command.cpp, cli.cpp and compare_main.cpp include that.
 //
-// And options, files, outputs and progress that several commands share.
+// Also the options, files, outputs and progress that several commands share.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ namespace farcull {
 /// environment, a device error included.
 int command_line(int argc, char** argv);
 
-using Text = std::optional<std::string>;  // of an option; empty where it was not given
+using Text = std::optional<std::string>;  // value of an option; empty if it was not given
 
 /// An option whose value may be left out.
 struct BareOption {
@@ -46,8 +46,8 @@ struct BareOption {
 
 enum class Need : std::uint8_t { may, must };
 
-/// An option, or an argument where the name has no dashes. `value` is written when the command line
-/// is parsed; that of a bool is a flag without a value. `type` stands for the value in the help.
+/// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
+/// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
   const char* name;
   std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*, BareOption*>
@@ -62,18 +62,18 @@ inline Rows operator+(Rows first, const Rows& then) {
   return first;
 }
 
-/// The end of a help; a function is called when the help is printed.
+/// The end of a help text; a function is called when the help is printed.
 using Footer = std::variant<const char*, std::string, std::function<std::string()>>;
 
 /// Declares a command below another one, or below the program. It lives as long as `parent`.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer);
-/// At most one of the commands below this one may be given.
+/// Allows at most one of the subcommands of this command.
 void allow_one_command(CLI::App& command);
-/// Whether the parsed command line has this.
+/// Whether the parsed command line names this command.
 bool given(const CLI::App& command);
 
-/// An option, or an argument where `names` is empty, as the help shows it.
+/// An option as the help shows it, or an argument if `names` is empty.
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
   std::string type;  // stands for the value; empty for a flag. The name of an argument
@@ -83,18 +83,18 @@ struct DeclaredOption {
   bool many = false;      // an argument that may be given several times
   bool required = false;  // an argument that has to be given
 };
-/// A command as it was declared, with all below it: completion and the manual are made of this.
+/// A declared command with all its subcommands; completion scripts and the manual are made from it.
 struct DeclaredCommand {
-  std::string name;  // with those of its parents, as in "farcull experiment all"
+  std::string name;  // with the names of its parents, as in "farcull experiment all"
   std::string title;
   std::string footer;
   std::vector<DeclaredOption> options;    // in the order of the help
-  std::vector<DeclaredOption> arguments;  // in their order
+  std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
 };
 DeclaredCommand declared(const CLI::App& app);
-/// What --help prints for the program (no names), a command of it, or a command below that one.
-/// Empty where there is no such command.
+/// The text that --help prints for the program (no names), a command, or a subcommand. Empty if
+/// there is no such command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
 
 /// A topic of `farcull help`: a file of docs/help.
@@ -104,11 +104,10 @@ struct HelpTopic {
   const char* text;   // ends with a newline
 };
 std::span<const HelpTopic> help_topics();
-/// "terms: the words of the tables", a line for each topic, indented.
+/// One indented line per topic, such as "terms: the words of the tables".
 std::string help_topics_text();
 
-/// A command that is declared. run() gives the exit status, and throws Error where the arguments
-/// are bad.
+/// A declared command. run() returns the exit status and throws Error if the arguments are bad.
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;
@@ -121,10 +120,10 @@ Command declare(CLI::App& parent, const Arguments&... arguments) {
   return {command->add_to(parent), [command] { return command->run(); }};
 }
 
-// Below the program, by exit status: 1 of run, verify and compare: a guarantee is broken. bench:
-// two contestants disagree. distance: the accounting found a nearer pair or a wrong answer, or the
-// reliable diagram lost a nearest object. doctor: an assumption does not hold on the device. check:
-// refuted, or not proved. picture, report: a promise is broken.
+// The commands of the program. Exit status 1 means, by command: run, verify, compare: a guarantee
+// is broken. bench: two contestants disagree. distance: the accounting found a nearer pair or a
+// wrong answer, or the reliable diagram lost a nearest object. doctor: an assumption does not hold
+// on the device. check: refuted, or not proved. picture, report: a guarantee is broken.
 Command add_run(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_plan(CLI::App& app);
@@ -143,10 +142,10 @@ Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 Command add_manual(CLI::App& app);
 
-// Below `farcull experiment`. 1 of lemma: a violation at the budget radius or beyond.
+// The commands of `farcull experiment`. 1 of lemma: a violation at the budget radius or more.
 Command add_lemma(CLI::App& experiment);
-/// A command for each study, and `all`: 1 where a method that promises missed, 2 where a point
-/// could not be measured.
+/// A command for each study, and `all`. Exit status 1: a method with a guarantee missed a pair; 2:
+/// a point could not be measured.
 std::vector<Command> add_studies(CLI::App& experiment);
 
 /// The folder of results unless --out says otherwise; `farcull report` reads it.
@@ -167,44 +166,43 @@ struct NamedFile {
   std::string path;  // "-": standard output
 };
 
-/// The files of a path: with a range one for each frame where the path has a number, else itself.
+/// The files of a path: with a range, one per frame if the path has a number; else the path itself.
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
 /// The files that load_scene() and, with a range, FrameSource read for these arguments: the scene
-/// file and the meshes that it names, or the mesh files, numbered ones for each frame; for a
-/// built-in scene of packaged meshes, and for no arguments (all built-in scenes), the meshes of
-/// mesh_folder(). By SCENE. Throws nothing where a file cannot be read: whoever reads the scene
-/// says so.
+/// file and its meshes, or the mesh files, numbered ones once per frame. For a built-in scene of
+/// packaged meshes, and for no arguments (all built-in scenes), the meshes of mesh_folder(). `by`
+/// is SCENE. A file that cannot be read is no error here: reading the scene reports it.
 std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
                                    const std::optional<FrameRange>& range = {});
 
-/// Throws Error naming both options where an output is one of the inputs: by device and inode,
-/// links followed.
+/// Throws Error naming both options if an output is one of the inputs. Files are compared by device
+/// and inode, with links followed.
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-/// The same for all outputs of a command, among which is standard output, wherever it goes; and
-/// where two outputs are one file, which does not have to exist yet. Anything but a
-/// regular file (a terminal, /dev/null) may be an output several times, but "-" only once.
+/// The same, and throws Error if two outputs are one file, which need not exist yet. Standard
+/// output always counts as an output, wherever it goes. Anything but a regular file (a terminal,
+/// /dev/null) may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
-/// SCENE, which has to be given.
+/// The row of the required argument SCENE.
 OptionRow scene_row(std::vector<std::string>& scene);
 
-/// The one line of a failure, on standard error. A path may hold anything, so control characters do
-/// not get through.
+/// Prints the one line of a failure on standard error, without the control characters that a path
+/// may hold.
 void complain(const std::string& message);
 
-/// The same, in red on a terminal: a guarantee is broken.
+/// The same for a broken guarantee, in red on a terminal.
 void complain_broken(const std::string& message);
 
-/// Two lines for people: why nothing was tested, and `command`, which tests it. Empty where
+/// Two lines for people: why nothing was tested, and the `command` that tests it. Empty if
 /// something was tested.
 std::string nothing_note(const NothingToTest& nothing, const std::string& command);
-/// A command with the words of a scene, as a shell takes it.
+/// The command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const std::vector<std::string>& scene);
 
-/// One line on standard error that is written over, on a terminal only.
+/// One line on standard error that each update overwrites; on a terminal only.
 class TerminalProgress {
  public:
   Progress callback();
@@ -232,10 +230,10 @@ struct Outputs {
   bool to_stdout() const;
 };
 
-/// The outputs of a command that reads these files, or an Error for what can be known to go wrong
-/// with them before anything is run: paths that are none, outputs that are inputs or one another
-/// (require_apart()), what check_output() refuses. With frames a certificate is a file for each: it
-/// has to have a number in its name, and without frames none.
+/// The outputs of a command that reads `inputs`. Throws Error for everything that can be known to
+/// fail before the command runs: bad paths, outputs that are inputs or one another
+/// (require_apart()), what check_output() refuses. With frames a certificate is one file per frame,
+/// so its name must hold a number; without frames it must not.
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
@@ -247,52 +245,52 @@ Value number_of(const char* option, const std::string& text, const std::string& 
   if (value && *value >= least && *value <= most) return *value;
   throw Error(option, "'" + text + "' is " + what, remedy);
 }
-/// Which of the words the text is; 0 where it was not given. Throws Error as number_of() does.
+/// The index of the text in `words`; 0 if it was not given. Throws Error as number_of() does.
 std::size_t word_of(const char* option, const Text& text, const std::vector<std::string>& words,
                     const std::string& what, const std::string& remedy);
 /// Throws Error naming the first option that was given.
 void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
                   const std::string& reason, const std::string& remedy);
 
-/// Throws Error where a name of the scene is empty.
+/// Throws Error if a name of the scene is empty.
 void check_scene(const std::vector<std::string>& scene);
-/// The seed of the scene, where it is a random built-in one.
+/// The seed of the scene if it is a random built-in one.
 std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
 
-/// Options of the methods on a command line, as the table has them (experiments/method/options.h).
+/// The options of the methods on a command line; experiments/method/options.h has their table.
 class MethodOptions {
  public:
-  /// Options of the table, in its order: those of these names, all where none is named.
+  /// Rows for the named options of the table, in its order; for all options if no names are given.
   Rows rows(const std::vector<std::string>& names = {});
-  /// Those that were given.
+  /// The options that were given.
   GivenOptions given() const;
-  /// The value that was given, and whether one was.
+  /// The value of an option, and whether it was given.
   const Text& text(const std::string& name) const { return texts_.at(name); }
   bool has(const std::string& name) const { return texts_.at(name) || flags_.at(name); }
 
  private:
-  // Of every option of the table, at places that do not change.
+  // One entry per option of the table. Rows point at them, so their addresses must not change.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
   std::deque<std::string> words_;
 };
-/// Reads an option where its text was given.
+/// Reads the option if it was given.
 void take_given(const char* name, const Text& text, RunOptions& options);
 
-/// A distance in world units. Throws Error naming --clearance.
+/// Reads a distance in world units. Throws Error naming --clearance.
 double parse_clearance(const std::string& text);
-/// --self: every object of the scene is tested against itself.
+/// Implements --self: every object of the scene is tested against itself.
 void make_self(Scene& scene);
 
-/// The guarantee that `record` broke, for complain().
+/// Describes the guarantee that `record` broke, for complain().
 std::string missed(const Record& record);
 
-/// Empty where none is asked for. Throws Error where the value is none.
+/// The value of --device; empty if it was not given. Throws Error if the value is empty.
 std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
-/// The help of an option of the table.
+/// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
 inline constexpr const char* kFacesHelp =
     "with --pairs: two more columns, face_a and face_b, the\n"
@@ -306,22 +304,22 @@ inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";
 
-// `farcull check`: a certificate, or a list of pairs, against the scene that it speaks about.
+// `farcull check`: checks a certificate, or a list of pairs, against its scene.
 
 struct CheckArguments {
-  std::string certificate;         // a file, of frames with a number; "": `pairs` is checked alone
+  std::string certificate;         // a file, numbered for frames; "": only `pairs` is checked
   std::vector<std::string> scene;  // as of `farcull run`
-  std::string json = {};           // "" for none, "-" for standard output instead of the text
+  std::string json = {};           // "" for none; "-": standard output, in place of the text
   bool self = false;               // every object is tested against itself, as by run --self
   std::string pairs = {};          // "" for none, or a list as `farcull run --pairs` writes it
-  std::optional<double> clearance = {};  // of the list; of a certificate it has to be the same
+  std::optional<double> clearance = {};  // of the list; of a certificate: the same value
   std::optional<FrameRange> frames = {};
 };
 
-/// Prints the verdict, of frames one for each and one in all. 0: proved, and the list that is given
-/// is the one that is proved; 1: refuted or not proved. Throws Error where the certificate, the
-/// scene or the list cannot be read, and where the list is of frames and none are named, or the
-/// contrary.
+/// Prints the verdict; with frames one verdict per frame and one for all. Returns 0 if proved, and
+/// the given list is the proved one; 1 if refuted or not proved. Throws Error if the certificate,
+/// the scene or the list cannot be read, and if the list has frames but the arguments name none, or
+/// the reverse.
 int run_check(const CheckArguments& arguments);
 
 // ---- `farcull picture` ----
@@ -329,10 +327,10 @@ int run_check(const CheckArguments& arguments);
 class PictureCommand {
  public:
   CLI::App* add_to(CLI::App& app);
-  /// The exit status: 0 done, 1 a method that promises missed a pair (the picture is there then).
-  /// Throws Error where the arguments are bad.
+  /// Returns the exit status: 0 done; 1 a method with a guarantee missed a pair (the picture is
+  /// written all the same). Throws Error if the arguments are bad.
   int run() const;
-  /// The parsed options, checked; all but the paths of the files.
+  /// The parsed and checked options, all but the paths of the files.
   PictureArguments arguments() const;
   /// The contents of the page of --html, from the arguments of its flat picture.
   PageArguments page_arguments(const PictureArguments& picture) const;

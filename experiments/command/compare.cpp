@@ -51,7 +51,7 @@ int CompareCommand::run() const {
   RunOptions& options = arguments.options;
   arguments.self = options_.has("self");
   options.seed = seed_of(arguments.scene);
-  // Which methods there are decides whether the scene may choose the views.
+  // The scene may choose the views only if far-pairs is among the methods.
   const bool pairs =
       !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
   options.method = pairs ? Method::far_pairs : Method::far;

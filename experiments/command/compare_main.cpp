@@ -1,4 +1,4 @@
-// `farcull compare` alone, with the same words: farcull_compare of experiments/CMakeLists.txt.
+// farcull_compare of experiments/CMakeLists.txt: only `farcull compare`, with the same arguments.
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <exception>
@@ -10,7 +10,7 @@
 int main(int argc, char** argv) {
   using namespace farcull;
   prepare_output();
-  // As for the whole program (cli.cpp says why).
+  // The same settings as in the whole program; cli.cpp explains them.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
   ::setenv("LP_NUM_THREADS", "0", 0);
   try {

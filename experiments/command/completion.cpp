@@ -1,6 +1,6 @@
 // A script is a table and a function that reads it. The table has a line for each word of each
-// command, and for each option or argument with a value how that is completed. The functions differ
-// by shell: all find the command among the words so far, and pass over the values of its options.
+// command, and a line for each option or argument with a value that says how to complete it. Each
+// shell has its own function: it finds the command among the words and skips values of options.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::string joined(const std::vector<std::string>& words, const char* between = 
   return fmt::format("{}", fmt::join(words, between));
 }
 
-// What a value can be.
+// The possible values of an option or argument.
 struct CompletedValues {
   std::vector<std::string> words;
   bool files = false;   // any file
@@ -55,8 +55,8 @@ struct CompletedValues {
   bool folders = false;
 };
 
-// By DeclaredOption::type: the words that an enumeration such as "fragment|fixed" names, what is
-// known by name (METHOD, SCENE, FILE, ...), nothing for numbers and other types.
+// By DeclaredOption::type: the words of an enumeration such as "fragment|fixed", the values of a
+// known placeholder (METHOD, SCENE, FILE, ...), nothing for numbers and other types.
 CompletedValues completed_values(const std::string& type) {
   for (const Option& option : run_options()) {
     if (type == option.type && !option.words.empty()) return {.words = option.words};
@@ -71,8 +71,8 @@ CompletedValues completed_values(const std::string& type) {
   return {.words = alternatives(type)};
 }
 
-// How a value is completed, in one word of the table: "words w1 w2", with "files", "meshes" or
-// "folders" among them as @files, @meshes, @folders.
+// Encodes how to complete a value: the words separated by spaces, with "files", "meshes" and
+// "folders" as @files, @meshes, @folders.
 std::string how(const std::string& type) {
   const CompletedValues values = completed_values(type);
   std::vector<std::string> words = values.words;
@@ -90,8 +90,8 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
 // The last word of a command's name.
 std::string last_word(const std::string& name) { return name.substr(name.find_last_of(' ') + 1); }
 
-// The branches of `case "$1" in`, one for each command: `words` sets what may follow, `values` the
-// way an option's value is completed.
+// The branches of `case "$1" in`, one per command: what may follow the command (`below`, `flags`,
+// `first`, `others`).
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
@@ -308,7 +308,7 @@ complete -c farcull -f
   return out;
 }
 
-// The script that a shell reads. Throws Error naming SHELL for one that is not known.
+// The script for a shell. Throws Error naming SHELL if the shell is unknown.
 std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
   if (shell == "bash") return bash_script(program);
   if (shell == "zsh") return zsh_script(program);

@@ -1,5 +1,5 @@
-// Reads the options of `farcull distance`, then asks once or frame by frame; with --voronoi it asks
-// a discrete Voronoi diagram for potential neighbours instead.
+// Reads the options of `farcull distance`, then measures one scene or frame after frame. With
+// --voronoi it finds potential neighbours by a discrete Voronoi diagram instead.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -46,11 +46,11 @@ constexpr const char* kDistanceExamples =
     "an\n"
     "option is wrong.";
 
-// The keys of a record that each frame has of its own; the others hold for all frames.
+// The keys of a record that differ between frames; the others hold for all frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
 
-/// The output of the frames, one after the other, and their sums.
+/// Writes the output of the frames, one after the other, and their sums.
 class Frames {
  public:
   Frames(const Outputs& outputs, const DistanceOptions& options, long wanted)
@@ -129,7 +129,7 @@ class Frames {
   DistanceAccounting sum_;
 };
 
-// Options that go with --voronoi alone.
+// Options that need --voronoi.
 class DiagramArguments {
  public:
   Rows rows() {
@@ -145,7 +145,7 @@ class DiagramArguments {
              "gl, software, hardware or a number that farcull doctor\n"
              "lists; default native"}};
   }
-  // Whether --voronoi was given. Throws Error where another of these was given without it.
+  // Whether --voronoi was given. Throws Error if another of these was given without it.
   bool asked() const {
     if (diagram_) return true;
     refuse_given({{"--resolution", resolution_.has_value()}, {"--device", device_.has_value()}},
@@ -153,7 +153,7 @@ class DiagramArguments {
                  "add --voronoi published or reliable, or leave it out");
     return false;
   }
-  // threads: 0 for as many as there are cores. Throws Error naming the option that is bad.
+  // threads: 0 for one per core. Throws Error naming the option that is bad.
   DiagramOptions parse(unsigned threads) const {
     DiagramOptions out{.threads = threads, .device = device_of(device_)};
     const bool reliable = word_of("--voronoi", diagram_, {"published", "reliable"}, "no choice",
@@ -171,8 +171,8 @@ class DiagramArguments {
   Text diagram_, resolution_, device_;
 };
 
-// Writes the record of the scene to the outputs. The exit status: 1 the reliable form lost a
-// nearest object.
+// Writes the record of the scene to the outputs. Returns the exit status; 1: the reliable form lost
+// a nearest object.
 int run_diagram(const std::vector<std::string>& words, const DiagramOptions& options,
                 const Outputs& outputs) {
   TerminalProgress terminal;
@@ -353,7 +353,7 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
                    require_question(scene, options);
                    const DistanceRecord record = distances(scene, options, progress, &memory);
                    terminal.clear();
-                   // First: a frame that the record has has its certificate.
+                   // Written first, so that every frame in the record has its certificate.
                    if (outputs.certificate) {
                      write_output(numbered(*outputs.certificate, frame),
                                   to_text(certificate_of(scene, record)));

@@ -1,5 +1,5 @@
-// Probes the native canvas (each probe counts what may not happen at all, so its bound is 0) and
-// the device, measures FAR pairs on both back ends, and prints what it found.
+// Probes the native canvas and the device, measures FAR pairs on both back ends, and prints the
+// findings. Each probe of the native canvas counts events that must not happen, so its bound is 0.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ SolidAnswer on_lanes(const SolidProgram& program, const SolidCase& c) {
   return answer;
 }
 
-// Half of the solids are fattened triangles, half are made of floats directly.
+// Half of the solids are fattened triangles, half are made directly from floats.
 ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
   KernelTally tally;
   std::uint64_t different = 0;
@@ -79,7 +79,7 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
           .note = {}};
 }
 
-// Lemmas 1 and 2 on the native canvas, with both offsets.
+// Tests Lemmas 1 and 2 on the native canvas, with both offsets.
 std::vector<ProbeResult> lemma_probes() {
   LemmaSettings settings;
   settings.points = kPoints;
@@ -109,7 +109,7 @@ std::vector<ProbeResult> lemma_probes() {
 
 using Json = nlohmann::ordered_json;
 
-// The device that GlContext takes for this option: the list knows why the others were passed over.
+// The device that GlContext would take for this option. The list has the problems of the others.
 std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
   for (const std::string kind : {"hardware", "software"}) {
     for (const GlDevice& d : devices) {
@@ -131,7 +131,7 @@ Json devices_json(const std::vector<GlDevice>& devices) {
   });
 }
 
-// A number of the table: whole where it is whole, else three digits.
+// A number for the table: whole numbers in full, others with three digits.
 std::string number(double x) {
   if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
   return fmt::format("{:.3g}", x);
@@ -181,7 +181,7 @@ Json limits_json(const GlInfo& gl, int resolution) {
   return out;
 }
 
-// The floating-point environment, found out by arithmetic: the caller's, and the one in force.
+// The floating-point environment in force and the caller's, both detected by arithmetic.
 std::string arithmetic_line(const FloatingPoint& callers) {
   return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
                      to_string(floating_point()),
@@ -207,7 +207,7 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
   return out;
 }
 
-// Both verdicts rest on results of one run of the probes.
+// Both verdicts come from the results of one run of the probes.
 struct Verdicts {
   DeviceVerdict drawing, pairs;
 };
@@ -236,14 +236,14 @@ std::string verdicts_text(const Verdicts& verdicts) {
 Json probes_json(const std::vector<ProbeResult>& probes) {
   return json_list(probes, [](const ProbeResult& p) {
     Json out = FARCULL_JSON(p, assumption, name, pass, measured, bound, unit, samples, note);
-    if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // which has no number in JSON
+    if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // JSON has no number for it
     return out;
   });
 }
 
-// FAR pairs by both back ends on one scene that views decide: which is faster on this machine.
+// Compares the two back ends of FAR pairs on one scene with views: which is faster on this machine.
 struct PairAdvice {
-  double cpu_ms = 0;  // median of several runs after a first one
+  double cpu_ms = 0;  // median of the runs after a warm-up
   double gl_ms = 0;
   bool equal = false;   // the same candidates
   std::string problem;  // why the device cannot run it
@@ -268,7 +268,7 @@ PairAdvice advise(const std::string& device) {
       candidates = std::move(found.pairs);
       ms.push_back(start.ms());
     }
-    // The first run compiles and allocates.
+    // The first run, which compiles and allocates, is left out.
     std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());
     return ms[1 + kRuns / 2];
   };
@@ -308,10 +308,9 @@ Json advice_json(const PairAdvice& advice) {
           {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
 }
 
-// For each of lane_targets() the kernels of both offsets: answers that lose a part of the exact
-// solid, and answers that differ from those of the scalar text. Then points of triangles that got
-// no sample, or samples that do not bound them. The instruction set that was in use is in use
-// afterwards.
+// For each of lane_targets(), tests the kernels of both offsets. Counts answers that lose a part of
+// the exact solid and answers that differ from those of the scalar text. Then counts points of
+// triangles that got no sample, or samples that do not bound them. Restores the instruction set.
 std::vector<ProbeResult> native_probes() {
   struct Restore {
     std::string target = lane_target();
@@ -329,7 +328,7 @@ std::vector<ProbeResult> native_probes() {
   return out;
 }
 
-// The native canvas, which needs no device.
+// The findings on the native canvas, which needs no device.
 struct NativeFindings {
   std::vector<ProbeResult> probes;
   bool pass = true;
@@ -368,7 +367,7 @@ void write_report(Json report, bool pass, const DoctorArguments& arguments) {
   write_output(arguments.json, report.dump(2) + "\n");
 }
 
-// The findings on a machine without OpenGL, or with --device cpu.
+// Reports the findings on a machine without OpenGL, or with --device cpu.
 int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& native) {
   if (!arguments.json.empty()) {
     write_report(
@@ -398,7 +397,7 @@ class DoctorCommand {
         "promises nothing.");
   }
   // 0: every assumption holds on the native canvas and on the chosen device; 1: one does not.
-  // Without OpenGL the native canvas is all that is looked at.
+  // Without OpenGL only the native canvas is tested.
   int run() const;
 
  private:
@@ -411,7 +410,7 @@ int DoctorCommand::run() const {
   const FloatingPointGuard guard;
   if (!arguments.json.empty()) check_output(arguments.json);
   if (is_cpu(arguments.device)) return doctor_without_gl(arguments, look_at_native());
-  // Before the probes of the native canvas, which take seconds: a device that is not there is
+  // Comes before the probes of the native canvas, which take seconds, so that a missing device is
   // refused at once.
   const std::vector<GlDevice> devices = GlContext::list_devices();
   const std::optional<int> chosen = choose(devices, arguments.device);

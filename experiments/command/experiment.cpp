@@ -1,5 +1,5 @@
-// The commands below `farcull experiment`, and those of them that are no study of a grid: oracles,
-// family and savings.
+// The commands below `farcull experiment`; oracles, family and savings, which are no studies of a
+// grid, are defined here.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -96,7 +96,7 @@ int FamilyCommand::run() {
   options.resolution = resolution_option(resolution_);
   options.device = farcull::device_of(device_);
   options.verify = !no_verify_;
-  options.method = Method::far;  // for all that draw: the scene chooses no views
+  options.method = Method::far;  // for all methods that draw: the scene does not choose the views
   take_given("views", views_, options);
   take_given("query", query_, options);
   const Outputs outputs = checked(outputs_, scene_files(arguments_.scenes, arguments_.range));

@@ -1,4 +1,4 @@
-// The lemma experiment at one radius or along a sweep, as a table, JSON and CSV.
+// Runs the lemma experiment at one radius or along a sweep; prints a table, writes JSON and CSV.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -28,13 +28,13 @@ struct LemmaArguments {
   std::uint64_t points = 100000;
   std::string radius = "budget";  // budget, published or a factor
   std::string sweep;              // FROM:TO:STEP of the factor; then `radius` is not used
-  // native, gl or worst; empty: that of the device; without one GL where hardware answers and
-  // passes its probes, else native.
+  // native, gl or worst; empty: the canvas of `device`, or, without a device, gl if hardware
+  // answers and passes its probes, else native.
   std::string canvas;
   std::string offset = "obb";  // obb or exact
   std::string device;
   std::uint64_t seed = 1;
-  Outputs outputs = {};  // csv: of the sweep
+  Outputs outputs = {};  // csv: for a sweep
 };
 
 struct Sweep {
@@ -75,7 +75,7 @@ struct Result {
   std::vector<LemmaRow> rows;
 };
 
-// A row as it is written.
+// The numbers of a row in the output.
 struct WrittenRow {
   std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0;
   FARCULL_FIELDS(points, violations, no_sample, not_bounding)
@@ -122,7 +122,7 @@ std::string sweep_csv(const std::vector<Result>& results) {
   return out;
 }
 
-// The smallest factor of the sweep from which on no point was violated.
+// The smallest factor of the sweep such that neither it nor a later one has a violation.
 std::optional<double> smallest_safe(const std::vector<Result>& results) {
   std::optional<double> out;
   for (const Result& result : results) {
@@ -186,8 +186,8 @@ struct LemmaCanvas {
   const GlInfo* device() { return name == "gl" ? &session->context().info() : nullptr; }
 };
 
-// displaced: what is drawn errs by as much as doubles may, where the canvas adds no errors of its
-// own that would hide it.
+// displaced: errors as large as those of doubles are added to what is drawn. For canvases that add
+// no errors of their own, which would hide these.
 Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
                bool displaced, const Fattener& fattener, const Progress& progress) {
   LemmaSettings settings;

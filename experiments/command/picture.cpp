@@ -1,5 +1,5 @@
-// Options of `farcull picture` become PictureArguments; the result goes to a file or standard
-// output.
+// Turns the options of `farcull picture` into PictureArguments, and writes the result to a file or
+// standard output.
 #include "experiments/command/command.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace farcull {
 namespace {
 
-// "900x760", both even afterwards: a window has its middle between two pixels.
+// Reads "900x760", rounded up to even numbers: a window has its middle between two pixels.
 void parse_size(const std::string& text, int& width, int& height) {
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -40,7 +40,7 @@ long parse_frame(const std::string& text) {
   return frame;
 }
 
-// "far", or "far:128" with a resolution of its own.
+// Reads "far", or "far:128" with a resolution of its own.
 RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   RunOptions options = usual;
   const std::size_t colon = text.find(':');
@@ -56,7 +56,7 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-// The files of the picture and the page, for a command that reads `inputs`.
+// Checks the files of the picture and the page of a command that reads `inputs`.
 Outputs checked_outputs(const Text& picture, const Text& page,
                         const std::vector<NamedFile>& inputs) {
   if (!page && (!picture || picture->empty())) {
@@ -74,7 +74,7 @@ Outputs checked_outputs(const Text& picture, const Text& page,
   return out;
 }
 
-// "11.2 MB", as file managers count.
+// A size in decimal units, as file managers show it, such as "11.2 MB".
 std::string size_text(std::size_t bytes) {
   return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
 }
@@ -146,7 +146,7 @@ PictureArguments PictureCommand::arguments() const {
   out.zoom = zoom_;
   if (frame_) out.frame = parse_frame(*frame_);
   if (frames_) out.frames = parse_frames(*frames_);
-  // The flat picture of a page of many frames is that of the first one.
+  // The flat picture of a page of many frames shows the first one.
   if (html_ && out.frames && !out.frame) out.frame = out.frames->first;
   if (size_) parse_size(*size_, out.width, out.height);
   for (const auto& [option, text] : {std::pair("--view", view_), std::pair("--up", up_)}) {

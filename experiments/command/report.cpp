@@ -1,5 +1,5 @@
-// Options of `farcull report`. It checks the store, and becomes the Python program of
-// experiments/report/, which reads the store and writes the report.
+// Reads the options of `farcull report`, checks the store, and replaces this process by the Python
+// program of experiments/report/, which reads the store and writes the report.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -55,8 +55,8 @@ CLI::App* ReportCommand::add_to(CLI::App& app) {
       "  farcull report results");
 }
 
-// The path of the store in the folder. Throws Error where there is none: with what to do where
-// there are shards that are not merged.
+// The path of the store in the folder. Throws Error if there is none; if there are shards that are
+// not merged, the remedy is to merge them.
 std::string store_of(const std::string& folder) {
   const std::string path = store_path(folder);
   if (fs::exists(path)) return path;
@@ -71,7 +71,7 @@ std::string store_of(const std::string& folder) {
   throw Error(folder, "holds no results.sqlite", remedy);
 }
 
-// An earlier report is taken away whole, and what it holds with it.
+// The report replaces an earlier one with everything in its folder, so the store must be elsewhere.
 void check_store_outside(const std::string& folder) {
   std::error_code error;
   const auto place = [&](const std::string& path) {
@@ -84,7 +84,7 @@ void check_store_outside(const std::string& folder) {
   }
 }
 
-// The studies of each scene of the study "scenes", by the name of the scene, in the order of
+// For each scene of the study "scenes", by its name: the studies that use it, in the order of
 // studies().
 Json users_of_scenes(const Declaration& scenes) {
   std::set<std::string> names;
@@ -101,7 +101,7 @@ Json users_of_scenes(const Declaration& scenes) {
   return out;
 }
 
-// What the Python program has to know of this one, as JSON.
+// The JSON that tells the Python program about this one.
 std::string context_for(const Store& store) {
   Json known = Json::array(), scenes = Json::object();
   for (const Study& study : studies())
@@ -124,8 +124,8 @@ std::string context_for(const Store& store) {
       .dump();
 }
 
-// The folder of the Python program: named, installed beside this program, or in the source that it
-// was built from.
+// The folder of the Python program: the one that FARCULL_REPORT names, the one installed beside
+// this program, or the one in the source tree of the build.
 std::string python_folder() {
   const char* const named = std::getenv("FARCULL_REPORT");
   const fs::path self = fs::read_symlink("/proc/self/exe");
@@ -138,7 +138,7 @@ std::string python_folder() {
   return folder;
 }
 
-// Debian's Python, whose packages are those that the remedy names; else the first of the path.
+// FARCULL_PYTHON; else Debian's Python, whose packages the remedy names; else the one in PATH.
 std::string python() {
   const char* const named = std::getenv("FARCULL_PYTHON");
   if (named != nullptr && *named != '\0') return named;

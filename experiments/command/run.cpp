@@ -1,4 +1,4 @@
-// Reads the options of the three commands, then plans or runs.
+// Reads the options of `farcull run`, `verify` and `plan`, then plans or runs.
 #include <unistd.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ namespace fs = std::filesystem;
 
 // The path of the file, relative to the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
-  // Of folders behind links, `..` is not the one that the path names.
+  // Behind links, `..` is not the folder that the path names, so links are resolved first.
   const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
   const fs::path path = fs::absolute(file);
   return (fs::weakly_canonical(path.parent_path()) / path.filename())
@@ -88,7 +88,7 @@ std::string beside(const std::string& file, const std::string& record) {
       .string();
 }
 
-// A record is UTF-8.
+// Refuses a name that a record cannot hold: a record is UTF-8.
 void require_text(const std::string& option, const std::string& file) {
   try {
     static_cast<void>(nlohmann::json(file).dump());
@@ -98,7 +98,7 @@ void require_text(const std::string& option, const std::string& file) {
   }
 }
 
-// Verify asks the guarantee of every method; plan prints what run would do.
+// verify requires the guarantee of every method; plan prints what run would do.
 class RunCommand {
  public:
   enum class Kind { run, verify, plan };
@@ -107,22 +107,22 @@ class RunCommand {
   int run() const;
 
  private:
-  // The options of the method. Throws Error where one is bad, or options do not go together.
+  // The options of the method. Throws Error if one is bad, or if some exclude each other.
   RunOptions parse() const;
   Rows plan_rows();
   Rows output_rows();
-  // Throws Error where an output cannot say what another option asks.
+  // Throws Error if an output cannot express what another option asks for.
   void refuse_outputs() const;
   PairColumns columns() const;
   std::vector<IgnoredNames> ignored() const;
-  // What the command reads, which no output may overwrite.
+  // The files that the command reads, which no output may overwrite.
   std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const;
-  // The command line that tests a scene of one object.
+  // The command line that tests a scene of one object, with --self.
   std::string with_self() const;
-  // Of verify: the verdict, green or red on a terminal; else empty.
+  // For verify the verdict, green or red on a terminal; else empty.
   std::string verdict_line(const Accounting& accounting) const;
   SceneSource source() const;
-  // Throws Error where an option cannot be answered tile by tile.
+  // Throws Error if an option is impossible tile by tile.
   void refuse_with_tiles(const RunOptions& options) const;
   int run_tile(const RunOptions& options) const;
   int plan_tiles(const RunOptions& options) const;
@@ -342,7 +342,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   const FramesResult result =
       farcull::run_frames(source, question, progress, [&](const FrameReport& report) {
         terminal.clear();
-        // First: a frame that the record has has its certificate.
+        // Written first, so that every frame in the record has its certificate.
         if (outputs.certificate)
           write_output(numbered(*outputs.certificate, report.number), report.certificate);
         if (json) json->add(report);

@@ -118,7 +118,7 @@ int ScenesCommand::run() const {
     throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
   }
   check_output("-");
-  // Files of the folder may be replaced, the meshes that the scene is made of may not.
+  // Files of the folder may be replaced, but not the meshes that the scene is made of.
   std::vector<NamedFile> there;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))

@@ -35,7 +35,7 @@ std::string left_text(const StudiesProgress& p) {
   return p.remaining_s ? ", " + duration(*p.remaining_s) + " left" : "";
 }
 
-// Progress on a terminal: a bar with the time that is left.
+// Progress on a terminal: a bar with the time left.
 std::string bar_of(const StudiesProgress& p) {
   constexpr std::size_t kWidth = 20;
   const std::size_t full = p.points > 0 ? kWidth * p.done / p.points : kWidth;
@@ -44,8 +44,7 @@ std::string bar_of(const StudiesProgress& p) {
                      p.point, p.stage.empty() ? "" : ": " + p.stage);
 }
 
-// Progress where there is no terminal: a line when a study begins, and at most one every half
-// minute.
+// Progress without a terminal: a line when a study begins, and at most one every half minute.
 class PlainProgress {
  public:
   void show(const StudiesProgress& p) {
@@ -57,7 +56,7 @@ class PlainProgress {
       write_output("-", fmt::format("{}: {} of {}{}\n", p.study, p.done,
                                     counted(p.points, "point", "points"), left_text(p)));
     } catch (const Error&) {
-      // The measurement goes on where the progress cannot be written.
+      // The measurement continues if the progress cannot be written.
     }
   }
 
@@ -73,7 +72,7 @@ class StudiesCommand {
   // Declares each study, and `all`, as a command of its own.
   void add_to(CLI::App& experiment);
   const std::vector<CLI::App*>& commands() const { return commands_; }
-  // Runs the one that the command line named.
+  // Runs the command that the command line named.
   int run();
 
  private:
@@ -164,7 +163,7 @@ int StudiesCommand::run() {
                 fmt::format("give 1 to {}", kMostSeed));
   }
   request.folder = out_;
-  // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
+  // Keeps states in files: a step of a fine cloth takes seconds, and several cloths take turns.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   if (suite_) check_files(*suite_, read_suite(*suite_));
   request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
@@ -204,7 +203,7 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
       {"contestants", contestants_.value_or("")},
       {"device",
        request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  // The device first: without one there is nothing to measure, and no file is made.
+  // The device comes first: without it nothing can be measured, and no file is created.
   request.provenance = provenance_now(request.device, options);
   if (!shard.from.empty()) {
     write_output("-", fmt::format("shard {} of {}, by {}\n", shard.index, shard.of, shard.from));

@@ -1,4 +1,4 @@
-// Reads the options and prints the counts; experiments/suite makes and checks the files.
+// Reads the options and prints the counts; experiments/suite writes and checks the files.
 #include <fmt/format.h>
 
 #include "core/base/error.h"

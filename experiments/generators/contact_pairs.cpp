@@ -31,7 +31,7 @@ Vec3 arm(RandomDraws& draws, double bits) {
   return draws.whole_point(std::ldexp(1, static_cast<int>(bits) - 3));
 }
 
-/// Moves b by a unit one time in three, and brings coordinates below 1 in size.
+/// Moves b by a unit one time in three, and scales the coordinates by 2^-bits, below 1.
 MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
     const Vec3 step = draws.whole_point(1);
@@ -43,7 +43,7 @@ MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) 
   return out;
 }
 
-/// Three times in four b keeps to one side of a; else it leaves the point to any side.
+/// True three times in four: b then keeps to one side of a. Else it leaves the point to any side.
 bool keeps_aside(RandomDraws& draws) { return !draws.chance(4); }
 
 MadePair vertex_vertex(RandomDraws& draws, double bits) {

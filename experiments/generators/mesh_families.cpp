@@ -136,7 +136,7 @@ Objects book(RandomDraws& draws, double pages, int directions) {
   return {std::move(out)};
 }
 
-/// A crumpled sheet, of whose triangles one in so many is a segment or a point.
+/// A crumpled sheet in which one triangle in so many is a segment or a point.
 Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   SuiteObject out = sheet(cells, cells, [&](int i, int j) {
     const double x = i + draws.coarse(-0.75, 0.75);
@@ -306,7 +306,7 @@ Objects sheets(RandomDraws& draws, double gap, int cells) {
           sheet(cells, cells, above)};
 }
 
-/// Vertices at one position become the first of them, and those that no triangle uses are left out.
+/// Merges vertices at one position into the first of them, and removes those that no triangle uses.
 void join_vertices(SuiteObject& object) {
   std::map<std::array<double, 3>, std::uint32_t> first;
   std::vector<Vec3> kept;

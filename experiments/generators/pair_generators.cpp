@@ -245,7 +245,7 @@ DrawnPair denormals(RandomDraws& random) {
   return pair;
 }
 
-/// 1e9 of its own diagonals from the origin: rounding leaves some 23 bits of the shape.
+/// Moved 1e9 of its diagonals away from the origin: rounding leaves some 23 bits of the shape.
 DrawnPair far_away(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;

@@ -60,7 +60,7 @@ void each_corner(DrawnPair& pair, const Function& function) {
     for (Vec3& p : *t) function(p);
   }
 }
-/// Brings the corners of each into any order, and a and b: predicates branch on both.
+/// Shuffles the corners of each triangle, and a with b, since predicates branch on their order.
 void shuffle(RandomDraws& draws, DrawnPair& pair);
 
 /// Three axes at right angles and of equal length.
@@ -85,11 +85,11 @@ struct PairGenerator {
   DrawnPair (*make)(RandomDraws&);
 };
 
-/// Each makes pairs that meet and pairs that do not; in every one, either is at least one in fifty.
+/// Each makes pairs that meet and pairs that do not, of either at least one in fifty.
 const std::vector<PairGenerator>& pair_generators();
 
-// The families of a suite: of pairs, and of meshes. Each makes what meets and what does not, and
-// most have a number that goes to an extreme.
+// The families of a suite: of pairs, and of meshes. Each makes pairs that meet and pairs that do
+// not; most have a number that goes to an extreme.
 
 struct MadePair : DrawnPair {
   bool neighbours = false;  // corners at equal positions are one vertex of a mesh
@@ -99,7 +99,7 @@ struct PairFamily {
   std::string name;
   std::string description;     // one line
   std::string parameter;       // the meaning of its number; "" for none
-  std::vector<double> values;  // of the number; pair i has the i-th, and they come again and again
+  std::vector<double> values;  // of the number; pair i has the i-th, counted cyclically
   MadePair (*make)(RandomDraws& draws, double parameter);
 };
 

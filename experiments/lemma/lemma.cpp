@@ -207,13 +207,13 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
   row.largest_px = std::max(row.largest_px, by * step);
 }
 
-// Random streams: of the trials, and of where in a deep window they stand.
+// Random streams: for the trials, and for their depth in a deep window.
 struct Streams {
   RandomNumbers trials;
   RandomNumbers lifts;
 };
 
-// One window full of trials; returns the row's increments.
+// Runs one window full of trials and adds its counts to the row.
 void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
                const Generator& generator, Streams& random, std::uint64_t wanted, LemmaRow& row) {
   const int side = settings.side > 0 ? settings.side : generator.side;
@@ -329,8 +329,8 @@ struct Case {
   double clearance = 0;
 };
 
-/// Puts one corner of b on one of a, half of the time two; the clearance about the distance of two
-/// corners, which often is that of the triangles, or a part of it.
+/// neighbours: puts one corner of b on one of a, half of the time two. clearance: sets it to the
+/// distance of two corners, which often is that of the triangles, or to a part of that.
 Case make_case(const PairGenerator& generator, OracleQuestion question, RandomDraws& random) {
   Case out{generator.make(random)};
   auto& [a, b] = out.pair;
@@ -369,7 +369,7 @@ bool ask_integers(const Case& x, OracleQuestion question) {
   return integer_intersects(x.pair.a, x.pair.b);
 }
 
-/// A block's counts, its times in ns in all.
+/// The counts of a block; its times are totals, in ns.
 OracleRow compare_block(const PairGenerator& generator, OracleQuestion question,
                         std::uint64_t pairs, std::uint64_t seed) {
   using Clock = std::chrono::steady_clock;

@@ -21,8 +21,8 @@ struct LemmaRow {
   std::uint64_t points = 0;
   std::uint64_t no_sample = 0;     // the pixel got no sample
   std::uint64_t not_bounding = 0;  // its samples do not bound the point's depth
-  std::uint64_t rounded = 0;       // nor do these, but by no more than depth_rounding(); only where
-                                   // samples are depths of the buffer
+  std::uint64_t rounded = 0;       // not counted above: off by no more than depth_rounding(); only
+                                   // if samples are depths of the buffer
   double largest_px = 0;           // the most by which a depth is outside its samples, 0: none is
   double largest_steps = 0;        // the same in steps of the depth buffer
   std::uint64_t violations() const { return no_sample + not_bounding; }
@@ -33,7 +33,7 @@ std::vector<std::string> lemma_generators();
 
 struct LemmaSettings {
   std::uint64_t points = 0;    // in all, shared evenly by the generators
-  std::string generator = {};  // of this one alone, the points that it has among all; empty: of all
+  std::string generator = {};  // only this one, with the points that it has among all; empty: all
   std::uint64_t seed = 0;
   /// The radius in px for a view's budget and depth step.
   std::function<double(const Budget& budget, double depth_step)> radius;
@@ -50,7 +50,7 @@ struct LemmaSettings {
                        // are spread over it
 };
 
-/// Throws std::logic_error for a generator that there is not.
+/// Throws std::logic_error for an unknown generator.
 std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
                                        const LemmaSettings& settings,
                                        const Progress& progress = {});
@@ -58,7 +58,7 @@ std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
 /// The radius in px by the rule, for a view's budget and depth step.
 double lemma_radius(const RadiusRule& rule, const Budget& budget, double depth_step);
 
-/// The sum of all rows, the largest of the largest, named "all".
+/// The sum of all rows, with the largest of their largest values, named "all".
 LemmaRow lemma_total(const std::vector<LemmaRow>& rows);
 
 // The two exact oracles against each other: verify/exact (a filter, CGAL's predicates, rational

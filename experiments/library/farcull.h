@@ -20,8 +20,8 @@
 
 namespace farcull {
 
-/// What the library throws for bad input and for faults of a device; what() says all of it. No
-/// answer is given then.
+/// Thrown for bad input and for faults of a device, instead of an answer; what() has the whole
+/// message.
 class ColliderError : public std::runtime_error {
  public:
   ColliderError(const std::string& what, std::string where, std::string reason, std::string remedy);
@@ -39,7 +39,7 @@ enum class ColliderDevice {
          // report says which, and why
 };
 
-/// What is said of how the triangles of a pair meet.
+/// How much contact detail to report.
 enum class ColliderContacts {
   none,      // nothing, at no cost
   kinds,     // ColliderContact::kind
@@ -95,11 +95,11 @@ const char* to_string(ColliderContactKind kind);
 
 struct ColliderContact {
   ColliderContactKind kind = ColliderContactKind::apart;
-  /// With ColliderContacts::segments: of the points in common. 0 a point, 1 a segment, 2 a polygon;
-  /// -1 none, or not asked.
+  /// With ColliderContacts::segments, the dimension of the points in common: 0 a point, 1 a
+  /// segment, 2 a polygon; -1 none, or not asked.
   int dimension = -1;
-  /// Where the dimension is 1 the ends of the segment, the lexicographically lower one first; where
-  /// it is 0 the point, twice; else zeros. World units, each coordinate rounded once.
+  /// Dimension 1: the ends of the segment, the lexicographically lower one first. Dimension 0: the
+  /// point, twice. Else zeros. World units, each coordinate rounded once.
   std::array<std::array<double, 3>, 2> ends{};
   bool operator==(const ColliderContact&) const = default;
 };
@@ -135,36 +135,35 @@ struct ColliderReport {
   std::vector<View> views;
   std::vector<Stage> stages;
 
-  /// How the calling thread computes outside the call ("rounds upward, keeps subnormals"), where
-  /// that is not to nearest with subnormals kept; else empty. The call itself always rounds to
-  /// nearest and keeps them.
+  /// The floating-point environment of the calling thread, as in "rounds upward, keeps subnormals";
+  /// empty if it rounds to nearest and keeps subnormals, as the call itself always does.
   std::string callers_arithmetic;
 };
 
 struct ColliderResult {
   std::vector<ColliderPair> pairs;  // all that collide, sorted, each once; of different objects, or
                                     // of one that is tested against itself and not neighbours
-  /// Neighbours share a vertex position and are of one object: those whose intersection is more
-  /// than the shared positions and the edge between them. Sorted; empty without
-  /// ColliderOptions::neighbours.
+  /// Colliding neighbours: triangles of one object that share a vertex position, and whose
+  /// intersection is more than the shared positions and the edge between them. Sorted; empty
+  /// without ColliderOptions::neighbours.
   std::vector<ColliderPair> neighbour_pairs;
   std::vector<ColliderContact> contacts;            // one for each of `pairs`, and
   std::vector<ColliderContact> neighbour_contacts;  // of `neighbour_pairs`; empty without
                                                     // ColliderOptions::contacts
-  /// False: there may be more pairs behind the last one, since ColliderOptions::limit ended the
-  /// search. Before it none is missing.
+  /// False: ColliderOptions::limit ended the search, so there may be more pairs after the last one.
+  /// None is missing before it.
   bool complete = true;
   ColliderReport report;
 };
 
 /// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
-/// stay from call to call. An object serves one call at a time, of any thread: a call meanwhile,
-/// and a call of an object that was moved from, throws ColliderError and changes nothing. Moving
-/// and destroying an object are no calls: no other thread may use it then. The EGL context that the
-/// caller has made current is current again after each call.
+/// stay from call to call. An object serves one call at a time, of any thread: a second call
+/// meanwhile, or a call of an object that was moved from, throws ColliderError and changes nothing.
+/// This does not protect moving and destroying an object: no other thread may use it then. The EGL
+/// context that the caller has made current is current again after each call.
 class Collider {
  public:
-  /// Opens the device. A GL device that no verdict is kept of is probed, which takes about a second
+  /// Opens the device. A GL device without a kept verdict is probed, which takes about a second
   /// on Mesa llvmpipe, several where Mesa's cache of shaders is empty (docs/library.md). Throws
   /// ColliderError naming the option that is bad, or where the device does not answer.
   explicit Collider(const ColliderOptions& options);
@@ -194,7 +193,7 @@ struct ColliderFound {
 };
 
 /// The pairs of Collider::find(), neighbours among them, in the order of ColliderPair and some at a
-/// time: where they are too many for the memory, or where the first ones are wanted at once.
+/// time: for more pairs than memory holds, or to have the first ones early.
 ///
 ///   ColliderStream stream(input, options);
 ///   std::vector<ColliderFound> pairs;
@@ -206,15 +205,15 @@ struct ColliderFound {
 class ColliderStream {
  public:
   /// Copies the input. Throws ColliderError as Collider::find(), and naming `device` for gl, which
-  /// it does not use. The options views and resolution mean nothing to it.
+  /// it does not use. Ignores the options views and resolution.
   explicit ColliderStream(const ColliderInput& input, const ColliderOptions& options = {});
   ~ColliderStream();
   ColliderStream(ColliderStream&&) noexcept;
   ColliderStream& operator=(ColliderStream&&) noexcept;
 
-  /// Replaces `pairs` by those that follow; there may be none although there are more behind.
-  /// False: the end, and `pairs` is empty. Each call decides about 2^16 candidates at most, and
-  /// those of one triangle more for each thread, so that the caller can stop between two calls.
+  /// Replaces `pairs` by the next ones, perhaps none before the end. Returns false at the end, with
+  /// `pairs` empty. Each call decides at most about 2^16 candidates and those of one more triangle
+  /// for each thread, so that the caller can stop between two calls.
   /// Throws std::bad_alloc without memory; each later call then throws ColliderError.
   bool next(std::vector<ColliderFound>& pairs);
   /// Candidates that exact tests have decided up to now, by the calls that have ended. Unlike the
@@ -234,14 +233,14 @@ class ColliderStream {
 
 enum class DistanceKind {
   objects,  // the nearest triangles of every two objects, and of one that is asked about by itself
-  nearest,  // of each object and its k nearest others; of those as far the lower one comes first
+  nearest,  // of each object and its k nearest others; at equal distance the lower comes first
   all,      // every pair of triangles within a distance
 };
 
 struct DistanceFinderOptions {
   DistanceKind kind = DistanceKind::objects;
   std::size_t k = 1;   // with `nearest`, 1 or more
-  double within = -1;  // nothing farther apart is answered; world units; negative: no limit.
+  double within = -1;  // leaves out what is farther apart; world units; negative: no limit.
                        // Finite and 0 or more with `all`
   bool self = false;   // the triangles of one object as well, neighbours left out; not `nearest`
   std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
@@ -249,8 +248,8 @@ struct DistanceFinderOptions {
   unsigned threads = 0;  // up to 1024; 0: as many as there are cores; changes no answer
 };
 
-/// unknown: not asked, or the objects meet. none: neither is inside the other. a, b: this one is,
-/// all of it. not_closed: one may be, but the other has no inside.
+/// unknown: not asked, or the objects meet. none: neither is inside the other. a, b: all of this
+/// one is inside the other. not_closed: one may be, but the other has no inside.
 enum class DistanceInside { unknown, none, a, b, not_closed };
 
 /// The distance of two objects, or with `all` of two triangles.
@@ -266,9 +265,9 @@ struct DistanceAnswer {
   DistanceInside inside = DistanceInside::unknown;
 };
 
-/// Finds distances again and again: the nearest triangles of one call are the first guess of the
-/// next, which is about a scene that has moved a little, or any other. An object serves one call at
-/// a time, as a Collider does.
+/// Finds distances again and again. The nearest triangles of one call are the first guess of the
+/// next, which saves time if the scene moved only a little; any other scene is fine too. An object
+/// serves one call at a time, as a Collider does.
 class DistanceFinder {
  public:
   /// Throws ColliderError naming the option that is bad.

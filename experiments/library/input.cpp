@@ -21,9 +21,8 @@ constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cach
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
 
-// Whether no number is infinite or a NaN, which are those whose exponent is all ones. One more in
-// the exponent then reaches the bit of the sign. No branch is in the loop, so that the compiler can
-// look at several numbers at a time.
+// Whether no number is infinite or a NaN. Their exponents are all ones, so adding one to the
+// exponent sets the sign bit. The loop has no branch, so that the compiler can vectorize it.
 bool all_finite(std::span<const double> block) {
   constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
   std::uint64_t bits = 0;
@@ -31,7 +30,7 @@ bool all_finite(std::span<const double> block) {
   return bits >> 63 == 0;
 }
 
-// Copies indices. Whether all are below `vertices`.
+// Copies indices; returns whether all are below `vertices`.
 bool copy_block(std::span<const std::uint32_t> from, std::uint32_t* to, std::size_t vertices) {
   std::memcpy(to, from.data(), from.size_bytes());
   std::uint32_t most = 0;
@@ -39,8 +38,8 @@ bool copy_block(std::span<const std::uint32_t> from, std::uint32_t* to, std::siz
   return most < vertices;
 }
 
-// The same, made narrower. Of each number that 32 bits cannot hold, a bit above them is set, also
-// of a negative one, whose sign fills them.
+// The same, from 64 bits. A number that 32 bits cannot hold has a bit set above them; so has a
+// negative one, by its sign.
 bool copy_block(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -53,8 +52,8 @@ bool copy_block(std::span<const std::int64_t> from, std::uint32_t* to, std::size
   return bits >> 32 == 0 && most < vertices;
 }
 
-// Copies come before the look at them: another thread of the caller may change what it gave
-// meanwhile, and what the scene holds has to be right.
+// Checks the copies, not the input: another thread of the caller may change the input meanwhile,
+// and what the scene holds has to be right.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to) {
   to.resize(from.size() / 3);
   if (from.empty()) return;
@@ -79,7 +78,7 @@ void copy_triangles(std::span<const Index> from, std::size_t vertices,
   for (std::size_t begin = 0; begin < from.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, from.size());
     if (copy_block(from.subspan(begin, end - begin), copies + begin, vertices)) continue;
-    // One number at a time, to name the first that is none of a vertex.
+    // One at a time, to name the first index that is out of range.
     for (std::size_t k = begin; k < end; ++k) {
       const Index v = from[k];
       copies[k] = static_cast<std::uint32_t>(v);
@@ -142,7 +141,7 @@ namespace {
 
 constexpr int kMostResolution = 16384;
 
-// The enumerations of the library have the order of those within.
+// The enumerations of farcull.h have the order of the internal ones.
 static_assert([] {
   using Given = ColliderContactKind;
   using Own = ContactKind;
@@ -182,7 +181,6 @@ std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes) 
   return out;
 }
 
-/// The ignored pairs of a scene with so many objects.
 std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects) {
   std::vector<ObjectPair> out;
   for (const auto& [a, b] : options.ignore) {
@@ -202,7 +200,7 @@ std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t o
 }
 
 const char* to_string(ColliderContactKind kind) {
-  // Of a literal, so it ends with a 0.
+  // name_of() views a literal, so it ends with a 0.
   return name_of(kContactKinds.at(static_cast<std::size_t>(kind))).data();
 }
 

@@ -22,8 +22,8 @@ constexpr bool same(Given given, Own own) {
 
 inline constexpr unsigned kMostThreads = 1024;
 
-/// The call with the floating-point environment of the proofs, the caller's restored afterwards.
-/// Every Error that it throws becomes the one of the library.
+/// Runs the call in the floating-point environment of the proofs, and then restores the caller's.
+/// Turns every Error into a ColliderError.
 template <class Call>
 auto translated(const Call& call) {
   try {
@@ -34,10 +34,10 @@ auto translated(const Call& call) {
   }
 }
 
-/// The call with the state of an object of the library, by one call at a time. Throws ColliderError
-/// naming the object where its state was moved from it, and where another call uses it: one of
-/// another thread, or one of this thread that a signal handler interrupts. State has a member
-/// `std::atomic_flag used`, which is marked while the call runs.
+/// Runs the call with the state of an object of the library, one call at a time. Throws
+/// ColliderError naming the object if it was moved from, or if another call uses it: one of another
+/// thread, or one of this thread that a signal handler interrupted. State has a member
+/// `std::atomic_flag used`, which is set while the call runs.
 template <class State, class Call>
 auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
   return translated([&] {
@@ -55,7 +55,7 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
   });
 }
 
-/// Copies the input into the scene of the last call, whose memory is used again. self: every object
+/// Copies the input into `scene`, that of the last call, and reuses its memory. self: every object
 /// is tested against itself; self_objects: the same per object, empty or one for each. Throws Error
 /// for input that is not as ColliderInput says.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
@@ -66,7 +66,7 @@ void check(const ColliderOptions& options);
 
 ContactDetail detail_of(ColliderContacts contacts);
 
-/// The ignored pairs of a scene with so many objects. Throws Error where it has them not.
+/// The ignored pairs of a scene with so many objects. Throws Error if one names an object beyond.
 std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects);
 
 ColliderContact given_out(const ContactShape& shape);

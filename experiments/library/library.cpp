@@ -72,21 +72,21 @@ struct Collider::State {
     promise();
   }
 
-  // Opened where it is not: at first, and after a failure.
+  // Opens the device if it is not open: at first, and after a failure.
   PairDevice& device() { return session.pairs(); }
 
-  // Of the device that is open, whatever an earlier one promised.
+  // The promise on the device that is open now, not on an earlier one.
   Promise promise() {
     const std::optional<Reliance> relies =
         device().gl ? std::optional(Reliance::pairs) : std::nullopt;
     return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies},
                       session);
   }
-  // Of an answer that a device took part in, or none did.
+  // Reports the device of an answer; `used` may be none.
   void report_device(const UsedDevice& used, ColliderReport& report);
 
   /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
-  /// device may be believed.
+  /// device can be trusted.
   ColliderResult find(const Stopwatch& start);
 };
 
@@ -110,7 +110,7 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
 ColliderResult Collider::State::find(const Stopwatch& start) {
   device();
   run.ignored = ignored_of(options, scene.objects.size());
-  // What is remembered is two more copies of the scene, which one call alone has no use for.
+  // Remembering takes two more copies of the scene, which are of no use to a single call.
   if (++calls == 2) session.remember_frames();
   const Record record = farcull::run(
       scene, run, session, {}, {.answer_only = true, .decide_neighbours = options.neighbours});
@@ -248,7 +248,7 @@ bool ColliderStream::complete() const {
 
 namespace {
 
-// The enumerations of the library have the order of those within.
+// The enumerations of farcull.h have the order of the internal ones.
 static_assert(same(DistanceKind::objects, DistancePairs::objects) &&
               same(DistanceKind::nearest, DistancePairs::nearest) &&
               same(DistanceKind::all, DistancePairs::all));

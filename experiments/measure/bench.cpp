@@ -1,6 +1,6 @@
-// Who takes part: methods by the one pipeline, peers by their own set-up. A cold round, then rounds
-// that count; every answer is compared with that of the first contestant.
-// And the table for people, and JSON for programs.
+// Sets up the contestants: methods by the one pipeline, peers by their own set-up. Runs a cold
+// round, then the rounds that count, and compares every answer with that of the first contestant.
+// Prints the table and JSON.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -69,7 +69,8 @@ BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::
   };
 }
 
-/// Sets up one contestant. What cannot run is left out, or an Error where it was asked for by name.
+/// Sets up contestants. One that cannot run is left out; if it was asked for by name, it is an
+/// Error.
 class ContestantList {
  public:
   explicit ContestantList(const Progress& progress) : progress_(progress) {}
@@ -268,7 +269,7 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
         BenchAnswer answer = c.run(scene);
         const double ms = watch.ms();
         if (round < 0) result.rows.push_back(cold_row(c, answer));
-        // Only a cold run over the limit counts.
+        // A cold run counts only if it is over the limit.
         if (round >= 0 || ms > rounds.limit_ms) parts[i].add(answer);
         if (i == 0 && round < 0) {
           agreed = std::move(answer.pairs);

@@ -1,6 +1,5 @@
-// `farcull bench`: peers and our methods from the same triangles to the same pairs; with
-// --distances, to distances between objects, and how far each is from the exact ones. All in one
-// process and one run.
+// `farcull bench` measures peers and our methods from the same triangles to the same pairs; with
+// --distances, to distances between objects and their errors. All in one process and one run.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,
@@ -70,7 +69,7 @@ struct BenchResult {
   std::optional<std::size_t> fastest_peer;   // into rows
 };
 
-/// Throws Error naming the option for names that are none, a repeat below 1 or a limit below 0.
+/// Throws Error naming the option for unknown names, a repeat below 1 or a limit below 0.
 void validate(const BenchOptions& options);
 
 /// Our methods and the peers that the options name, set up. Ours: far-pairs on the CPU and, as far
@@ -89,7 +88,7 @@ std::optional<double> ratio_to_fastest(const Result& result, const TimedRow& row
   return row.total_ms.median / result.rows[*result.fastest_peer].total_ms.median;
 }
 
-/// In words, with the answer of the exact predicates for the pair.
+/// The disagreement in words, with the answer of the exact predicates for the pair.
 std::string describe(const Scene& scene, const Disagreement& disagreement);
 
 nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
@@ -108,14 +107,14 @@ struct DistanceBenchOptions {
   double limit_s = 60;  // a contestant whose cold run takes longer is not repeated
 };
 
-/// The answers of a contestant beside ours, which are exact.
+/// The answers of a contestant compared with ours, which are exact.
 struct DistanceErrors {
   std::uint64_t answers = 0;
-  std::uint64_t lacking = 0;       // distances that ours has
-  std::uint64_t beyond = 0;        // distances that ours has not: beyond `within`
+  std::uint64_t lacking = 0;       // distances that only ours has
+  std::uint64_t beyond = 0;        // distances that ours leaves out, beyond `within`
   std::uint64_t exact = 0;         // the same double
   std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
-  std::uint64_t other_object = 0;  // with `nearest`: another object, which is not as near
+  std::uint64_t other_object = 0;  // with `nearest`: another object that is not as near
   double largest_relative = 0;     // of distances that neither calls 0
   FARCULL_FIELDS(answers, exact, lacking, beyond, other_zero, other_object, largest_relative)
 };
@@ -132,7 +131,7 @@ struct DistanceBenchResult {
 };
 
 /// Measures distances between different objects, also if the scene tests one against itself. Throws
-/// Error naming the option for peers that there are not, and for a repeat below 1.
+/// Error naming the option for unknown peers, and for a repeat below 1.
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 
@@ -141,7 +140,7 @@ DistancePeer farcull_distances();
 /// The answers of a record of `objects`, or of `nearest` with k = 1, as a peer gives them.
 std::vector<PeerDistance> as_peer(const DistanceRecord& record);
 
-/// `answer` beside exact ones of the same question; both sorted.
+/// Compares `answer` with the exact one to the same question; both sorted.
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact);
 

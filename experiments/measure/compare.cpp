@@ -88,8 +88,8 @@ void require_used(const RunOptions& asked, const std::vector<RunOptions>& cells)
   }
 }
 
-// A resolution beyond the device is refused before the first run, not after an hour of smaller
-// ones. Every OpenGL 4.3 has room for half of its 16384 px, so only beyond that is a device asked.
+// Refuses a resolution beyond the device before the first run, not after an hour of smaller ones.
+// Every OpenGL 4.3 takes 8192 px, half of its 16384, so the device is asked only beyond that.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {
@@ -202,7 +202,7 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Pro
       if (!scene.costly) scenes.push_back(scene.name);
     }
   }
-  // All names before the first run.
+  // Checks all names before the first run.
   std::vector<Method> methods;
   for (const std::string& text : split_list(arguments.methods)) {
     methods.push_back(parse_method(text, "--methods"));

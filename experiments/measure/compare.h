@@ -14,10 +14,10 @@ namespace farcull {
 
 struct CompareArguments {
   std::vector<std::string> scene;
-  /// By commas; where none is given all, or those that can where an object is tested against
-  /// itself or there is a clearance.
+  /// Names by commas; if none is given, all, or those that support a clearance or objects tested
+  /// against themselves where the scene needs it.
   std::optional<std::string> methods;
-  /// px, by commas; `auto` for far-pairs alone, which takes nothing else where none is given.
+  /// px, by commas; `auto` is for far-pairs alone, and its default.
   std::optional<std::string> resolutions;
   std::string offsets = "obb";  // for far
   bool self = false;            // every object was made to be tested against itself
@@ -38,7 +38,7 @@ struct Comparison {
 void validate(const CompareArguments& arguments);
 
 /// Runs every method at every resolution (`exact` once; far with every offset), each `repeat`
-/// times. `auto` is passed over by far and cullide where they have another resolution. Throws Error
+/// times. far and cullide skip `auto` where they have another resolution. Throws Error
 /// for bad arguments, and before the first run for a resolution beyond the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
@@ -72,8 +72,8 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments,
 
 /// Whether two runs found the same pairs, neighbours among them.
 bool same_pairs(const Record& a, const Record& b);
-/// The first method that promises, by these options, and whose pairs differ; empty: none. A device
-/// whose verdict was revoked hides nothing.
+/// The first method that promises, by these options, and whose pairs differ; empty: none. The
+/// verdict about the device is not looked at.
 std::string broken(const std::vector<SavingsRow>& rows, RunOptions options);
 
 std::string savings_table(const std::vector<SavingsRow>& rows);

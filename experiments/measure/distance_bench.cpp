@@ -93,7 +93,7 @@ DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& ans
   const auto nearest_by = [](const PeerDistance& x, const PeerDistance& y) {
     return std::tie(x.a, x.b) < std::tie(y.a, y.b);
   };
-  // With `nearest` there is one for each object, and the other object may differ.
+  // With `nearest` each object has one distance, and the other object may differ.
   const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {

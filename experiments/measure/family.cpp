@@ -120,7 +120,7 @@ class Frames {
   std::vector<Scene> kept_;
 };
 
-// One scene by one method; nothing where the method has no question to ask of the scene.
+// One scene by one method; nothing if the method has nothing to test in the scene.
 std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod& contestant,
                                    const FamilyArguments& arguments, Frames& frames,
                                    Session& session, const Progress& progress) {
@@ -216,7 +216,7 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
     }
   }
   const std::vector<ListedMethod> methods = contestants(arguments);
-  // All names before the first run, not after an hour of them.
+  // Checks all names before the first run, not after an hour of runs.
   for (const std::string& scene : scenes) require_motion(scene);
   Session session(arguments.options.device);
   std::vector<FamilyCell> cells;

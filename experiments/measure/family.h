@@ -26,7 +26,7 @@ struct FamilyFrame {
   long frame = 0;
   double ms = 0;  // from moved vertices to exact pairs: cull + exact
   std::uint64_t pcs_objects = 0, pcs_triangles = 0;
-  std::uint64_t object_triangles = 0;  // of i-collide, Record
+  std::uint64_t object_triangles = 0;  // of i-collide: SweptObjects::triangles
   std::uint64_t candidate_pairs = 0, colliding_pairs = 0, neighbour_pairs = 0;
   std::uint64_t queries = 0, draws = 0;
   std::uint64_t queries_saved = 0, draws_saved = 0;  // against plain CULLIDE
@@ -65,7 +65,7 @@ PaperRate paper_rate(const std::string& scene);
 
 /// Runs every scene by every method, frame after frame. Objects that the scene marks `self` are
 /// tested against themselves by the methods that do so; the others see the scene without the marks
-/// (and are said to). Throws Error as run_frames() does, before the first run where it can.
+/// (and the output says so). Throws Error as run_frames() does, before the first run if possible.
 std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progress& progress = {});
 
 /// The first promise that was broken; empty: none.

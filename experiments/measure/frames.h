@@ -49,8 +49,8 @@ struct FrameReport {
   const nlohmann::ordered_json& head;     // of all frames: the record without the next two
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
-  std::string rows;                       // for people; before the first frame's what was run
-  std::string pairs_csv;    // as pairs_rows(), a column `frame` before; the header before the first
+  std::string rows;                       // for people; the first ones begin with what was run
+  std::string pairs_csv;    // as pairs_rows(), after a column `frame`; the first with the header
   long number = 0;          // of the frame
   std::string certificate;  // its text, where certificates are wanted
 };
@@ -74,8 +74,8 @@ class FrameRecord {
 };
 
 struct FramesResult {
-  nlohmann::ordered_json json;  // docs/record.md; of a run with a sink without `frames`
-  std::string table;            // for people; of a run with a sink what follows the rows
+  nlohmann::ordered_json json;  // docs/record.md; with a sink, without `frames`
+  std::string table;            // for people; with a sink, only what follows the rows
   std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
   Accounting sum;               // of all frames, without examples; 0 without an accounting
@@ -84,11 +84,11 @@ struct FramesResult {
 
 /// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and
 /// SIGHUP end the program at once, with a line on standard error that says how many frames were
-/// done. Throws Error as FrameSource, run() and the sink do: what the sink has got is all
-/// that there is then.
+/// done. Throws Error as FrameSource, run() and the sink do; the frames that the sink has got are
+/// then the only result.
 FramesResult run_frames(const std::vector<std::string>& scene, const FramesQuestion& question,
                         const Progress& progress = {}, const FrameSink& sink = {});
-/// The same of a source; question.self is not looked at.
+/// The same for the frames of a source; question.self is not looked at.
 FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
                         const Progress& progress = {}, const FrameSink& sink = {});
 

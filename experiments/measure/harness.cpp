@@ -48,7 +48,7 @@ class Draws {
   std::vector<double> drawn_;
 };
 
-// With the interval of `resampled`, which is not empty.
+// The value with the 95 % interval of `resampled`, which is not empty.
 Estimate with_interval(double value, std::size_t n, std::vector<double> resampled) {
   std::sort(resampled.begin(), resampled.end());
   const std::size_t cut = resampled.size() / 40;  // 2.5 %

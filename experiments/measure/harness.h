@@ -40,7 +40,7 @@ double middle(std::vector<double> values);
 /// All 0 where there are no values.
 Estimate median_estimate(std::vector<double> values);
 
-/// The median of the first over that of the second, both drawn anew; n: of the smaller one.
+/// The ratio of the medians, with both lists resampled; n: the number of values of the smaller one.
 /// Precondition: both have values, those of the second above 0.
 Estimate ratio_estimate(std::vector<double> over, std::vector<double> under);
 

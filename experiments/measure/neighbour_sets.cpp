@@ -1,5 +1,5 @@
-// Sets of four methods in one form, their sizes for each object, and what they lack of the truth,
-// for which exact arithmetic decides what trees of boxes leave.
+// Brings the sets of four methods into one form, counts their sizes for each object, and compares
+// them with the truth: exact arithmetic decides the pairs that trees of boxes leave.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <fmt/format.h>
@@ -52,8 +52,9 @@ SquaredRange range_of(const Box& a, const Box& b) {
 // infinite on both sides, so it is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
-// An object may hold the nearest neighbour of another one if their boxes come as near as the box of
-// some object is as a whole. Of its triangles those may whose boxes do.
+// An object may hold the nearest neighbour of another one if the least distance of their boxes is
+// at most the largest distance to the box of some object. The same bound chooses its triangles, by
+// their boxes.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -100,13 +101,13 @@ NeighbourSets sets_of_trees(const Scene& scene, const NeighbourOptions& options,
   return out;
 }
 
-// As diagram_sets(), but the sets say why there are none.
+// As diagram_sets(), but if there are no sets, left_out says why.
 NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& options,
                               const Progress& progress) {
   try {
     return diagram_sets(scene, options, nullptr, progress);
   } catch (const Error& error) {
-    // The caller hears of options that are out of range.
+    // Options that are out of range remain an Error.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
     return {.objects = {}, .left_out = error.reason};
   } catch (const std::bad_alloc&) {
@@ -114,9 +115,9 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   }
 }
 
-// Adds to each object how many triangles of other objects its pairs name, each once. Triangles of
-// objects ascend with the objects, and a < b in each pair: those of later objects follow from the
-// pairs of one object after the other, those of earlier objects from the pairs of one triangle.
+// Adds to each object how many triangles of other objects its pairs name, each once. Pairs are
+// sorted, with a < b, and triangles ascend with their objects. So all pairs of a's object come
+// together, and those of one a with b's object too: remembering the last of each finds repeats.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -288,8 +289,8 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
   return out;
 }
 
-// Asks the diagram and exact arithmetic, counts for each object what the one leaves of what the
-// other found, and turns it into JSON, CSV and a table.
+// Runs the diagram and exact arithmetic, counts for each object which of its nearest objects the
+// diagram keeps, and writes JSON, CSV and a table.
 
 namespace {
 
@@ -334,7 +335,7 @@ Json device_json(const DiagramRecord& record) {
   return out;
 }
 
-// Asks the diagram on a GL device, where one is wanted.
+// Runs the diagram, on a GL device if one is wanted.
 class Asked {
  public:
   Asked(const DiagramOptions& options, DiagramRecord& record)

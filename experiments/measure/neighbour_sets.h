@@ -58,8 +58,7 @@ struct NeighbourSets {
   std::vector<TrianglePair> pairs = {};
   /// boxes, voronoi: of each pair of objects, how many triangles of a and of b are left.
   std::vector<std::array<std::uint64_t, 2>> left = {};
-  /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Empty: there
-  /// are.
+  /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Else empty.
   std::string left_out = {};
   VoronoiCounts work = {};  // of the diagrams
 };
@@ -68,9 +67,9 @@ struct NeighbourSets {
 NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
                              const Progress& progress = {});
 
-/// The same of a diagram, but it throws Error as well where there are no sets: as
-/// voronoi_neighbours() and reliable_neighbours() do. device: where its cells are computed; null:
-/// on the cores of the CPU. Precondition: has_cells(options.method).
+/// The same for a diagram, but throws Error also if there are no sets, as voronoi_neighbours() and
+/// reliable_neighbours() do. device: where its cells are computed; null: on the cores of the CPU.
+/// Precondition: has_cells(options.method).
 NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
                            VoronoiDevice* device, const Progress& progress = {});
 
@@ -83,10 +82,10 @@ std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
 /// The pairs of triangles that are left.
 std::uint64_t triangle_pairs_of(const NeighbourSets& sets);
 
-/// Whether the objects are left as neighbours, whichever comes first.
+/// Whether the pair of objects is left, in either order.
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
-/// Whether the pair of triangles of these objects is left. Sets without pairs of triangles lose one
-/// where they lose its objects.
+/// Whether the pair of triangles of these objects is left. Sets without pairs of triangles have it
+/// if they have the pair of objects.
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
 
@@ -134,8 +133,8 @@ struct PotentialNeighbours {
   /// The objects that the diagram leaves, and the triangles of them: all triangles of these objects
   /// with the published form; with the reliable form those that may be nearest.
   std::uint64_t objects = 0, triangles = 0;
-  /// How many of `nearest` are not among those objects. With the reliable form also those of which
-  /// the first of the nearest pairs of triangles is not left.
+  /// How many of `nearest` are not among those objects. With the reliable form also those whose
+  /// first nearest pair of triangles is not left.
   std::uint64_t lost = 0;
 };
 

@@ -1,5 +1,5 @@
-// What probes found, in words and in a file of JSON: the inputs, the findings, and a checksum of
-// both. A file's name is a hash of the inputs, so that builds and drivers keep theirs side by side.
+// Keeps what probes found in a JSON file: the inputs, the findings, and a checksum of both. The
+// file's name is a hash of the inputs, so each build and driver has its own.
 #include "experiments/method/device_verdict.h"
 
 #include <fcntl.h>
@@ -35,15 +35,15 @@
 
 namespace farcull {
 
-// The probes of A4. Kernels of FAR pairs: the device answers all intervals in one dispatch, and
-// slices in one for each window. Kernels of both offsets: by the canvas's fragment program, each on
-// fattened triangles and on solids made of floats. verify/kernel_check draws the cases and counts
-// what answers lose.
+// The probes of A4. For FAR pairs the device computes all intervals in one dispatch, and slices in
+// one for each window. For both offsets the canvas's fragment program computes intervals of
+// fattened triangles and of solids made of floats. verify/kernel_check draws the cases and counts
+// the losses.
 
 namespace {
 
-// A probe whose measured value is how much was lost; answers that are loose too often fail it as
-// well. One that breaks off by an Error fails.
+// Runs a probe and measures how much was lost. It fails if anything was, if answers are loose too
+// often, or if it breaks off with an Error.
 ProbeResult result(const std::string& name, const std::string& tried,
                    const std::function<KernelTally()>& run) {
   ProbeResult out{.assumption = "A4", .name = name, .unit = "lost", .note = {}};
@@ -88,7 +88,8 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
     const std::vector<SolidAnswer> answers = device_solids(context, solid, cases);
     for (std::size_t i = 0; i < kSolidCases; ++i)
       kernel.check(cases[i], answers[i], ordinary[i], tally);
-    // A step of the buffer is 0.25 px, then 16 px: mostly about as much as from entry to exit.
+    // A step of the depth buffer is 0.25 px, for solids made of floats 16 px: mostly about the
+    // distance from entry to exit.
     std::vector<SolidCase> stored = cases;
     if (options.late_stores) std::rotate(stored.begin(), stored.begin() + 1, stored.end());
     const std::vector<std::uint8_t> seen =
@@ -204,7 +205,7 @@ constexpr std::array kDriverVariables = {
     "ZINK_",  "NOUVEAU_", "NV50_",    "NVC0_",  "FD_",      "IR3_",   "TU_",    "V3D_",  "VC4_",
     "PAN_",   "LIMA_",    "ETNA_",    "SVGA_",  "VIRGL_",   "D3D12_", "ASAHI_", "AGX_",  "__GL_",
     "__GLX_", "glsl_",    "force_",   "allow_", "disable_", "mesa_",  "PIPE_",  "VK_"};
-// Where caches and messages go, and how much of them, decides nothing.
+// Variables about caches and messages, which do not change the generated code.
 constexpr std::array kIdleVariables = {"MESA_SHADER_CACHE", "MESA_GLSL_CACHE", "MESA_LOG",
                                        "MESA_DISK_CACHE", "__GL_SHADER_DISK_CACHE"};
 
@@ -263,7 +264,7 @@ Json inputs_json(const VerdictInputs& inputs) {
   return out;
 }
 
-// Bytes that are no UTF-8 (of the environment) are replaced.
+// Replaces bytes that are not UTF-8, which the environment may have.
 std::string text_of(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -274,7 +275,8 @@ std::string file_of(const VerdictInputs& inputs) {
   return folder + "/device-" + hash_of(text_of(inputs_json(inputs))) + ".json";
 }
 
-// A file that is there, and of which `problem` says why it is of no use.
+// Reads a verdict. Returns nothing if there is no file, or if it is of no use: `problem` then says
+// why.
 std::optional<DeviceVerdict> read(const std::string& file, const VerdictInputs& inputs,
                                   std::string& problem) {
   struct stat status {};
@@ -318,7 +320,7 @@ std::optional<DeviceVerdict> read(const std::string& file, const VerdictInputs& 
   }
 }
 
-// "" or why it could not be written. A reader sees the old file or the new one.
+// Returns "" or why the file could not be written. A reader sees the old file or the new one.
 std::string write(const std::string& file, const std::string& text) {
   if (file.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
   const auto why = [&](int error) { return file + ": " + std::strerror(error); };
@@ -345,8 +347,8 @@ std::string write(const std::string& file, const std::string& text) {
   return why(failure);
 }
 
-// Takes an older verdict away; "" or why it is still there. Where the folder allows no removal, an
-// empty file is one that nobody believes.
+// Removes an older verdict; returns "" or why it is still there. If the folder allows no removal,
+// empties the file, which invalidates it.
 std::string forget(const std::string& file) {
   if (file.empty() || ::unlink(file.c_str()) == 0 || errno == ENOENT || errno == ENOTDIR) return "";
   const int failure = errno;
@@ -358,7 +360,7 @@ std::string forget(const std::string& file) {
   return "";
 }
 
-// Whether write() would have a chance.
+// Returns why write() would fail, as far as the folder tells; else "".
 std::string unwritable(const std::string& file) {
   if (file.empty()) return write(file, "");
   std::error_code error;
@@ -479,7 +481,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
   out.holds = out.problem.empty() && out.failed.empty();
   const VerdictInputs inputs = verdict_inputs(device, reliance);
   const std::string file = file_of(inputs);
-  // Before anything else can fail: no older promise outlives what refutes it.
+  // First, so that no later failure leaves an older promise that these results refute.
   if (!out.holds) out.note = forget(file);
   if (!out.holds && out.failed.empty()) return out;
   Json json = {{"farcull_verdict", kFormat},
@@ -489,7 +491,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
                {"made", out.made},
                {"ms", out.ms},
                {"probes", probes}};
-  // As a reader will find it, so that the checksum is of the same text.
+  // Parsed again, so that the checksum is of the same text that a reader will hash.
   json = Json::parse(text_of(json));
   json["checksum"] = hash_of(text_of(json));
   const std::string unkept = write(file, text_of(json, 2) + "\n");

@@ -27,7 +27,7 @@ struct SolidKernel {
   Solid (*adversarial)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
   void (*check)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
 };
-/// Of both offsets.
+/// The kernels of both offsets.
 std::vector<SolidKernel> solid_kernels();
 
 /// All but the first two are deliberate defects, so that tests can see the probes fail.
@@ -39,19 +39,19 @@ struct KernelProbeOptions {
   bool late_stores = false;      // what is stored is another solid than what is asked
 };
 
-/// What FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles of every
-/// kind, far_slice, and the conversion of a float to an integer. All functions here make the
-/// context current while they run.
+/// Probes what FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles
+/// of every kind, far_slice, and the conversion of a float to an integer. All functions here make
+/// the context current while they run.
 std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
                                             const KernelProbeOptions& options = {});
-/// solid_interval of both offsets, which drawing relies on besides.
+/// Probes solid_interval of both offsets, which drawing relies on as well.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
 /// run_probes and the kernels above, in the order of the assumptions; `started` as for run_probes.
 std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {});
-/// Brief ones of what drawing relies on.
+/// Brief probes of what drawing relies on.
 std::vector<ProbeResult> drawing_probes(const GlContext& context);
 
 // ---- the verdict ----
@@ -66,16 +66,15 @@ enum class Reliance { pairs, drawing };
 std::string utc_now();
 
 struct DeviceVerdict {
-  bool holds = false;  // every probe passed
-  std::vector<std::string>
-      failed;               // those that did not, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;      // which probe broke off, and why: nothing is promised
-  std::string made;         // when, as in 2026-01-31T12:00:00Z
-  std::size_t probes = 0;   // that ran
-  double ms = 0;            // that they took, when they ran
-  bool remembered = false;  // it was read, and no probe ran now
-  std::string file;         // where it is kept; empty: nowhere
-  std::string note;         // why the file was of no use, or could not be written or removed
+  bool holds = false;               // every probe passed
+  std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
+  std::string problem;              // which probe broke off, and why: nothing is promised
+  std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
+  std::size_t probes = 0;           // how many ran
+  double ms = 0;                    // time of the probes
+  bool remembered = false;          // read from the file; no probe ran now
+  std::string file;                 // where it is kept; empty: nowhere
+  std::string note;  // why the file was of no use, or could not be written or removed
 };
 
 /// One sentence without a full stop: what the probes found.
@@ -93,20 +92,20 @@ std::string verdict_folder();
 
 /// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;
-/// Those of Reliance::pairs; brief ones.
+/// The brief probes of Reliance::pairs.
 std::vector<ProbeResult> pair_probes(const GlContext& context);
 
-/// Told in one line that probes are about to run, and why.
+/// Gets one line before probes run: that they run, and why.
 using Say = std::function<void(const std::string& line)>;
 
-/// The verdict that is kept, or else that of `probes`, which keep_verdict() keeps.
-/// A file that is damaged, of somebody else, or about something else is ignored and written anew.
-/// Throws nothing of the file system's; what `probes` throws passes through.
+/// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by
+/// keep_verdict(). A file that is damaged, of somebody else, or about something else is ignored and
+/// written anew. Errors of the file system do not throw; what `probes` throws passes through.
 DeviceVerdict device_verdict(const GlInfo& device, Reliance reliance, const Probes& probes,
                              const Say& say = {});
 
-/// A verdict from the results of probes that have run, kept in place of an older one. Where a probe
-/// broke off and none failed nothing is kept. One that does not hold first removes the older one.
+/// Makes a verdict from the results of probes and keeps it in place of an older one. Keeps nothing
+/// if a probe broke off and none failed. If the verdict does not hold, first removes the older one.
 DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
                            const std::vector<ProbeResult>& results, double ms);
 

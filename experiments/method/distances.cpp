@@ -20,9 +20,9 @@
 namespace farcull {
 namespace {
 
-// A *part* of an object is what triangles that share positions of vertices hold together. It is
-// connected, so where it does not meet a closed mesh, either all of its points lie inside or none:
-// a path from one to another crosses the mesh nowhere, and parity changes only where it does. One
+// A *part* of an object is a connected component of its triangles, joined where they share a vertex
+// position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
+// path between two of them never crosses the mesh, and parity changes only at a crossing. So one
 // vertex of each part decides. What lies inside a closed mesh lies in its box, so boxes settle most
 // pairs.
 Box box_of(const Scene& scene, const Object& object) {
@@ -38,7 +38,7 @@ bool lies_within(const Box& inner, const Box& outer) {
          (inner.hi.array() <= outer.hi.array()).all();
 }
 
-// Of each part of the object the first corner of its first triangle.
+// For each part of the object, the first corner of its first triangle.
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   struct Corner {
     std::array<double, 3> place;
@@ -148,7 +148,7 @@ std::uint64_t count_of_questions(const Scene& scene) {
   return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
-// Each pair of objects takes memory from the start, and more where it is answered.
+// Refuses too many pairs of objects: each takes memory from the start, and more if it is answered.
 void require_few_questions(const Scene& scene, const DistanceOptions& options) {
   if (options.pairs != DistancePairs::objects) return;
   const std::uint64_t questions = count_of_questions(scene);
@@ -173,7 +173,7 @@ std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> q
   return out;
 }
 
-// All of the frame before.
+// The nearest pairs of the previous frame.
 std::vector<NearHint> hints_of(const DistanceMemory* memory) {
   std::vector<NearHint> out;
   if (memory == nullptr) return out;
@@ -210,7 +210,7 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
     if (k == 0 || parts[k - 1].question != parts[k].question) {
       out.push_back(std::move(found));
     } else if (found.closest.squared < out.back().closest.squared) {
-      out.back() = std::move(found);  // of those as near the first part has the first
+      out.back() = std::move(found);  // at equal distance the first part stays
     }
   }
   if (std::isfinite(options.within)) {
@@ -221,7 +221,7 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
   return out;
 }
 
-// Leaves what is among the k nearest of one of its objects.
+// Keeps the distances that are among the k nearest of one of their objects.
 void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& distances) {
   std::vector<bool> wanted(distances.size());
   for (const NearestOfObject& of : nearest_of_objects(scene, distances, k)) {
@@ -301,7 +301,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   const DistanceOptions& options = record.options;
   Stopwatch watch;
   if (progress) progress("boxes");
-  // Some are a little farther apart, as exact arithmetic tells.
+  // Room for pairs that exact arithmetic finds to be a little too far apart.
   const std::size_t room = options.most_pairs + options.most_pairs / 4;
   const ProximityTrees trees(scene, options.threads);
   const std::vector<TrianglePair> near = trees.pairs_within(options.within, room, progress);
@@ -423,7 +423,7 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     if (scene.objects[o].triangle_count == 0) continue;
     std::vector<std::size_t>& of = naming[o];
-    // They are sorted by the other object as they come.
+    // Stable: they come sorted by the other object.
     std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
       return distances[x].closest.squared < distances[y].closest.squared;
     });

@@ -25,13 +25,13 @@ namespace farcull {
 /// that is `self` where they are no neighbours.
 using DistancePairs = DistanceQuestion::Kind;
 
-/// Which of two objects that do not meet lies inside the other: all of its points do, so that of an
-/// object of several parts each part does. unknown: not asked, or the objects collide. not_closed:
-/// the box of one lies in that of the other, which has no inside (verify/inside.h).
+/// Which of two objects that do not meet lies inside the other, with all of its points and so all
+/// of its parts. unknown: not asked, or the objects collide. not_closed: the box of one lies in
+/// that of the other, which has no inside (verify/inside.h).
 using WhichInside = InsideClaim;
 
-/// Answers about insides for one scene, which has to stay as it is. What is found out about an
-/// object is kept.
+/// Tells which object of a scene lies inside another. The scene must not change: what was found
+/// about an object is kept.
 class Insides {
  public:
   explicit Insides(const Scene& scene);
@@ -55,7 +55,7 @@ struct DistanceOptions {
   DistancePairs pairs = DistancePairs::objects;
   std::size_t k = 1;                                        // with `nearest`
   double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
-  bool inside = true;    // tells where an object lies inside another
+  bool inside = true;    // tells whether an object is inside another
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
   /// The most answers; more are an error, since each takes some hundreds of bytes. With `all`:
@@ -91,17 +91,17 @@ struct DistanceRecord {
   double ms = 0;  // of all but the verification
 };
 
-/// What `nearest` answers about one object: its neighbours, the nearest first, of those as far the
-/// lower object first; at most k, fewer where fewer are within the distance asked for.
+/// The answer of `nearest` about one object: its neighbours, the nearest first, at equal distance
+/// the lower object first; at most k, fewer if fewer are within the distance asked for.
 struct NearestOfObject {
   std::uint32_t object = 0;
-  std::vector<std::size_t> distances;  // which of the record's
+  std::vector<std::size_t> distances;  // indices into those of the record
 };
 /// For each object with triangles, in order.
 std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
                                                 std::span<const Distance> distances, std::size_t k);
 
-/// Why the scene holds no two triangles that are asked about; empty where it does.
+/// Why the question is about no two triangles of the scene; empty if it is about some.
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 
 /// What the record claims, for account_distances().
@@ -109,7 +109,7 @@ std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
 /// Throws Error for options that are bad, for a scene in which nothing is asked, and where there
 /// are more answers than most_pairs allows; std::logic_error where the scene breaks validate().
-/// memory: of the frame before, and then of this one; may be null.
+/// memory: holds the previous frame, and on return this one; may be null.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
 

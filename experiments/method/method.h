@@ -34,7 +34,7 @@ class Session;      // session.h
 /// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are set.
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
-/// The method: candidates of the scene that was planned.
+/// Runs the method: finds the candidates of the scene that was planned.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress);
 
@@ -59,23 +59,23 @@ struct Traits {
   FindFunction* find;
 };
 
-/// The entry of the table.
+/// The method's entry in the table.
 const Traits& traits(Method method);
 
 std::span<const Method> all_methods();
 std::string to_string(Method method);
 /// Throws Error naming `option` for an unknown one.
 Method parse_method(const std::string& name, const std::string& option = "{method}");
-/// "far, cullide, ... or exact", of those that `can`.
+/// "far, cullide, ... or exact": the methods for which `can` is true; without `can`, all.
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
 
 inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool chooses_views(Method method) { return traits(method).chooses_views; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
-/// Boxes of objects or of triangles say what it draws.
+/// Whether boxes of objects or of triangles decide what it draws.
 inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
-/// In views, on a canvas or without one.
+/// Whether it looks along views, on a canvas or without one.
 inline bool looks(Method method) { return draws(method) || chooses_views(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }

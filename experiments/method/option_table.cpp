@@ -31,7 +31,7 @@ std::string number(double value) {
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
-// Whether there is such a device is seen when one is needed.
+// Checks the form alone; the device is looked for when it is needed.
 bool is_device(const std::string& device) {
   return device.empty() || is_cpu(device) || device == "gl" || device == "hardware" ||
          device == "software" || device.find_first_not_of("0123456789") == std::string::npos;
@@ -117,7 +117,7 @@ bool take_device(const std::string& text, RunOptions& options) {
 // The words of BoxLevel, in its order.
 constexpr const char* kBoxLevels[] = {"objects", "triangles", "enough"};
 
-// The methods that have an option.
+// Values of Option::serves: the methods that have an option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
@@ -418,7 +418,7 @@ const Option& run_option(std::string_view name) {
 }
 
 std::string option_word(const std::string& name) {
-  // Texts name these too, which are options of single commands.
+  // Options of single commands, which messages name too.
   static constexpr std::string_view kOthers[] = {"compare", "inside", "no_verify",
                                                  "pairs",   "repeat", "within"};
   if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&

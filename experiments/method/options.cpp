@@ -1,4 +1,4 @@
-// Which options go together, which values apply where none is given, and options in words.
+// Checks which options go together, chooses defaults, and puts options in words.
 #include "experiments/method/options.h"
 
 #include <charconv>
@@ -82,15 +82,15 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 BoxLevel boxes_of(const RunOptions& options) {
-  // Where nothing is promised, it is the published form. Nothing is left out with `full`, and of
-  // whole objects only their boxes are asked.
+  // Without a promise the published form is used. `full` leaves nothing out, and where objects
+  // alone are culled only their boxes matter.
   const bool usual =
       fattens(options.method) && promises(options) && !options.full && !options.objects_alone;
   return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
 }
 
 QueryMode query_of(const RunOptions& options) {
-  // One step a triangle: flags would wait for each of them.
+  // These methods draw one step for each triangle, and flags would wait for every step.
   const bool steps = tests_self_alone(options.method);
   const bool flags = options.depth_format == DepthFormat::float32 && !steps;
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);

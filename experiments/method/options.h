@@ -33,7 +33,7 @@ enum class BoxLevel : std::uint8_t { objects, triangles, enough };
 
 struct RunOptions {
   Method method = kDefaultMethod;
-  bool method_is_default = false;  // nobody named it, so the record says why it is this one
+  bool method_is_default = false;  // not named by the user; the record says why it is this one
   int resolution = 0;      // px along the larger side of a view's window; 0: 512, but chosen by the
                            // scene for far-pairs
   RadiusRule radius = {};  // far only
@@ -75,19 +75,19 @@ struct Option {
   const char* type;  // stands for the value in a help, as in "fragment|fixed"; "" for a flag
   std::string help;  // lines of a help
   bool (*serves)(const Traits&);  // which methods have it
-  /// Reads a value; a flag's is "". Returns false where it is none. Throws Error where another
-  /// message says more. Precondition: options.method is set. Null: it is about the scene, and the
-  /// caller reads it.
+  /// Reads a value; a flag's is "". Returns false if the text is no value of the option, or throws
+  /// Error if another message says more. Precondition: options.method is set. Null: the option is
+  /// about the scene, and the caller reads it.
   bool (*take)(const std::string& text, RunOptions& options) = nullptr;
   const char* kind = "";    // a bad value "is no <kind>"
   const char* remedy = "";  // and what to give instead
-  /// The value, as on the command line, where it changes what methods do; only methods that have
-  /// the option take it. Null: methods that do not have the option pass over its value, but for one
-  /// that the user gave.
+  /// The value as on the command line if it changes what methods do, else nothing. Methods without
+  /// the option refuse such a value. Null: they refuse only a value that the user gave, and ignore
+  /// others.
   std::optional<std::string> (*unusual)(const RunOptions&) = nullptr;
   /// Why a method does not have it; null: it "has no meaning" for the method.
   const char* (*why_not)(const Traits&) = nullptr;
-  /// Of the options of a form (docs/methods.md, "Forms of CULLIDE"): copies the value.
+  /// Copies the value; only for options of a form (docs/methods.md, "Forms of CULLIDE").
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
   /// What records hold; null: the table of the record says it elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
@@ -107,14 +107,13 @@ using GivenOptions = std::map<std::string, std::string, std::less<>>;
 
 /// Reads the value of an option into `options`. Throws Error naming it.
 void take_option(std::string_view name, const std::string& text, RunOptions& options);
-/// Reads all that are in the table and in RunOptions, then validates. Throws Error naming the
-/// option that is bad.
+/// Reads all given options that RunOptions holds, then validates. Throws Error naming the option
+/// that is bad.
 RunOptions read_options(const GivenOptions& given, RunOptions options = {});
 /// Throws Error naming an option whose value is out of its range.
 void require_range(const RunOptions& options);
-/// The same, and where options do not go together, and
-/// where the method does not have an option that was given, or whose value is unusual. Opens no
-/// device.
+/// Throws Error as require_range(), for options that do not go together, and for an option that the
+/// method does not have but that was given or has an unusual value. Opens no device.
 void validate(const RunOptions& options, const GivenOptions& given = {});
 
 /// A whole number of pixels, 1 or more. Throws Error naming `option`.
@@ -125,7 +124,7 @@ RadiusRule parse_radius(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming repeat.
 int parse_repeat(const std::string& text);
 
-/// px; far-pairs takes no more. Nothing depends on it but time: a window has the square of it.
+/// The largest resolution of far-pairs, in px. It limits time alone: a window has its square.
 constexpr int kMostPairResolution = 16384;
 /// Throws Error naming `option` for more.
 void require_pair_resolution(int resolution, const std::string& option = "{resolution}");
@@ -138,7 +137,7 @@ inline constexpr const char* kDeviceHelp =
     "lists; default GL where hardware answers and keeps the\n"
     "assumptions, else native";
 
-/// What applies where the option is not given. resolution_of: 0 and views_of: "" where the scene
+/// The value given, else the default that applies. resolution_of: 0 and views_of: "" if the scene
 /// chooses.
 int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
@@ -151,7 +150,8 @@ bool promises(const RunOptions& options);
 /// The options of a form that are not as usual, as on the command line: "--rounds 1 --clear all";
 /// empty where all are.
 std::string form_text(const RunOptions& options);
-/// The same without what the method cannot take, so that one choice serves several methods.
+/// The options without those of a form that the method cannot take, so that one choice serves
+/// several methods.
 RunOptions with_fitting_form(RunOptions options);
 /// "published", "budget", or the factor on the budget radius.
 std::string radius_text(const RadiusRule& radius);

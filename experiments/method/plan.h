@@ -14,15 +14,15 @@
 
 namespace farcull {
 
-/// Of the methods that draw.
+/// The plan of a method that draws.
 struct DrawPlan {
   Regions regions;
   std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
   CullSettings settings;            // but for the fattener
   bool self = false;                // triangles of marked objects are owners
   Patches patches;                  // of far, where an object is tested against itself; else empty
-  /// All pairs whose boxes overlap, where boxes of triangles come before drawing; the owners of
-  /// `patches` are set then. Empty: boxes of objects alone do.
+  /// All pairs whose boxes overlap, if boxes of triangles come before drawing; the owners of
+  /// `patches` are then set. Empty: only boxes of objects come before it.
   std::optional<PairsToDraw> pairs = {};
 };
 
@@ -44,8 +44,8 @@ struct Plan {
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
           const Progress& progress = {}, PairMemory* memory = nullptr);
 
-/// Throws Error where an object of the scene is tested against itself and the method does not look
-/// for that, or none is and it looks for nothing else.
+/// Throws Error if an object is tested against itself and the method cannot do that, or if none is
+/// and the method can do nothing else.
 void require_scene(const Scene& scene, Method method);
 
 }  // namespace farcull

@@ -26,16 +26,16 @@ namespace farcull {
 
 /// The device that answered.
 struct UsedDevice {
-  std::optional<GlInfo> gl;  // empty: none, or the cores of the CPU
-  bool cpu = false;          // on the cores of the CPU
-  std::string lanes = {};    // the instruction set of the native canvas; empty for others
-  int depth_bits = 0;        // of the canvas
-  std::string note;          // why no device was used, where none was; for far-pairs, why this one
+  std::optional<GlInfo> gl;        // empty: none, or the cores of the CPU
+  bool cpu = false;                // on the cores of the CPU
+  std::string lanes = {};          // the instruction set of the native canvas; empty for others
+  int depth_bits = 0;              // of the canvas
+  std::string note;                // why no device was used; for far-pairs, why this one
   std::optional<Reliance> relies;  // on a GL device, for the promise
 };
 
-/// Of sweep and prune: triangles of the objects that their boxes leave, which is where I-COLLIDE as
-/// published ends.
+/// For sweep and prune: how many triangles the objects have that their boxes leave, which is the
+/// result of I-COLLIDE as published.
 struct SweptObjects {
   std::uint64_t triangles = 0;
 };
@@ -43,11 +43,10 @@ struct SweptObjects {
 struct Candidates {
   std::vector<TrianglePair> pairs;       // sorted; empty where `decided` is set
   std::uint64_t count = 0;               // of candidate pairs
-  std::uint64_t ignored = 0;             // candidates that were removed: of objects that are
-                                         // ignored
-  std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; of far-pairs
-                                         // filled by run(), from the pairs; empty where
-                                         // `decided` is set, which keeps all
+  std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
+  std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for far-pairs
+                                         // run() fills it from the pairs; empty if `decided`
+                                         // is set, as all are kept
   std::uint64_t triangle_count = 0;      // of the potentially colliding set
   std::uint64_t object_count = 0;
   std::optional<Collisions> decided;  // of a method that decides each candidate as it comes
@@ -55,13 +54,13 @@ struct Candidates {
   std::variant<std::monostate, std::vector<ViewReport>, std::vector<PairView>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
   UsedDevice device;
-  CanvasWork asked;  // of a drawing method: of the GL device; all 0 for others
+  CanvasWork asked;  // work of the GL device in drawing; all 0 for other methods
   std::vector<Stage> trace;
   double setup_ms = 0;    // context, shaders; 0 where an earlier run had made them
   double ms = 0;          // of finding, without setup
   double decided_ms = 0;  // of deciding, where `decided` is set; not part of ms
 
-  /// Of the variant; empty for another kind.
+  /// The views in `by`; empty if it holds another kind.
   const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }
   const std::vector<PairView>& pair_views() const { return all_of<PairView>(); }
   std::optional<std::uint64_t> swept_triangles() const {

@@ -11,14 +11,14 @@
 namespace farcull {
 namespace {
 
-// Sets the triangles and objects that are left from the candidate pairs.
+// Sets which triangles and how many objects are in a candidate pair.
 void count_kept(const Scene& scene, Candidates& found) {
   found.triangles = members_of(found.pairs, scene.triangles.size());
   found.triangle_count = found.triangles.size();
   found.object_count = count_objects(scene, found.triangles);
 }
 
-// Plans and finds. The plan ends here, to make room for the stages behind it.
+// Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const Plan planned =
       plan(scene, record.options, session.threads(), progress, session.pair_memory());
@@ -31,7 +31,8 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress, 
   record.ms.cull = planned.ms + record.found.ms;
 }
 
-// Takes the answers of a method that decides as it finds, which has its stage in the trace.
+// Decides the candidates, or takes the answers of a method that decides as it finds, whose stage is
+// in the trace already.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   bool decide_neighbours, Record& record) {
   const RunOptions& options = record.options;
@@ -155,7 +156,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     use.filter(found.pairs);
     found.count = found.pairs.size();
   }
-  // Methods that return only pairs leave it to us which triangles those have.
+  // If the method returns only pairs, their triangles are counted here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
   if (only_pairs && !use.answer_only) count_kept(scene, found);
   decide_stage(scene, session, progress, use.decide_neighbours, record);

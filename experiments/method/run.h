@@ -14,9 +14,9 @@
 
 namespace farcull {
 
-/// The method: candidates of the scene that was planned, without those of ignored objects. Throws
-/// Error for any fault of the device;
-/// after any exception the session has forgotten its device, and can be used again.
+/// Runs the method: candidates of the planned scene, without those of ignored objects. Throws Error
+/// for any fault of the device. After any exception the session has forgotten its device, and can
+/// be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {});
 
@@ -47,7 +47,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit, FrameDecider* frames);
 
-/// As much contact detail as is asked for, one for each pair.
+/// One contact for each pair, with the detail asked for; empty if that is `none`.
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
                                       ContactDetail contacts, unsigned threads);
 

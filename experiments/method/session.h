@@ -54,14 +54,14 @@ class Session {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
   const GlContext& context();
-  /// Whether the context's device keeps the assumptions; probed where no verdict is kept. GL state
-  /// is not kept.
+  /// Whether the context's device keeps the assumptions; probed if no verdict is kept. GL state is
+  /// not restored.
   const DeviceVerdict& verdict(Reliance reliance);
   /// Where the canvases are: on the cores of the CPU, or on the GL device of context().
   const CanvasDevice& canvas_device();
-  /// The canvas for the drawables of this fattener, by its name. The query mode is GL's alone.
+  /// The canvas for the drawables of this fattener, by its name. Only GL has query modes.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
-  /// px; the largest resolution of its canvases.
+  /// The largest resolution of its canvases, in px.
   int max_resolution();
   /// Throws Error where a device that was named does not answer.
   PairDevice& pairs();
@@ -73,9 +73,9 @@ class Session {
   PairMemory* pair_memory() { return frames_ ? &pair_workspace_.memory : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases, the pair device and the context: after a failure nothing that lies on a
-  /// device is believed, nor what was kept of the last frame, which a device helped to find. Each
-  /// is made again when it is next needed.
+  /// Drops the canvases, the pair device and the context, since after a failure nothing on a device
+  /// is trusted; also what was kept of the last frame, which a device helped to find. Each is made
+  /// again when it is next needed.
   void forget_device();
 
  private:
@@ -89,7 +89,7 @@ class Session {
   std::optional<CanvasDevice> canvas_device_;
   std::map<std::tuple<std::string, DepthFormat, QueryMode, bool>, std::unique_ptr<Canvas>>
       canvases_;
-  std::optional<PairDevice> pairs_;  // these two go before the context
+  std::optional<PairDevice> pairs_;  // destroyed before context_, as canvases_
   PairWorkspace pair_workspace_;
   std::unique_ptr<FrameDecider> frames_;
   SweepPrune sweep_;

@@ -37,7 +37,7 @@ class Boxes : public btPrimitiveManagerBase {
     box.m_min.setValue(from.lo.x(), from.lo.y(), from.lo.z());
     box.m_max.setValue(from.hi.x(), from.hi.y(), from.hi.z());
   }
-  void get_primitive_triangle(int, btPrimitiveTriangle&) const override {}  // of narrow phases
+  void get_primitive_triangle(int, btPrimitiveTriangle&) const override {}  // for narrow phases
 
  private:
   std::span<const Box> boxes_;
@@ -46,7 +46,7 @@ class Boxes : public btPrimitiveManagerBase {
 /// A tree of boxes, as search_trees() takes it; primitive i is called first + i.
 class BulletTree {
  public:
-  /// There is at least one box. Boxes are not kept.
+  /// Precondition: at least one box. The boxes are not kept.
   BulletTree(std::span<const Box> boxes, std::uint32_t first)
       : tree_(std::make_unique<btGImpactBvh>()), first_(first) {
     Boxes asked(boxes);

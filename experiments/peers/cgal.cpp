@@ -139,8 +139,8 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
   return inside;
 }
 
-/// The boxes of two objects after another, or of one with itself, clipped to the common part of the
-/// objects' boxes.
+/// Joins the boxes of one pair of objects after the other, or of an object with itself, clipped to
+/// the common part of the objects' boxes.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   // With one pair of objects there is nothing to divide but the decisions.
   const bool parallel = threads > 1 && raw.objects.size() > 2;
@@ -187,8 +187,8 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   return candidates.finish();
 }
 
-/// Asks the tree for the triangles whose boxes meet the box of a query, on the way down by its box
-/// or by the query itself.
+/// Finds the triangles whose boxes meet the box of a query. Nodes are tested against that box; if
+/// the query is a triangle, against the triangle too.
 template <class Query, class Found>
 struct Walk {
   CGAL::Bbox_3 box;
@@ -207,8 +207,8 @@ struct Walk {
   }
 };
 
-/// A tree of the smaller side, asked with the triangles of the other one; or of all, asked with
-/// all.
+/// With two sides, searches a tree of the smaller one for each triangle of the other; else a tree
+/// of all triangles for each of them.
 template <bool by_triangle>
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;

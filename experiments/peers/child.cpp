@@ -1,5 +1,5 @@
-// Starts, feeds, times and ends a process. Nothing of what it does can stop the caller: pipes do
-// not block, and a process that is late is killed with its group.
+// Starts, feeds, times and ends a process, which cannot block the caller: pipes do not block, and a
+// process that is late is killed with its group.
 #include "experiments/peers/runner.h"
 
 #include <fcntl.h>
@@ -66,8 +66,8 @@ void limit(int resource, std::uint64_t soft, std::uint64_t hard) {
 
 constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
 
-/// Between fork and exec: only what a process with threads may do there.
-/// `failed` gets the error where there is no such program.
+/// Runs between fork and exec, so it calls only async-signal-safe functions: the process has
+/// threads. `failed` gets the error if there is no such program.
 [[noreturn]] void become(char* const* argv, const ChildLimits& limits, int in, int out, int err,
                          int failed) {
   ::setpgid(0, 0);
@@ -87,7 +87,7 @@ constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
   ::_exit(127);
 }
 
-/// The last that was printed, on one line.
+/// The end of what was printed, on one line.
 std::string last_words(int file, off_t most = 400) {
   const off_t size = ::lseek(file, 0, SEEK_END);
   std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, most)), '\0');
@@ -241,7 +241,7 @@ class Child {
     pid_ = -1;
     return true;
   }
-  /// Its output is at its end: it has a while to end itself.
+  /// Called at the end of its output: gives it some time to end by itself.
   void finish() {
     wait_until(limits_.line_s);
     const pid_t group = pid_;
@@ -272,11 +272,11 @@ class Child {
     const double used = static_cast<double>(usage_.ru_utime.tv_sec + usage_.ru_stime.tv_sec);
     if (signal == SIGXCPU || (signal == SIGKILL && used >= static_cast<double>(limits_.cpu_s)))
       return used_up(end(How::time, "CPU time beyond the limit"));
-    // A process begins with the peak of the one that started it, which says nothing.
+    // A process begins with the peak of its parent, which says nothing about its own memory.
     const bool nearly_all =
         limits_.memory_mib > 0 && usage_.ru_maxrss > parents_peak_ &&
         static_cast<std::uint64_t>(usage_.ru_maxrss) / 1024 * 4 >= limits_.memory_mib * 3;
-    // Node prints a long stack after the words.
+    // Node prints a long stack trace after the message.
     if (says_no_memory(last_words(errors_.get(), 1 << 14)) || nearly_all || signal == SIGKILL)
       return used_up(end(How::memory, reason));
     return end(How::crash, reason);

@@ -130,7 +130,7 @@ constexpr const char* kSource =
     "Bullet 2.83 Physics SDK Manual (the newest that Bullet 3 has), Collision Margin and General "
     "Tips; btCollisionWorld.h, contactPairTest()";
 
-// apart: units, of triangles that may be reported all the same.
+// apart: how far apart triangles may be and still be reported, in units.
 template <Margin margin>
 Contestant contestant(const std::string& name, const std::string& with, double apart,
                       const std::string& says) {

@@ -38,7 +38,7 @@ class Surface {
   }
 
  private:
-  /// Made with the first face that has it: the surface destroys what belongs to a face.
+  /// Makes a vertex only with its first face: the surface destroys only what belongs to a face.
   GtsVertex* vertex(const Scene& scene, std::uint32_t v) {
     const Vec3& p = scene.vertices[v];
     if (vertices_[v] == nullptr)

@@ -1,6 +1,6 @@
 // farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
-// names, or on the cores of the CPU: there far-pairs runs by the library, the others as `farcull
-// run` runs them.
+// names, or on the cores of the CPU. Methods run as by `farcull run`, but for far-pairs on the
+// cores of the CPU, which runs by the library.
 #include <algorithm>
 #include <cstdlib>
 #include <map>

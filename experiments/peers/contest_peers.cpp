@@ -1,5 +1,5 @@
 // The libraries of `farcull bench` as contestants: FCL and ODE with their own tests of two
-// triangles, and broad phases with exact tests behind them. What is lost with exact tests behind it
+// triangles, and broad phases followed by exact tests. A pair that is lost in spite of exact tests
 // is lost by the broad phase.
 #include "experiments/peers/peer.h"
 

@@ -71,7 +71,7 @@ bool separated_by_edge(const Flat<T>& a, const Flat<T>& b) {
   return false;
 }
 
-/// Two triangles of one plane with the normal n: without the coordinate in which n is longest.
+/// Whether two triangles in a plane with the normal n overlap; drops the longest coordinate of n.
 template <class T>
 bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& b) {
   const int drop = longest_axis(n);
@@ -171,7 +171,7 @@ Alone alone_of(const std::array<T, 3>& s) {
   return {};
 }
 
-/// The triangle from its lone corner on, its sense of rotation kept.
+/// The triangle with its lone corner first, in the same orientation.
 template <class T>
 Corners<T> begun_at(const Corners<T>& t, int corner) {
   return {t[corner], t[(corner + 1) % 3], t[(corner + 2) % 3]};
@@ -192,7 +192,7 @@ bool guigue_devillers(const SuitePair& pair) {
   const Alone in_a = alone_of(of_a), in_b = alone_of(of_b);
   a = begun_at(a, in_a.corner);
   b = begun_at(b, in_b.corner);
-  // Both lone corners on the positive side of the other triangle, which is turned for that.
+  // Turns each triangle so that the lone corner of the other one is on its positive side.
   if (in_a.negative) std::swap(b[1], b[2]);
   if (in_b.negative) std::swap(a[1], a[2]);
   // The intervals on the common line overlap.

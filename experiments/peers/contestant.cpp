@@ -166,7 +166,7 @@ void answer(int to, const std::string& text) {
   }
 }
 
-/// Calls `ask`, which gives the answer and sets the nanoseconds after a tabulator, or a refusal.
+/// The answer that `ask` gives, or a refusal if it throws.
 template <class Ask>
 std::string asked(std::string_view number, const Ask& ask) {
   const std::string begin = std::string(number) + "\t";

@@ -49,11 +49,11 @@ struct ContestantCard {
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
   bool promises = false;               // ours alone: a miss breaks a promise
   bool pairs = false, meshes = false;  // what it can be asked
-  std::uint64_t memory_mib = 4096;     // of addresses, that its process may have
+  std::uint64_t memory_mib = 4096;     // of address space that its process may have
   std::string call = {};               // the function that is called, and with what
   std::string says = {};               // what its documentation says of exactness and of touching
   std::string source = {};             // where it says that; others' contestants may leave it out
-  std::string use = {};                // where it is right to be used
+  std::string use = {};                // where it is the right choice
 };
 
 /// Lines `KEY VALUE`, and an empty one at the end. The keys are the names above, but `memory`
@@ -81,8 +81,8 @@ struct Contestant {
 /// that is no question; 3 without memory.
 int contest(int argc, char** argv, std::vector<Contestant> contestants);
 
-/// Asks about every pair of objects, and about each object with itself where it is tested so;
-/// objects that are equal (a == b) mean itself. A library of two meshes needs no more.
+/// Calls `ask` for every pair of objects, and for each object that is tested against itself with
+/// a == b. That is all that a library of two meshes needs.
 void for_each_object_pair(const Scene& scene,
                           const std::function<void(const Object& a, const Object& b)>& ask);
 

@@ -227,7 +227,7 @@ Point nearest_of(const Point& p, const Point& a, const Point& b, const Point& c)
   return a + (vb / whole) * ab + (vc / whole) * ac;
 }
 
-/// One object: its hierarchy, and what Embree keeps of its geometry. No vertex lacks a triangle.
+/// One object: its hierarchy, and what Embree keeps of its geometry. Each vertex has a triangle.
 struct TreeOfObject {
   std::uint32_t number = 0;  // of the object
   RTCScene scene = nullptr;

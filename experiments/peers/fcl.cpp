@@ -1,8 +1,8 @@
 // FCL, in three ways: its hierarchies with exact decisions behind them (broad), as its users run it
 // with its own test of two triangles, which rounds (narrow), and its distances.
 //
-// FCL's headers declare the templates that its library holds, all of them in double; what is made
-// here is the rest.
+// FCL's headers declare the templates that its library holds, all of them in double; the rest is
+// instantiated here.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -205,8 +205,8 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
     const auto [a, b] = tasks[i];
     collide_two<Scalar>(objects.models[a], objects.models[b], found[i]);
     if (a != b) return;
-    // A model with itself: every pair in both orders, every triangle with itself and with its
-    // neighbours.
+    // FCL reports of a model with itself every pair in both orders, and every triangle with itself
+    // and with its neighbours.
     std::erase_if(found[i], [&scene](const TrianglePair& pair) {
       return pair.a >= pair.b || share_position(scene.corners(pair.a), scene.corners(pair.b));
     });

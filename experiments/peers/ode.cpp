@@ -48,8 +48,8 @@ void start_ode() {
   }
 }
 
-/// The merged contacts of two objects: ODE tells the triangles of the contact that it has and of
-/// the one that it merges into that, of the first object and then of the second.
+/// The merged contacts of two objects. For each merge ODE names the triangles of the contact that
+/// it has and of the one that it merges into it: those of the first object, then of the second.
 struct Merged {
   dGeomID first = nullptr;
   int had = 0;

@@ -86,8 +86,8 @@ struct DistancePeer {
 /// Broad phases, each followed by the exact decisions of verify/exact.h, but for CGAL's
 /// self_intersections(), which decides exactly by itself. They run at their best settings. Whatever
 /// can be divided runs on the threads of the bench, and candidates are decided in bounded parts, so
-/// that tens of millions of overlapping boxes are never stored. Those included that this build was
-/// made without. `threads` >= 1.
+/// that tens of millions of overlapping boxes are never stored. The list has those too that this
+/// build was made without. `threads` >= 1.
 std::vector<Peer> all_peers(unsigned threads);
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
@@ -99,7 +99,7 @@ std::vector<Peer> all_peers(unsigned threads);
 /// `refuses` names what a library does not do at all, since they vouch for nothing.
 std::vector<Peer> narrow_peers();
 
-/// Distances, those included that this build was made without.
+/// Peers for distances, those too that this build was made without.
 ///   fcl-double, fcl-float  FCL's distance() of two OBBRSS hierarchies; with `nearest` behind its
 ///                          dynamic tree of boxes
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
@@ -120,8 +120,8 @@ LibraryPeers embree_library();
 LibraryPeers bullet_library();
 LibraryPeers ode_library();
 
-/// CGAL's exact predicate by itself, as its users call it: what decide() falls back to. Neither may
-/// be degenerate.
+/// CGAL's exact predicate by itself, as its users call it: what decide() falls back to.
+/// Precondition: neither triangle is degenerate.
 bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 // For the files that adapt a library: which triangles are tested with which, the exact decision of
@@ -158,7 +158,7 @@ std::string refuse_degenerate(const Scene& scene, const char* reason);
 /// A scene as a peer prepares it, in its own time: the boxes of the triangles, and which of them
 /// are tested with which.
 struct PeerScene {
-  /// Without boxes where the peer has others.
+  /// with_boxes: false for a peer that makes its own.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
 
   const Scene& scene;

@@ -87,7 +87,7 @@ class PairAsker {
       // A process that answered others may have used its limit up with them: this question is asked
       // again, as the first of a new one.
       if (end.used_up && next > first) continue;
-      // The others may have been in its pipe, and are asked in a new one.
+      // Later questions may have been in its pipe; a new process gets them.
       answers[next++] = {outcome_of(end.how), 0, end.reason};
       ++deaths;
     }
@@ -118,7 +118,7 @@ class PairAsker {
       return true;
     };
     ChildLimits limits = child_limits(invited_, limits_);
-    // Once it has started, the program and its libraries are in memory.
+    // After the first start the program and its libraries are in memory, so a start is faster.
     if (processes > 1) limits.start_s = std::min(limits.start_s, 2 * limits.line_s);
     return run_child(command_of(invited_, "pairs"), limits, more, line);
   }
@@ -284,7 +284,7 @@ PairsAnswer ask_pairs(const Invited& invited, std::span<const SuitePair> pairs,
   std::reverse(again.begin(), again.end());
   const std::vector<ContestAnswer> second = asker.ask(again);
   for (std::size_t i = 0; i < again.size(); ++i) {
-    // No answer, where there was one before, is another one.
+    // If the second time brings no answer, it counts as a different one.
     if (second[i].outcome == ContestOutcome::not_asked) continue;
     ++out.asked_twice;
     if (second[i].outcome != out.answers[again[i]].outcome) out.differing.push_back(again[i]);

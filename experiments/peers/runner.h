@@ -21,23 +21,22 @@ struct ChildLimits {
   double start_s = 60;           // wall clock until the first line
   double line_s = 10;            // from one line to the next
   std::uint64_t cpu_s = 3600;    // CPU time
-  std::uint64_t memory_mib = 0;  // of addresses; 0: no limit
+  std::uint64_t memory_mib = 0;  // of address space; 0: no limit
 };
 
 struct ChildEnd {
   enum class How : std::uint8_t { peace, crash, time, memory } how = How::peace;
   std::string reason;  // but for peace: the signal or the status, and the last that it printed
-  /// A limit of the whole process ended it, of CPU time or memory, and not that of one line: what
-  /// it did before may have used that up.
+  /// A limit of the whole process (CPU time or memory) ended it, not that of one line: what it did
+  /// before may have used it up.
   bool used_up = false;
 };
 
 /// Starts `command`, whose first word is a path or looked for in PATH, in a process group of its
 /// own. `more` gives the next part of its input, or nothing at the end of it. `line` is called with
-/// each whole line of its standard output, without the newline; where it returns false, the
-/// line was none that may be there, and the group is killed (crash). All of the group has
-/// ended on return, and also where `line` throws. Throws Error where no process can be
-/// made, or there is no such program.
+/// each whole line of its standard output, without the newline; false means that the line is not
+/// allowed, and kills the group (crash). All of the group has ended on return, also if `line`
+/// throws. Throws Error if no process can be made, or if there is no such program.
 ChildEnd run_child(const std::vector<std::string>& command, const ChildLimits& limits,
                    const std::function<std::string()>& more,
                    const std::function<bool(std::string_view)>& line);
@@ -58,7 +57,7 @@ struct ContestLimits {
   double start_s = 60;           // the same to the first answer of the first process; of later ones
                                  // at most twice answer_s
   std::uint64_t cpu_s = 3600;    // of a process
-  std::uint64_t memory_mib = 0;  // of addresses; 0: as the card says
+  std::uint64_t memory_mib = 0;  // of address space; 0: as the card says
   /// When so many processes ended badly, the questions that are left are not asked.
   std::size_t most_deaths = 100;
 };

@@ -68,12 +68,11 @@ struct PairFault {
 /// The number of characters of the coordinates in decimal: what is minimized.
 std::size_t cost_of(const SuitePair& pair);
 
-/// A pair at which the contestant has the same fault, also where it is the only one that a process
-/// is asked about; empty where the fault depends on what was asked before. It is one of which the
-/// oracles say as before whether it meets, and whose coordinates have as few characters as a search
-/// of at most `rounds` rounds finds: it moves and scales both triangles, rounds coordinates, and
-/// takes whatever keeps the fault. A round asks one process. Corners that are shared stay so. The
-/// kind is that of the new pair.
+/// A simpler pair with the same fault, also if it is the only one that a process is asked about;
+/// empty if the fault depends on what was asked before. By the oracles it meets or not as before. A
+/// search of at most `rounds` rounds minimizes the characters of its coordinates: it moves and
+/// scales both triangles, rounds coordinates, and takes whatever keeps the fault. A round asks one
+/// process. Shared corners stay shared. The kind is that of the new pair.
 std::optional<SuitePair> minimized(const Invited& invited, const PairFault& fault,
                                    const ContestLimits& limits, int rounds = 8);
 

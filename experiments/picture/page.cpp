@@ -1,5 +1,5 @@
 // Collects the triangles of each frame, the colliding pairs and the answers of each step, and puts
-// them into the page of web/ as compressed blocks and a text of JSON that names the blocks. A block
+// them into the page of web/ as compressed blocks, with a JSON text that names the blocks. A block
 // of numbers holds their differences by byte, compressed by zlib and written as Base64.
 #include "experiments/picture/picture.h"
 
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& bo
   std::vector<std::uint32_t> out;
   out.reserve(3 * points.size());
   for (int axis = 0; axis < 3; ++axis) {
-    // Halves, since the extent of a box of doubles may be beyond them.
+    // Uses halves, since the extent of a box of doubles may overflow.
     const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
     for (const Vec3& p : points) {
       const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;
@@ -76,7 +76,7 @@ namespace {
 
 using nlohmann::json;
 
-// Blocks of the page, each a script element that no browser runs.
+// Blocks of the page, each a script element that browsers do not run.
 class Blocks {
  public:
   std::string add(const std::string& text) {
@@ -97,7 +97,7 @@ json colour(const Rgba& c) { return {c.r, c.g, c.b}; }
 
 json vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-// JSON inside a script element: no text of it may look like the element's end.
+// JSON inside a script element: its text must not look like the element's end.
 std::string for_script(const json& data) {
   std::string out;
   for (const char c : data.dump(-1, ' ', true, json::error_handler_t::replace))
@@ -105,7 +105,7 @@ std::string for_script(const json& data) {
   return out;
 }
 
-// Replaces the one place where the page has `mark`.
+// Replaces the only occurrence of `mark` in the page.
 void put(std::string& page, const std::string& mark, std::string_view text) {
   const std::size_t at = page.find(mark);
   if (at == std::string::npos) throw std::logic_error("page without " + mark);
@@ -159,7 +159,7 @@ class PageMaker {
       a.push_back(pair.a);
       b.push_back(pair.b);
     }
-    // A byte each: its place in `contacts` of finish().
+    // One byte per pair: its index in `contacts` of finish().
     std::string contacts;
     for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
     entry["pairs"] = pairs.size();
@@ -220,12 +220,12 @@ class PageMaker {
   }
 
  private:
-  // The direction that stays upwards when the reader turns the scene.
+  // The upward direction while the reader turns the scene.
   Vec3 world_up() const {
     const View view = camera(arguments_.picture);
     const std::string& up = arguments_.picture.up;
     const Vec3 given = parse_view(up.empty() ? "y" : up).rows.row(2);
-    // The default may be the direction of sight, and then camera() took another one.
+    // If the default is the direction of sight, camera() has chosen another one.
     return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
   }
 
@@ -247,7 +247,7 @@ class PageMaker {
     for (long frame = range.first; frame <= range.last; ++frame) box_.add(box_of(source.at(frame)));
   }
 
-  // Corners and triangles; the latter only where they are not those of the frame before.
+  // Corners and triangles; triangles only if they differ from those of the previous frame.
   json geometry(const Scene& scene) {
     json out = {{"vertices", scene.vertices.size()},
                 {"positions", blocks_.add(packed_numbers(quantized(scene.vertices, box_)))}};

@@ -1,6 +1,6 @@
 // Parts of every panel: triangles painted over an image, missed triangles with rings around them,
-// and the words above a panel. The panel of --view-depth runs one view alone, reads its stored
-// depths back and draws them pixel by pixel, with the triangles that the view culls over them.
+// and the text above a panel. The panel of --view-depth runs only one view, reads its stored depths
+// back and draws them pixel by pixel, with the triangles that the view culls over them.
 #include "experiments/picture/panel.h"
 
 #include <fmt/format.h>
@@ -23,10 +23,10 @@ namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
 // A disc of 2 sqrt(2) px contains a whole pixel wherever it lies: half a diagonal from its middle
-// to that of the pixel, half a diagonal to its corners. So the colour of a miss is there, unmixed.
+// to that of the pixel, half a diagonal to its corners. So one pixel has the pure colour.
 constexpr double kWholePixel = 2.83;
 
-// Groups of missed triangles that lie close together in the picture.
+// Groups missed triangles that are close together in the picture.
 class Clusters2d {
  public:
   explicit Clusters2d(double reach) : reach_(reach) {}
@@ -49,7 +49,7 @@ class Clusters2d {
     }
   };
 
-  // Cells that touch, corners included, are one group.
+  // Cells that touch, also at corners, form one group.
   std::vector<Group> groups() const {
     std::vector<Group> out;
     std::map<std::pair<long, long>, bool> done;
@@ -101,7 +101,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   if (missed.empty()) return 0;
   const double line = line_of(window);
   std::vector<PictureTriangle> over;
-  // Misses that are farther apart than a ring is wide get rings of their own.
+  // Misses farther apart than the width of a ring get their own rings.
   const double ring = 11 * line;
   Clusters2d clusters(ring);
   for (const std::uint32_t t : missed) {
@@ -120,7 +120,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   std::uint64_t rings = 0;
   for (const Clusters2d::Group& group : clusters.groups()) {
     const double size = std::max(group.x1 - group.x0, group.y1 - group.y0);
-    if (size > 2 * ring) continue;  // seen without
+    if (size > 2 * ring) continue;  // visible without a ring
     draw_ring(image, 0.5 * (group.x0 + group.x1), 0.5 * (group.y0 + group.y1),
               0.5 * size + 0.6 * ring, std::max(1.5, line), kMissedColour);
     ++rings;
@@ -180,11 +180,11 @@ namespace {
 
 constexpr Rgba kEmpty = {255, 255, 255}, kNear = {244, 244, 245}, kFar = {48, 52, 62},
                kBoth = {0, 112, 186}, kFirst = {232, 160, 32}, kSecond = {128, 92, 190};
-constexpr double kOpacity = 0.4;  // the depth shows through
+constexpr double kOpacity = 0.4;  // of triangles over the depth
 
 struct ViewRun {
   Window window;                         // of the canvas
-  std::vector<float> depth;              // height rows from below, 1 where nothing is stored
+  std::vector<float> depth;              // height rows from below; 1 if nothing is stored
   std::vector<std::uint32_t> triangles;  // that can take part
   Candidates found;
 };
@@ -194,7 +194,7 @@ ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Se
   options.depth_format = DepthFormat::float32;
   if (takes_boxes(options.method)) options.boxes = BoxLevel::objects;  // the published form
   Plan planned = plan(scene, options);
-  // The method's own offset alone, to the end, without clusters: the picture is about this view.
+  // Only the method's own offset, to the end, without clusters: the picture shows this view.
   auto& work = std::get<DrawPlan>(planned.work);
   work.settings.enough = 0;
   work.settings.clusters = {};
@@ -227,8 +227,8 @@ ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Se
   return out;
 }
 
-// The canvas's pixels, each a square of `scale` px (a part of one where the panel is smaller), the
-// nearest light, the farthest dark.
+// The canvas's pixels as squares of `scale` px (a fraction if the panel is smaller); the nearest is
+// light, the farthest dark.
 Image depth_image(const ViewRun& run, int width, int height, double scale, bool mirrored) {
   float nearest = 1, farthest = 0;
   for (const float d : run.depth) {
@@ -241,7 +241,7 @@ Image depth_image(const ViewRun& run, int width, int height, double scale, bool 
   const int w = run.window.width, h = run.window.height;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      // From the middle, which is the middle of the canvas's window.
+      // Offsets from the middle, which is the middle of the canvas's window.
       const int dx = static_cast<int>(std::floor(0.5 * w + (x + 0.5 - 0.5 * width) / scale));
       const int j = static_cast<int>(std::floor(0.5 * h - (y + 0.5 - 0.5 * height) / scale));
       const int i = mirrored ? w - 1 - dx : dx;
@@ -256,7 +256,7 @@ Image depth_image(const ViewRun& run, int width, int height, double scale, bool 
   return out;
 }
 
-// Explains the colours that the panel has.
+// Explains the colours in the panel.
 void add_legend(DrawnPanel& panel, bool fattened) {
   const PanelResult& result = panel.result;
   panel.sheet.legend.push_back({.sign = LegendEntry::Sign::ramp,
@@ -289,7 +289,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
   const double fit = std::min(static_cast<double>(arguments.width) / run.window.width,
                               static_cast<double>(arguments.height) / run.window.height);
   const double scale = fit >= 1 ? std::floor(fit) : fit;
-  // The canvas may look at the mirror image: its depth grows where an eye's would, its x may not.
+  // The canvas may show a mirror image: depth grows away from the eye, but x may be reversed.
   const bool mirrored = view.rows.determinant() > 0;
   Window window = run.window;
   if (mirrored) window.view.rows.row(0) *= -1;

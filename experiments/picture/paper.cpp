@@ -1,6 +1,6 @@
-// One pixel, one triangle: its ball, its proxy, its solid, its depth interval. SVG elements are
-// appended to a text. Coordinates have two decimals, so that a drawing is the same text on every
-// machine.
+// Figures of one pixel and one triangle: its ball, its proxy, its solid, its depth interval. SVG
+// elements are appended to a text. Coordinates have two decimals, so that a drawing is the same
+// text on every machine.
 #include "experiments/picture/paper.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@
 namespace farcull {
 namespace {
 
-// Without "-0.00", which would depend on how zero was reached.
+// Never returns "-0.00", whose sign would depend on how zero was computed.
 std::string number(double x) {
   const std::string text = fmt::format("{:.2f}", x);
   return text == "-0.00" ? "0.00" : text;
@@ -136,8 +136,8 @@ constexpr const char* kExact =
 constexpr const char* kPixel = R"(fill="#fe9" stroke="#a80" stroke-width="2")";
 const std::vector<DrawnPoint> kPixelCorners = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
-// A window of 8 x 8 px, one of its pixels a unit of the world, on a device with the coarsest grid
-// that OpenGL allows (4 bits), so that all is large enough to be seen.
+// A window of 8 x 8 px, with pixels of one world unit, on a device with the coarsest grid that
+// OpenGL allows (4 bits), so that everything is large enough to see.
 struct Scenery {
   Window window;
   Budget budget;
@@ -158,7 +158,7 @@ struct Scenery {
   }
 };
 
-// A triangle that reaches with one corner, Q, into the pixel [0, 1] x [0, 1].
+// A triangle whose corner Q reaches into the pixel [0, 1] x [0, 1].
 const std::array<Vec3, 3> kReaching = {Vec3(0.05, 0.03, 0), Vec3(-2.6, -0.5, 1),
                                        Vec3(-1.2, -1.9, 2)};
 
@@ -172,7 +172,7 @@ double cross(const DrawnPoint& a, const DrawnPoint& b, const DrawnPoint& p) {
   return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
 }
 
-// How often a polygon winds around a point that lies on none of its edges.
+// The winding number of a polygon around a point that is on none of its edges.
 int winding(const std::vector<DrawnPoint>& polygon, const DrawnPoint& p) {
   int out = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -183,7 +183,7 @@ int winding(const std::vector<DrawnPoint>& polygon, const DrawnPoint& p) {
   return out;
 }
 
-// Points at which lines of sight in the plane y = 0.5 enter and leave a solid, by its kernel.
+// Points where lines of sight in the plane y = 0.5 enter and leave a solid, computed by its kernel.
 struct Followed {
   std::vector<DrawnPoint> near, far;
 
@@ -252,7 +252,7 @@ PaperFigure coverage_figure() {
   d.pixels();
   const std::vector<DrawnPoint> exact = on.proxy_of(kReaching);
   std::vector<DrawnPoint> moved = exact;
-  // Inward, along the diagonals: what is worst for the corners' neighbourhood.
+  // Inward along the diagonals, the worst direction for the area near the corners.
   for (std::size_t i = 0; i < 4; ++i) {
     const DrawnPoint &p = exact[i], &over = exact[(i + 2) % 4];
     const double length = std::hypot(over[0] - p[0], over[1] - p[1]);
@@ -310,7 +310,7 @@ PaperFigure entry_and_exit_figure() {
     d.dot(centres.near[i], 4, R"(fill="#b30")");
     d.dot(centres.far[i], 4, R"(fill="#b30")");
   }
-  // The triangle over the row: what its interval kernel finds between y = 0 and y = 1.
+  // The triangle over the row: the result of its interval kernel between y = 0 and y = 1.
   interval::FarStrip strip;
   const auto corner = [&](int i) {
     return glsl::vec4{static_cast<float>(corners[i][0]), static_cast<float>(corners[i][1]),
@@ -427,16 +427,16 @@ void draw_bits(Drawing& d, double top, const std::string& heading,
   }
 }
 
-// The published path draws this of two triangles, in pixel space, where a corner of four pixels is
-// the origin.
+// What the published path draws for two triangles, in pixel space: the origin is a corner shared by
+// four pixels.
 constexpr double kGrid = 256;  // of a device with 8 subpixel bits
 struct Pair {
   std::array<Patch, 2> patches;
   Window window;
   double radius;
 
-  // The triangles of the surface of the box around `which`, as computed or as the device draws
-  // them.
+  // The triangles of the surface of the box around `which`: as computed, or `snapped` as on the
+  // device.
   std::vector<std::vector<DrawnPoint>> surface(int which, double of_radius, bool snapped) const {
     Drawables drawn;
     obb_surface_fattener().fatten(patches[which], of_radius, proxy_bounds(window), drawn);
@@ -446,7 +446,7 @@ struct Pair {
       out.push_back({{at(t[0]), at(t[1])}, {at(t[4]), at(t[5])}, {at(t[8]), at(t[9])}});
     return out;
   }
-  // How far the centre c of a pixel is inside what is drawn of `which`, at the most.
+  // The largest depth of a pixel centre c inside the drawing of `which`.
   double inside(int which, const DrawnPoint& c) const {
     double out = -HUGE_VAL;
     for (const auto& t : surface(which, radius, true)) {

@@ -1,7 +1,7 @@
-// The figures of the paper (docs/reliability.md, docs/budget.md). Each is drawn from what the
-// program's own functions return: proxies, kernels, passes, budget. Nothing in them is typed in but
-// the scenes. They are line drawings as SVG text: panels with coordinates of their own, in which
-// lines, outlines, points and words are put.
+// The figures of the paper (docs/reliability.md, docs/budget.md). Each is drawn from the results of
+// the program's own functions: proxies, kernels, passes, budget. Only the scenes are typed in. The
+// figures are line drawings as SVG text: panels with their own coordinates, with lines, outlines,
+// points and words.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ struct DrawingPanel {
 
 class Drawing {
  public:
-  /// A white sheet of width x height units. Readers that show no pictures read title and
+  /// A white sheet of width x height units. Readers that show no pictures read out title and
   /// description.
   Drawing(double width, double height, const std::string& title, const std::string& description);
 
-  /// Draws in this panel from now on; all but words is cut off at its borders.
+  /// Draws in this panel from now on; clips everything but words at its borders.
   void begin(const DrawingPanel& panel);
   /// The lines between pixels, which lie at whole numbers, and the centres of the pixels.
   void pixels();
@@ -61,11 +61,11 @@ struct PaperFigure {
 };
 
 /// The figures in the order of the paper. `pair`: the path of
-/// tests/cases/published-far-loses-this-pair.obj, which the last one is drawn from. Throws Error
-/// where it cannot be read.
+/// tests/cases/published-far-loses-this-pair.obj, the input of the last one. Throws Error if it
+/// cannot be read.
 std::vector<PaperFigure> paper_figures(const std::string& pair);
 
-// Each by itself. Those of the two passes come last.
+// The single figures; those of the two passes come last.
 PaperFigure ball_figure();
 PaperFigure coverage_figure();
 PaperFigure entry_and_exit_figure();

@@ -1,6 +1,6 @@
-// The command line of a picture and its checks; then the picture. It runs the methods, takes the
-// pairs that they lack from the truth, and draws a panel for each: objects pale, what collides
-// strong, missed pairs in a colour of their own.
+// Converts and checks the command line of a picture, then makes the picture: runs the methods,
+// compares their pairs with the truth, and draws a panel for each. Objects are pale, collisions
+// strong, and missed pairs have a colour of their own.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -23,14 +23,14 @@
 
 namespace farcull {
 
-// The command line of a picture, from its values and back to text, and its checks.
+// The command line of a picture: its values as text, and its checks.
 
 namespace {
 
 constexpr long kUsualFrames = 30;
 constexpr const char* kUsualView = "-0.45:-0.35:-0.82";
 
-// The same under the name of an option of this command.
+// Runs `parse`; errors name an option of this command instead.
 template <class Parse>
 void as_option(const std::string& option, Parse parse) {
   try {
@@ -40,7 +40,7 @@ void as_option(const std::string& option, Parse parse) {
   }
 }
 
-// "cullide", or "cullide:128" where the panel says so.
+// "cullide", or "cullide:128" if the panel has a resolution of its own.
 std::string panel_word(const RunOptions& options) {
   std::string out = to_string(options.method);
   if (options.resolution > 0) out += fmt::format(":{}", options.resolution);
@@ -108,7 +108,7 @@ std::string command_of(const PictureArguments& arguments) {
   if (!arguments.view.empty()) option("--view", arguments.view);
   if (!arguments.up.empty()) option("--up", arguments.up);
   if (arguments.zoom) add("--zoom");
-  // Its value may be left out, so what begins with - would be taken for another option.
+  // Uses `=`: the value is optional, so a value that begins with - would be taken for an option.
   if (arguments.depth_view) add("--view-depth=" + *arguments.depth_view);
   option("--size", fmt::format("{}x{}", arguments.width, arguments.height));
   return out;
@@ -167,7 +167,7 @@ std::string device_of(const Record& record) {
 const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
   if (arguments.scene.size() == 1 && !arguments.self && !arguments.frame)
     return lab.scene(arguments.scene.front());
-  // No name of a scene holds a line feed.
+  // '\n' separates the parts: no name of a scene contains it.
   std::string key = arguments.self ? "self\n" : "\n";
   for (const std::string& part : arguments.scene) key += part + "\n";
   if (arguments.frame) {
@@ -206,7 +206,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
   result.missed_triangles = answer.lost.size();
   result.kept = kept.size();
   result.idle = answer.idle.size();
-  // As in run: whatever the probes of the device say.
+  // As in run: regardless of the probes of the device.
   result.broken = promises(record.options) && !answer.missed.empty();
   result.device = device_of(record);
   result.headline = headline_of(result, "missed");
@@ -216,12 +216,12 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
 namespace {
 
 constexpr Rgba kPaper = {255, 255, 255};
-constexpr double kMargin = 0.04;     // around the scene, of the picture's size
-constexpr double kZoomMargin = 0.1;  // around what collides
+constexpr double kMargin = 0.04;     // around the scene, as a fraction of the picture's size
+constexpr double kZoomMargin = 0.1;  // around the collisions
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
-// The scene with each triangle in the colour of its kind. `hit`, the triangles that collide, shine
+// The scene with each triangle in the colour of its kind. The colliding triangles, `hit`, shine
 // through what hides them.
 Image scene_image(const Scene& scene, const Window& window, const std::vector<std::uint8_t>& kind,
                   const std::vector<std::uint32_t>& hit, const GlContext& context) {

@@ -1,5 +1,5 @@
-// `farcull picture`: the answer of a method on a scene, as a picture or as a page: which triangles
-// collide, which of these the method missed, and which it kept in vain.
+// `farcull picture`: shows the answer of a method on a scene, as a picture or as a page: which
+// triangles collide, which of these the method missed, and which it kept in vain.
 #pragma once
 
 #include <array>
@@ -16,21 +16,20 @@
 
 namespace farcull {
 
-/// The answer of a method on the scene of a picture, beside the truth.
+/// The answer of a method on the scene of a picture, compared with the truth.
 struct MethodAnswer {
   std::vector<TrianglePair> missed;  // colliding pairs that the method lacks; sorted
   std::vector<std::uint32_t> lost;   // triangles in one of those, ascending
-  std::vector<std::uint32_t>
-      idle;            // triangles that it kept and that are in no collision, ascending
-  PanelResult result;  // its counts and words
+  std::vector<std::uint32_t> idle;   // kept triangles that are in no collision, ascending
+  PanelResult result;                // its counts and texts
 };
 
 /// The scene of the arguments, kept by the lab. Throws Error as load_scene() and FrameSource do.
 const Scene& open_scene(const PictureArguments& arguments, Lab& lab);
 
-/// Runs the method on the scene that the lab opened last, and compares with the lab's truth. The
-/// lab's device answers; the options' device and verification are not looked at. Throws Error as
-/// run() does.
+/// Runs the method on the last scene that the lab opened, and compares with the lab's truth. The
+/// lab's device answers; the options' device and verification are ignored. Throws Error as run()
+/// does.
 MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab);
 
 struct PictureResult {
@@ -42,52 +41,51 @@ struct PictureResult {
   std::string not_asked;  // not_asked_line() of the scene (tables.h)
 };
 
-/// Runs the methods of the panels and draws. The lab's device answers; where it is "cpu" (far-pairs
-/// alone) the picture itself is drawn by the first device. Throws Error for bad arguments, a scene
-/// without triangles or one that a method does not take, and for faults of the device.
+/// Runs the methods of the panels and draws. The lab's device answers; if it is "cpu" (far-pairs
+/// alone), the first device draws the picture. Throws Error for bad arguments, a scene without
+/// triangles or one that a method does not accept, and for faults of the device.
 PictureResult make_picture(const PictureArguments& arguments, Lab& lab);
 
-/// make_picture(), written to the path as PNG, whole or not at all; "-" is standard output. Throws
-/// Error as write_output() as well.
+/// Writes make_picture() to the path as PNG, whole or not at all; "-" is standard output. Also
+/// throws Error as write_output().
 PictureResult write_picture(const PictureArguments& arguments, Lab& lab, const std::string& path);
 
-// `farcull picture --html`: one file with the scene, the answers of methods on it, and all that a
-// browser needs to show them and to look around in them. Its data are text: numbers and bits,
-// compressed for a reader in JavaScript (web/page_view.js).
+// `farcull picture --html`: one file with the scene, the answers of methods on it, and everything
+// that a browser needs to show and explore them. Its data are text: numbers and bits, compressed
+// for a reader in JavaScript (web/page_view.js).
 
-/// Base64 of gzip of the numbers: each as its difference to the one before (the first to 0) modulo
-/// 2^32, zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...); then the lowest bytes of all, the next
-/// ones, and so on. Neighbours are alike, so most bytes become 0.
+/// Base64 of gzip of the numbers. Each number is stored as its difference to the previous one (the
+/// first to 0) modulo 2^32, zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...); first the lowest
+/// bytes of all, then the next ones, and so on. Neighbours are similar, so most bytes become 0.
 std::string packed_numbers(std::span<const std::uint32_t> numbers);
 
 /// Base64 of gzip of the bytes.
 std::string packed_bytes(std::string_view bytes);
 
-/// Bits of which those of the numbers are 1, eight in a byte, the lowest first. Precondition: every
-/// number is below `count`.
+/// `count` bits, of which those at the numbers are 1; eight in a byte, the lowest first.
+/// Precondition: every number is below `count`.
 std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
 
-/// The coordinates of all x, then of all y, then of all z, as steps of 1/65535 of the box; those of
-/// points outside of it are moved into it. 0 in a direction in which the box has no extent.
+/// The coordinates as steps of 1/65535 of the box: all x, then all y, then all z. Points outside
+/// the box are moved to its border. 0 in a direction in which the box has no extent.
 std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
 
-/// At most so many triangles in a frame, so many in all frames, so many colliding pairs in a frame,
-/// and so many objects: 16 bits of a corner name its object.
+/// Limits of a page: triangles in a frame, triangles in all frames, colliding pairs in a frame, and
+/// objects (16 bits of a corner name its object).
 constexpr std::uint64_t kMostPageTriangles = 2'000'000, kMostPageTrianglesOfFrames = 16'000'000,
                         kMostPagePairs = 4'000'000, kMostPageObjects = 65'536;
 
 struct PageArguments {
-  PictureArguments picture;          // the flat picture; its scene is that of the page
-  std::vector<RunOptions> steps;     // what the reader can choose among: at least one
+  PictureArguments picture;          // the flat picture; the page shows the same scene
+  std::vector<RunOptions> steps;     // the choices of the reader: at least one
   std::optional<FrameRange> frames;  // of a scene that moves; empty: the frame of the picture
 };
 
-/// Resolutions that a reader can step through where none is named, px: from pixels that are large
-/// to the usual ones.
+/// Default resolutions that a reader can step through, px: from large pixels to usual ones.
 constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
 
-/// The methods of the panels, each once at every resolution, ascending; one that takes none, or
-/// chooses it by the scene, as it is.
+/// The methods of the panels, each once at every resolution, ascending; a method that takes no
+/// resolution, or lets the scene choose it, appears unchanged.
 std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
                                        std::vector<int> resolutions);
 
@@ -103,15 +101,15 @@ struct PageResult {
 };
 
 /// Runs the methods of the steps and writes the page. `flat`: the flat picture of the same scene,
-/// which is printed, and shown where a browser lacks WebGL 2. Throws Error where the program was
-/// built without three.js, for a scene or a motion that is too large, and as make_picture() does.
+/// for printing and for browsers without WebGL 2. Throws Error if the program was built without
+/// three.js, for a scene or a motion that is too large, and as make_picture() does.
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab);
 
-/// Throws Error naming --html where the program was built without three.js.
+/// Throws Error naming --html if the program was built without three.js.
 void require_three();
 
-/// Throws Error naming --html where the scene of the page, or its first frame, has more triangles
-/// or objects than a page holds: before anything is run. Throws as open_scene() does.
+/// Throws Error naming --html if the scene of the page, or its first frame, has more triangles or
+/// objects than a page holds. Called before any run. Throws as open_scene() does.
 void require_page_size(const PageArguments& arguments, Lab& lab);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
 // Paints rectangles, rings and lettering into one image. Letters are outlines of the font, scaled
-// to the height of a capital, at places between pixels: each is rendered as coverage and blended.
+// to the height of a capital, at subpixel positions: each is rendered as coverage and blended.
 #include "experiments/picture/panel.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 #include "core/base/error.h"
 
 // FARCULL_EMBED(NAME, PATH): the bytes of the file from farcull_NAME to farcull_NAME_end. The
-// assembler puts them into the program: as arrays of the compiler they would take minutes.
+// assembler includes them: as arrays they would take the compiler minutes.
 #define FARCULL_EMBED(name, path)          \
   asm(".pushsection .rodata\n"             \
       "farcull_" #name ": .incbin \"" path \
@@ -59,7 +59,7 @@ ThreeJs three_js() {
 
 namespace {
 
-constexpr double kUnits = 64;  // of FreeType's coordinates in a px
+constexpr double kUnits = 64;  // of FreeType's coordinates per px
 constexpr const char* kEllipsis = "\xe2\x80\xa6";
 
 void require(FT_Error error, const char* what) {
@@ -91,7 +91,7 @@ std::vector<std::uint32_t> characters_of(const std::string& text) {
   return out;
 }
 
-// The font in a size.
+// The font at one size.
 class Font {
  public:
   Font(bool bold, double capital) {
@@ -104,15 +104,15 @@ class Font {
                                static_cast<FT_Long>(file.size()), 0, &face),
             "cannot read the font");
     face_.reset(face);
-    // The size is that of the em square; a capital is the part of it that H takes.
+    // FreeType's size is that of the em square; the H gives a capital's part of it.
     require(FT_Load_Char(face, 'H', FT_LOAD_NO_SCALE), "has no letter H");
     const double part = static_cast<double>(face->glyph->metrics.height) / face->units_per_EM;
     require(FT_Set_Char_Size(face, 0, std::lround(capital / part * kUnits), 72, 72),
             "cannot scale the font");
   }
 
-  // Calls at(glyph slot, px from the left of the text) for each letter, its outline loaded, and
-  // returns the width of all.
+  // Calls at(glyph slot, px from the left of the text) for each letter, with its outline loaded,
+  // and returns the width of the text.
   template <class At>
   double walk(const std::string& text, const At& at) const {
     double left = 0;
@@ -126,7 +126,7 @@ class Font {
         left += static_cast<double>(kern.x) / kUnits;
       require(FT_Load_Glyph(face_.get(), glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP),
               "cannot load a letter");
-      // Before rendering, which leaves whole pixels in the other advance.
+      // Read before rendering, which rounds the other advance to whole pixels.
       const double advance = static_cast<double>(face_->glyph->linearHoriAdvance) / 65536;
       at(face_->glyph, left);
       left += advance;
@@ -193,8 +193,8 @@ void draw_sign(Image& sheet, const LegendEntry& entry, int left, int top, int si
 
 // ---- PNG, by libpng ----
 
-// libpng reports by a call that must not return; its frames hold nothing that has to be destroyed,
-// but jumping over ours would, so the C++ objects of a call stand outside the function with setjmp.
+// libpng reports an error by a call that must not return. Jumping out of its frames is safe, but
+// jumping over ours would skip destructors, so C++ objects are outside the function with setjmp.
 struct Failure {
   char text[200] = "";
 };
@@ -225,7 +225,7 @@ struct Written {
   Failure failure;
 };
 
-// False: libpng has failed.
+// Returns false if libpng has failed.
 bool write(const Image& image, bool opaque, Written& out) {
   png_structp png =
       png_create_write_struct(PNG_LIBPNG_VER_STRING, &out.failure, png_failed, png_warned);
@@ -280,7 +280,7 @@ std::string text_that_fits(const std::string& text, const TextStyle& style, doub
   if (text_width(text, style) <= width) return text;
   std::string cut = text;
   while (!cut.empty() && text_width(cut + kEllipsis, style) > width) {
-    // A letter of UTF-8 goes as a whole.
+    // Removes all bytes of a UTF-8 letter together.
     while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80)
       cut.pop_back();
     cut.pop_back();
@@ -328,7 +328,7 @@ Image compose(const std::string& title, const std::string& subtitle,
       strong{letter, true, kInk}, small{0.72 * letter, false, kGrey};
   const int count = static_cast<int>(panels.size());
   const int total_width = 2 * margin + count * width + (count - 1) * margin;
-  const int heading = 4 * line;  // title, subtitle and the room around them
+  const int heading = 4 * line;  // title, subtitle and the space around them
   const int top = heading + 2 * line + line / 2;
   const int legend_top = top + height + line / 2;
   const int total_height = legend_top + static_cast<int>(entries) * line + 2 * line;

@@ -1,5 +1,5 @@
-// Reads arrays number by number through their strides, so that no layout has to be copied by numpy
-// first. The type of the numbers is looked at once for each array.
+// Reads arrays number by number through their strides, so that numpy need not copy any layout
+// first. The type of the numbers is checked once per array.
 #include "experiments/python/arrays.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace farcull::python {
 namespace {
 
-constexpr std::size_t kStopEvery = std::size_t{1} << 20;     // rows between looks for a stop
-constexpr std::size_t kBlock = 256;                          // rows that are converted at once
+constexpr std::size_t kStopEvery = std::size_t{1} << 20;     // rows between checks for a stop
+constexpr std::size_t kBlock = 256;                          // rows that are converted together
 constexpr std::size_t kRowsOfThread = std::size_t{1} << 15;  // at least
 static_assert(kStopEvery % kBlock == 0);
 
@@ -26,7 +26,7 @@ static_assert(kStopEvery % kBlock == 0);
   raise(name, reason, remedy, true);
 }
 
-// Numbers of the array may lie anywhere, also where their type could not be read.
+// Reads a number at any address, also one that is not aligned.
 template <class In>
 In read(const std::byte* from) {
   In value;
@@ -80,10 +80,9 @@ std::uint32_t index_of(In value, const std::string& name, std::size_t row) {
               "give indices from 0 to the number of vertices - 1");
 }
 
-// Whether all numbers of a block of indices, which lie one after the other, fit. If they do, they
-// are at `to`. No branch is in the loop, so that the compiler can convert several numbers at a
-// time: of each number that does not fit, a bit above the lower 32 is set, also of a negative one,
-// whose sign fills them.
+// Whether all numbers of a block of consecutive indices fit into 32 bits. If so, they are at `to`.
+// The loop has no branch, so that the compiler can convert several numbers at a time: a number that
+// does not fit sets a bit above the lower 32, and so does a negative one by its sign bits.
 template <class In>
 bool block_fits(const std::byte* from, std::uint32_t* to) {
   std::uint64_t bits = 0;
@@ -95,7 +94,7 @@ bool block_fits(const std::byte* from, std::uint32_t* to) {
   return bits <= std::numeric_limits<std::uint32_t>::max();
 }
 
-// The answer of a call with a value of the type.
+// Returns call() with a value of the integer type.
 template <class Call>
 auto with_integer(char kind, std::size_t size, const Call& call) {
   if (kind == 'i') {
@@ -143,7 +142,7 @@ template <class Out, class In>
 std::span<const Out> Rows::copy(Memory<Out>& memory) const {
   if (rows_ > std::numeric_limits<std::size_t>::max() / (3 * sizeof(Out))) throw std::bad_alloc();
   const std::span<Out> out = memory.room(3 * rows_);
-  // Of several errors the one of the lowest row is thrown.
+  // With several errors, the one of the lowest row is thrown.
   for_chunks(rows_, chunks_for(rows_, kRowsOfThread),
              [&](std::size_t, std::size_t begin, std::size_t end) {
                copy_rows<Out, In>(begin, end, out.data() + 3 * begin);
@@ -157,7 +156,7 @@ void Rows::copy_rows(std::size_t begin, std::size_t end, Out* to) const {
     if (row % kStopEvery == 0) stop_point();
     const std::byte* from = data_ + static_cast<std::ptrdiff_t>(row) * row_stride_;
     if constexpr (std::is_same_v<Out, std::uint32_t>) {
-      // One that does not fit is named below.
+      // The code below names a number that does not fit.
       if (packed(sizeof(In)) && row + kBlock <= end && block_fits<In>(from, to)) {
         row += kBlock - 1;
         to += 3 * kBlock;

@@ -1,5 +1,5 @@
-// The compiled module: calls beside the interpreter, arrays of the caller as the library takes them
-// and answers as arrays, and the parts of the module.
+// The compiled module: calls without the lock of the interpreter, arrays of the caller as input and
+// answers as arrays, and the parts of the module.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -22,18 +22,18 @@
 
 namespace farcull::python {
 
-// How the binding calls the library: beside the interpreter, which goes on and can stop it.
+// Calls of the library: in another thread, so that the interpreter continues and can stop them.
 
 namespace py = pybind11;
 
 /// Runs `work` in a thread of its own, without the lock of the interpreter, with the floating-point
-/// environment of the proofs. The calling thread
-/// releases the lock and looks for signals every 50 ms: where a handler of Python raises, as that
-/// of Ctrl-C does, the work is asked to stop, and its exception is thrown when the work has ended.
-/// `work` must not touch Python. What it throws is thrown here. Precondition: the lock is held.
+/// environment of the proofs. The calling thread releases the lock and checks for signals every 50
+/// ms: if a handler of Python raises, as that of Ctrl-C does, the work is asked to stop, and the
+/// handler's exception is thrown when the work has ended. `work` must not touch Python. Its
+/// exceptions are thrown here. Precondition: the lock is held.
 void beside(const std::function<void()>& work);
 
-/// The value of the work.
+/// The same; returns the value of the work.
 template <class Work>
 auto answer_beside(const Work& work) {
   std::optional<decltype(work())> out;
@@ -41,8 +41,8 @@ auto answer_beside(const Work& work) {
   return std::move(*out);
 }
 
-/// Marks what one call at a time may use, as long as this lives. Throws farcull.Error where it is
-/// marked: by another thread, or by a call of this one, which a signal handler interrupts.
+/// Marks an object as in use for as long as this lives. Throws farcull.Error if it is marked
+/// already: by another thread, or by a call of this thread that a signal handler interrupted.
 class Turn {
  public:
   Turn(std::atomic_flag& used, const char* name);
@@ -54,27 +54,27 @@ class Turn {
   std::atomic_flag& used_;
 };
 
-/// Stops all calls that are running, and waits until they have ended. Calls that begin later are
-/// stopped as well. For the end of the interpreter. Precondition: the lock is held.
+/// Stops all running calls and waits for their end; later calls are stopped as well. For the end of
+/// the interpreter. Precondition: the lock is held.
 void end_calls();
 
 /// Lets a run stop between its stages.
 Progress stopping_progress();
 
-/// Throws an exception of the package, farcull.Error or farcull.InputError. input: what the caller
-/// gave is wrong.
+/// Throws an exception of the package: farcull.InputError if `input`, else farcull.Error. input:
+/// the caller's argument is wrong.
 [[noreturn]] void raise(const std::string& where, const std::string& reason,
                         const std::string& remedy, bool input);
 
-/// Makes exceptions of farcull those of the package: an Error is an InputError where it names a
-/// parameter, else an Error; std::bad_alloc is a MemoryError.
+/// Translates exceptions of farcull into those of the package: an Error that names a parameter
+/// becomes an InputError, any other an Error; std::bad_alloc becomes a MemoryError.
 void register_exceptions();
 
-/// Memory for numbers that are all written before they are read, so that nothing fills it first.
+/// Uninitialized memory for numbers that are all written before they are read.
 template <class Number>
 class Memory {
  public:
-  /// Room for so many numbers; what it held is lost.
+  /// Room for `count` numbers; the old contents are lost.
   std::span<Number> room(std::size_t count) {
     if (count > size_) {
       size_ = 0;
@@ -90,20 +90,20 @@ class Memory {
   std::size_t size_ = 0;
 };
 
-/// An array of rows of three numbers, of any type of number, with any strides: what its memory says
-/// at the time of a call. The array is kept as long as this lives.
+/// An array of rows of three numbers of any type, with any strides. Reads the memory as it is at
+/// the time of a call. The array lives at least as long as this.
 class Rows {
  public:
-  /// name: of the parameter, for errors. Throws farcull.InputError where the array is not (n, 3),
-  /// or its numbers are none that become doubles without rounding (of indices: whole numbers).
+  /// name: of the parameter, for errors. Throws farcull.InputError if the array is not (n, 3), or
+  /// its type does not convert to double without rounding (for indices: has no whole numbers).
   Rows(const py::array& array, std::string name, bool indices);
 
-  /// The numbers as doubles or as indices, row after row. Those of the array itself where they
-  /// are of that type and lie so, else copies in `memory`. Touches no Python. Throws Error for a
-  /// number that rounds, or an index below 0 or of 2^32 or more.
+  /// The numbers as doubles or as indices, row after row. Returns the array's own memory if its
+  /// type and layout fit, else copies in `memory`. Touches no Python. Throws Error for a number
+  /// that would round, or an index below 0 or of 2^32 or more.
   std::span<const double> doubles(Memory<double>& memory) const;
   std::span<const std::uint32_t> indices(Memory<std::uint32_t>& memory) const;
-  /// The numbers of the array itself where they are of this type and lie row after row; else none.
+  /// The array's own numbers if they have this type and lie row after row; else empty.
   std::span<const std::int64_t> wide() const;
 
  private:
@@ -122,19 +122,19 @@ class Rows {
   std::size_t size_ = 8;                               // bytes of a number
 };
 
-/// Copies of arrays that the library cannot take as they are. Kept from call to call, no call but
-/// the first has to ask the system for memory.
+/// Copies of arrays that the library cannot use directly. They are kept between calls, so that only
+/// the first call allocates memory.
 struct Copies {
   Memory<double> vertices;
   Memory<std::uint32_t> triangles;
 };
 
-/// What a call is about. Only its construction and its end need the interpreter.
+/// The input of a call. Only its constructor and destructor need the interpreter.
 class Given {
  public:
   Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts);
-  /// Overwrites `copies` where the library cannot take the arrays as they are. The input is valid
-  /// as long as this object and the copies are, and the copies are not changed.
+  /// Overwrites `copies` if the library cannot use the arrays directly. The input is valid as long
+  /// as this object exists and the copies exist unchanged.
   ColliderInput input(Copies& copies) const;
 
  private:
@@ -142,7 +142,7 @@ class Given {
   std::vector<std::uint32_t> starts_;
 };
 
-/// (k, 2), whatever the type of the pairs, which have a and b.
+/// An array (k, 2) from any type of pairs with members a and b.
 template <class Pairs>
 py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
   py::array_t<std::int64_t> out({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
@@ -154,7 +154,7 @@ py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
   return out;
 }
 
-/// (k): the code of each contact's kind, which is its place in farcull.KINDS.
+/// An array (k) of the code of each contact's kind: its index in farcull.KINDS.
 template <class Contacts>
 py::array_t<std::uint8_t> kind_array(const Contacts& contacts) {
   py::array_t<std::uint8_t> out(static_cast<py::ssize_t>(contacts.size()));
@@ -163,7 +163,7 @@ py::array_t<std::uint8_t> kind_array(const Contacts& contacts) {
   return out;
 }
 
-/// Memory of `owner` as an array that cannot be written to, which keeps the owner.
+/// Memory of `owner` as a read-only array that keeps the owner alive.
 template <class Value>
 py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py::handle owner) {
   py::array_t<Value> out(std::move(shape), data, owner);
@@ -178,13 +178,13 @@ std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& na
 
 // The parts of the compiled module. Each adds its classes and functions.
 
-/// A scene that Python holds. It never changes, so arrays and records may point into it.
+/// A scene that Python holds. It is immutable, so arrays and records may point into it.
 struct KeptScene {
   std::shared_ptr<const Scene> scene;
   explicit KeptScene(Scene given) : scene(std::make_shared<const Scene>(std::move(given))) {}
 };
 
-/// What is asked of a collider or a stream, as _collide.py puts it together.
+/// The question to a collider or a stream, from the dictionary of _collide.py.
 ColliderOptions options_of(const py::dict& question);
 
 void add_collider(py::module_& module);

@@ -53,14 +53,14 @@ py::dict result_of(const ColliderResult& result, bool kinds) {
       "complete"_a = result.complete, "report"_a = report_of(result.report));
 }
 
-// A forked process has neither the threads nor the device of what the other one made.
+// A forked process lacks the threads and the device of objects made before the fork.
 void require_process(pid_t maker, const char* made) {
   if (::getpid() == maker) return;
   raise(made, "was made by another process, which this one was forked from",
         "make one in each process", false);
 }
 
-// A collider of one thread at a time, and of one process.
+// A collider for one thread at a time, and for one process.
 class KeptCollider {
  public:
   explicit KeptCollider(const ColliderOptions& options)
@@ -151,7 +151,7 @@ void add_collider(py::module_& module) {
            py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
            py::arg("resolution"))
       .def("find", &KeptCollider::find);
-  // Codes of kinds are places in this tuple, whichever of the two enumerations they come from.
+  // Codes of kinds are indices into this tuple, for both enumerations.
   static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());
   py::tuple kinds(kContactKinds.size());
   for (std::size_t k = 0; k < kContactKinds.size(); ++k)
@@ -161,13 +161,13 @@ void add_collider(py::module_& module) {
 
 void add_distances(py::module_& module) { module.def("distances", &distances_of); }
 
-// Pairs as they come: the stream of the library.
+// Pairs part by part: the stream of the library.
 
 namespace {
 
-// A stream of one thread at a time, and of one process, as a collider. What a call gives has to be
-// taken: where a signal, or a lack of memory, comes between, there is no next part, since nobody
-// would see the gap.
+// A stream for one thread at a time, and for one process, as a collider. Python must take the part
+// of each call. If a signal or a lack of memory prevents that, there is no next part, since nobody
+// would notice the gap.
 class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
@@ -180,7 +180,7 @@ class KeptStream {
     });
   }
 
-  // The pairs that follow, which may be none; None behind the last.
+  // The pairs that follow, perhaps none; None after the last.
   py::object next() {
     require_process(process_, "Stream");
     const Turn turn(used_, "Stream");
@@ -214,7 +214,7 @@ class KeptStream {
 
   void take() { given_ = false; }
 
-  // As they were after the last call, so that they can be asked while another thread calls.
+  // As of the last call, so that they can be read while another thread calls.
   std::uint64_t decided() const { return decided_; }
   bool complete() const { return complete_; }
 
@@ -238,7 +238,7 @@ void add_stream(py::module_& module) {
         return std::make_unique<KeptStream>(vertices, triangles, starts, options_of(question));
       }))
       .def("next", &KeptStream::next)
-      // Python looks for signals behind a call, and not behind an assignment.
+      // Python checks for signals after a call, but not after an assignment.
       .def_property(
           "taken", [](const KeptStream&) { return true; },
           [](KeptStream& stream, bool) { stream.take(); })

@@ -1,4 +1,4 @@
-// Calls in a thread of their own, exceptions of C++ as those of Python, and the compiled module. In
+// Calls in their own threads, exceptions of C++ as those of Python, and the compiled module. In
 // messages, names of options become names of parameters: "--depth-format" is depth_format.
 #include "experiments/python/arrays.h"
 
@@ -24,18 +24,18 @@
 namespace farcull::python {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // between looks for signals
+constexpr std::chrono::milliseconds kLook{50};  // between checks for signals
 
-// The GNU C library gives memory that is free at the top of a thread's heap back to the system
-// where it is more than twice the largest block that was mapped and freed before, at most 32 MB.
-// Until that is much, each call would ask for the same pages again, and writing to new pages took
-// half of the time of small scenes. So one block is mapped and freed, which nothing ever writes to.
-// Where the environment or mallopt() says what is given back, the library keeps to that.
+// The GNU C library returns free memory at the top of a thread's heap to the system if it exceeds
+// twice the largest block that was mapped and freed before, at most 32 MB. While that limit is low,
+// each call requests the same pages again, and writing to new pages took half of the time of small
+// scenes. So one large block is mapped and freed, and never written to. If the environment or
+// mallopt() sets the limit, the library keeps to that.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
     constexpr std::size_t kBlock = std::size_t{31} << 20;
-    void* volatile block = std::malloc(kBlock);  // so that the pair is not left out
+    void* volatile block = std::malloc(kBlock);  // volatile: the compiler keeps malloc() and free()
     std::free(block);
     return true;
   }();
@@ -43,8 +43,8 @@ void keep_small_memory() {
 #endif
 }
 
-// The calls that are running. At the end of the interpreter they are stopped, since they would use
-// what the process takes down.
+// The running calls. They are stopped at the end of the interpreter, since they would use what the
+// process destroys.
 class Running {
  public:
   explicit Running(StoppableCall& call) : call_(call) {
@@ -86,9 +86,9 @@ class Running {
   StoppableCall& call_;
 };
 
-// Waits a moment without the lock of the interpreter. Whether the call has ended. Where the
-// interpreter ends meanwhile, it ends threads that ask for its lock; nothing of Python may be
-// touched any more, so such a thread waits here for the end of the process.
+// Waits a moment without the lock of the interpreter; returns whether the call has ended. If the
+// interpreter ends meanwhile, it ends threads that request its lock, and Python must not be touched
+// any more, so such a thread waits here for the end of the process.
 bool ended(StoppableCall& call) {
   PyThreadState* const state = PyEval_SaveThread();
   const bool ended = call.wait_for(kLook);
@@ -100,7 +100,7 @@ bool ended(StoppableCall& call) {
   return ended;
 }
 
-// Each "--depth-format" in the text as depth_format.
+// Replaces each "--depth-format" in the text by depth_format.
 std::string as_parameters(const std::string& text) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   std::string out;
@@ -116,7 +116,7 @@ std::string as_parameters(const std::string& text) {
   return out;
 }
 
-// Of the library's errors, where they name what the caller gave.
+// Whether an error of the library names a parameter of the caller.
 bool is_parameter(std::string_view where) {
   constexpr std::array<std::string_view, 14> kNames = {
       "vertices",  "triangles",  "object_starts", "self_objects", "threads",
@@ -125,7 +125,7 @@ bool is_parameter(std::string_view where) {
   return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
 }
 
-// The interpreter's names of the library's parameters.
+// The Python names of the library's parameters.
 std::string parameter_of(const std::string& where) {
   if (where == "object_starts") return "objects";
   if (where == "self_objects") return "self";
@@ -155,7 +155,7 @@ void translate(std::exception_ptr failure) {
     const std::string line = error.line > 0 ? ":" + std::to_string(error.line) : "";
     set_from(error.where + line, error.reason, error.remedy);
   } catch (const std::system_error& error) {
-    // Threads that cannot be started: each takes memory for its stack.
+    // The system could not start a thread; each needs memory for its stack.
     if (error.code() != std::errc::resource_unavailable_try_again) throw;
     PyErr_SetString(PyExc_MemoryError, "farcull: no thread can be started");
   } catch (const Stopped&) {
@@ -209,12 +209,12 @@ void raise(const std::string& where, const std::string& reason, const std::strin
 
 void register_exceptions() { py::register_exception_translator(&translate); }
 
-// The compiled module. The package farcull/ around it checks arguments, and is what people call.
+// The compiled module. Users call the package farcull/ around it, which checks arguments.
 
 namespace {
 
-// pybind11 and numpy keep what they know in variables of the process, which interpreters in one
-// process would share. pybind11 waits for ever where another one is the first that it sees.
+// pybind11 and numpy keep state in variables of the process, which all its interpreters would
+// share. pybind11 waits forever if it first sees an interpreter other than the main one.
 constexpr const char* kNotMain =
     "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
     "process of its own";
@@ -222,13 +222,13 @@ constexpr const char* kNotMain =
 bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
 
 void fill(py::module_& module) {
-  // A module that is made already is given to another interpreter without a call of its maker.
+  // Python gives another interpreter an existing module without calling PyInit again.
   module.def("require_main_interpreter", [] {
     if (!in_main_interpreter()) throw py::import_error(kNotMain);
   });
   register_exceptions();
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters(option_word);  // as records say it; exceptions name keywords (call.cpp)
+  spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
   add_collider(module);
   add_stream(module);
   add_distances(module);
@@ -242,7 +242,7 @@ py::module_::module_def definition;
 
 }  // namespace farcull::python
 
-// As PYBIND11_MODULE does it, but that asks for the interpreter first.
+// As PYBIND11_MODULE, but checks the interpreter first.
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull();
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull() {
   namespace python = farcull::python;

@@ -1,4 +1,4 @@
-// The C++ side of experiments/python_overhead.py: the same calls as of the module, one for each
+// The C++ side of experiments/python_overhead.py: makes the same calls as the module, one for each
 // line of its input.
 //   farcull_python_overhead FOLDER    with the arrays V0, V1 (doubles), F and S (32-bit indices)
 // Input: "collide N" or "find N", with the vertices VN. Output: processor time in ms, and the

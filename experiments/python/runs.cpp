@@ -1,5 +1,5 @@
-// Runs of any method, with their record, plan, check and picture: what the commands of the program
-// of the same names do.
+// Runs of any method, with their record, plan, check and picture, like the commands of the same
+// names.
 #include <pybind11/stl.h>
 
 #include <array>
@@ -27,7 +27,7 @@
 
 namespace farcull::python {
 
-// ---- scenes, and scenes that move, as the program reads them ----
+// ---- scenes and moving scenes, read as by the program ----
 
 namespace {
 
@@ -66,7 +66,7 @@ Kept from_names(const std::vector<std::string>& names, bool self) {
   });
 }
 
-// A scene that moves. Used by one thread at a time.
+// A scene that moves, for one thread at a time.
 class Frames {
  public:
   Frames(const std::vector<std::string>& names, const std::string& range, bool self) {
@@ -98,7 +98,7 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   return out;
 }
 
-// The objects that two patterns of names name, as the program takes them. what: for errors.
+// The objects that two patterns of names select, as in the program. what: for errors.
 std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
                                                       const std::string& first,
                                                       const std::string& second,
@@ -160,12 +160,12 @@ namespace {
 
 using namespace py::literals;
 
-// A record, with the scene that it is about.
+// A record, with its scene.
 struct KeptRecord {
   std::shared_ptr<const Scene> scene;
   Record record;
 
-  // All that were missed, not the first ones alone.
+  // All missed pairs, not only the first ones.
   std::vector<TrianglePair> missed() const {
     const Accounting& known = record.verification.value();
     if (known.false_negatives <= known.examples.size()) return known.examples;
@@ -236,7 +236,7 @@ py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned thr
   return py::make_tuple(json, table);
 }
 
-// The list as a file of the program would have it.
+// The list as a file of the program would hold it.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
   GivenList out{.name = "pairs", .has_frames = false, .rows = {}, .not_looked_at = {}};
@@ -252,7 +252,7 @@ GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   return out;
 }
 
-// certificate: its text, or none; pairs: a list to be checked with it or alone, or none.
+// certificate: its text, or none; pairs: a list to check alone or with the certificate, or none.
 py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certificate,
                   const std::optional<py::array>& pairs, std::optional<double> clearance) {
   const Scene& scene = *kept.scene;
@@ -354,7 +354,7 @@ void add_runs(py::module_& module) {
     }
     return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
   });
-  // The keywords of run(), and which are flags; method and limit are parameters of their own.
+  // The keywords of run(), and whether each is a flag; method and limit are separate parameters.
   py::dict options;
   for (const Option& option : run_options()) {
     if (option.take && option.name != std::string("method") && option.name != std::string("limit"))

@@ -79,8 +79,8 @@ std::string inside_cell(const Distance& d) {
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
-/// The least distance of all answers, and between what it is; nothing for an answer that the first
-/// row of the table has.
+/// The least distance of all answers, and its objects; empty for a single answer, which the table
+/// shows.
 std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
   if (distances.size() < 2) return "";
   const auto least = std::min_element(
@@ -251,7 +251,7 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
   return out + accounting_lines(scene, record);
 }
 
-// Certificates, which know nothing of the rest, have an enumeration of the same order.
+// The code of certificates is independent of the rest, so its enumeration has to be of equal order.
 static_assert(static_cast<int>(DistancePairs::objects) ==
                   static_cast<int>(DistanceCertificate::Pairs::objects) &&
               static_cast<int>(DistancePairs::nearest) ==

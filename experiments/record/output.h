@@ -46,8 +46,7 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   return out;
 }
 
-/// The values of the fields of a struct by commas, as numbers are written in full; nothing for one
-/// that is empty.
+/// The fields of a struct, with commas between; numbers in full, nothing for an empty value.
 template <HasFields Value>
 std::string csv_of(const Value& row) {
   std::string out;
@@ -72,7 +71,7 @@ std::string csv_of(const Value& row) {
   }()
 #define FARCULL_JSON_MEMBER(name) out[#name] = ::farcull::json_of(of.name);
 
-/// The objects that `one` makes of the values.
+/// A list of one(value) for each value.
 template <class Values, class One>
 nlohmann::ordered_json json_list(const Values& values, const One& one) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
@@ -80,13 +79,13 @@ nlohmann::ordered_json json_list(const Values& values, const One& one) {
   return out;
 }
 
-/// The value where it counts, else null.
+/// The value if it counts, else null.
 template <class Value>
 nlohmann::ordered_json json_if(bool counts, const Value& value) {
   return counts ? json_of(value) : nlohmann::ordered_json(nullptr);
 }
 
-/// Null for a text that says nothing.
+/// The text; null if it is empty.
 inline nlohmann::ordered_json text_json(const std::string& text) {
   return json_if(!text.empty(), text);
 }
@@ -96,7 +95,7 @@ inline nlohmann::ordered_json text_json(const std::string& text) {
 /// Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
-/// Names and versions of a GL device; the threads in which a software device draws, of others null.
+/// Names and versions of a GL device; the threads of a software device, null for others.
 nlohmann::ordered_json gl_json(const GlInfo& gl);
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
@@ -119,9 +118,9 @@ nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<Triangle
 /// Columns of pairs_csv() besides those that every list has, and which rows there are.
 struct PairColumns {
   bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
-  bool contacts = false;  // contact: the kind; of a record that has the kinds
+  bool contacts = false;  // contact: the kind; the record must have the kinds
   bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of what the triangles have in common, world
-                          // units; empty where that is a polygon or nothing. Of a record with them
+                          // units; empty for a polygon or nothing. The record must have them
   std::vector<ContactKind> kinds = {};   // pairs of these kinds alone; empty: all
   const ListNumbers* numbers = nullptr;  // where the scene is a part of another one; else null
 };
@@ -130,7 +129,7 @@ struct PairColumns {
 /// among them where an object of the scene is tested against itself. More columns come at the end:
 /// contact, the segment, the faces.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
-/// Its parts, `before` at the start of each row.
+/// The parts of pairs_csv(); `before` comes at the start of each row.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
@@ -156,12 +155,12 @@ std::string decision_of(const Stage& stage);
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// A row for each pair, `before` at its start; the names of the columns.
+/// The names of the columns; a row for each pair, with `before` at its start.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
 
-/// The distances, of many the first ones, then the stages and the accounting.
+/// The distances (only the first of many), the stages and the accounting.
 std::string distances_table(const Scene& scene, const DistanceRecord& record);
 
 /// The verdict of an accounting, in one line without its end.

@@ -32,7 +32,7 @@ TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
   const auto after = std::upper_bound(
       scene.objects.begin(), scene.objects.end(), triangle,
       [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next one does: the last that starts there owns it.
+  // Objects without triangles start where the next one does, so the last one there is the owner.
   const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
   return {owner, triangle - scene.objects[owner].first_triangle};
 }
@@ -85,7 +85,7 @@ std::string method_text(const Record& record) {
   if (fattens(o.method)) text += fmt::format(", {} offsets", o.offset);
   if (draws(o.method)) {
     text += depth_of(o) == DepthMode::fragment ? ", fragment depth" : ", fixed-function depth";
-    // The native canvas has one way to ask.
+    // The native canvas has no query modes.
     if (!record.found.device.cpu)
       text += query_of(o) == QueryMode::flags ? ", flags" : ", occlusion queries";
   }
@@ -136,7 +136,7 @@ struct Row {
   std::string key;  // what stages are folded by; empty: nothing joins this row
   std::string name;
   std::string note;
-  std::vector<std::string> views;  // of later rounds; of what was left out, the stages
+  std::vector<std::string> views;  // of later rounds; for a row of left-out stages, their names
   Stage sum;                       // ms of all, in of the first, out of the last
 };
 
@@ -241,7 +241,6 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-// The window that was looked at where the scene chose.
 // Whether boxes left so little that nothing was drawn.
 bool was_not_drawn(const Record& r) {
   return draws(r.options.method) && boxes_of(r.options) == BoxLevel::enough &&

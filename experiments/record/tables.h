@@ -52,7 +52,7 @@ std::string run_heading(const Scene& scene, const Record& record);
 std::string stage_table(const std::vector<Stage>& stages);
 
 /// One run. The stages of a view are folded into one row, and so are all rounds after the first.
-/// The accounting is at the end, after `verdict`, lines of the caller.
+/// The accounting is at the end; `verdict`, lines of the caller, comes before it.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
 /// The verdict of an accounting, in one line without its end: "verified: no colliding pair was

@@ -1,5 +1,5 @@
 """`python3 report DIR CONTEXT [--no-pictures] [--device DEVICE]`: writes DIR/report. `farcull report` starts it, after
-it has seen that DIR has a store without fault. CONTEXT is JSON: the program, its commit, the studies and constants.
+it has checked the store in DIR. CONTEXT is JSON: the program, its commit, the studies and constants.
 
 The folder appears whole or not at all, in place of an earlier report; another folder of that name is left alone. Exit
 status: 0 done; 1 a promise is broken, and the report says so; 2 nothing was made, and a line says why.
@@ -22,14 +22,14 @@ import sys
 import tempfile
 
 MARKER = ".unfinished"
-# A row that promises and counts one of these broke its promise; a contestant also by silence.
+# A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
-PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # that the reader of a picture's page steps through
+PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # px; the reader of a picture's page can choose among them
 
 
 class Refusal(Exception):
-    """where, what is wrong there, and what the user can do next."""
+    """An error: where, what is wrong there, and what the user can do next."""
 
     def __init__(self, where, reason, remedy):
         super().__init__(f"{where}: {reason}; {remedy}")
@@ -41,7 +41,7 @@ class Interrupted(BaseException):
 
 
 try:
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # folders for its cache are no concern of a report
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides its messages about cache folders
     import pandas as pd
     import draw
     import pages
@@ -76,7 +76,7 @@ def check_place(place):
 
 
 def locked(path, flags):
-    """A marker that nobody else has locked, as a file; None otherwise. A lock ends with its process."""
+    """Locks a marker and returns it as a file; None if another process has locked it. A lock ends with its process."""
     try:
         file = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | flags, 0o666)
     except OSError:
@@ -90,8 +90,8 @@ def locked(path, flags):
 
 
 def remove_leftovers(place):
-    """Removes what killed reports left beside the place: folders with a marker that nobody has locked, or an earlier
-    report that a new one had just replaced."""
+    """Removes the leftovers of killed reports beside the place: folders with a marker that nobody has locked, or an
+    earlier report that a new one had just replaced."""
     for path in sorted(place.parent.glob(place.name + ".part-????????")):
         if path.is_symlink() or not path.is_dir():
             continue
@@ -113,13 +113,13 @@ def exchange(path, place):
             break
     if ctypes.get_errno() not in (errno.EINVAL, errno.ENOSYS):
         raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
-    if place.exists():  # a file system without it
+    if place.exists():  # the file system lacks both flags
         shutil.rmtree(place)
     os.rename(path, place)
 
 
 class Unfinished:
-    """The folder beside the report in which the report is made. It is removed unless publish() puts it in place."""
+    """A folder beside the report, in which the new report is made. Removed unless publish() puts it in place."""
 
     def __init__(self, place):
         self.place, self.lock, self.path = place, None, None
@@ -129,7 +129,7 @@ class Unfinished:
         try:
             part = tempfile.mkdtemp(prefix=self.place.name + ".part-", dir=self.place.parent)
             self.path = pathlib.Path(part)
-            # The marker gets its name when it is locked, so that no process sees it without its lock.
+            # The marker gets its name after it is locked, so that no process sees it unlocked.
             self.lock = locked(self.path / (MARKER + "-new"), os.O_CREAT | os.O_EXCL)
             os.rename(self.path / (MARKER + "-new"), self.path / MARKER)
             mask = os.umask(0)
@@ -158,7 +158,7 @@ class Unfinished:
             os.close(self.lock)
 
 
-# ---- what is in it
+# ---- contents of the report
 
 def png_texts(png):
     """The texts that `farcull picture` puts into its PNG, by their names."""
@@ -203,7 +203,7 @@ class Reporter:
         for where, of in [("", study)] + [(f" on {device}", of) for device, of in others]:
             self.broken += [f"{study.name}{where}: {describe(row)}" for row in promising(of.rows).itertuples()
                             if any(value(row, name) > 0 for name in BROKEN)]
-        # What a chapter finds broken where each row by itself is right, such as energy that a solver made.
+        # The chapter may find something broken although each row is right, such as a solver that made energy.
         if len(self.broken) == before:
             self.broken += [f"{study.name}: {text}" for broken, text in chapter.findings if broken]
         if not study.complete:
@@ -230,7 +230,7 @@ class Reporter:
         self.counts["figure"] += len(chapter.figures)
         self.counts["table"] += len(chapter.tables)
 
-    # Promises that the picture breaks become findings of the chapter.
+    # Adds a picture. Promises that it breaks become findings of the chapter.
     def picture(self, picture, chapter, root):
         self.say("picture " + picture.name)
         out, path = pages.DrawnPicture(picture), root / "pictures" / (picture.name + ".png")
@@ -250,7 +250,7 @@ class Reporter:
         return out
 
     def run_picture(self, picture, more):
-        """Runs `farcull picture`; returns what it says of broken promises."""
+        """Runs `farcull picture`; returns its text about broken promises."""
         device = ["--device", self.arguments.device] if self.arguments.device is not None else []
         done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, *more],
                               capture_output=True, stdin=subprocess.DEVNULL, text=True, errors="replace")
@@ -261,7 +261,7 @@ class Reporter:
         return lines if done.returncode == 1 else []
 
     def add_counts(self, picture, chapter, texts, broken):
-        """Writes what the drawn panels count into the caption, and tells where the rows say otherwise. broken: the
+        """Writes the counts of the drawn panels into the caption, and reports where the rows differ. broken: the
         program says that a method that promises missed something."""
         said, stored = [], []
         for i, (method, *known) in enumerate(picture.panels):
@@ -282,7 +282,7 @@ class Reporter:
                                 f"{listed(stored)} missed.")
 
     def make_page(self, picture, path):
-        """Whether there is a page of the picture's scene, where every panel steps through resolutions."""
+        """Makes a page where every panel of the picture steps through resolutions; returns whether there is one."""
         self.say("page " + picture.name)
         own = [int(n) for word in picture.arguments for n in re.findall(r":(\d+)", word)]
         steps = ",".join(str(n) for n in sorted({*PAGE_RESOLUTIONS, *own}))

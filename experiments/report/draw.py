@@ -1,9 +1,9 @@
 """Figures as files: NAME.svg, NAME.pdf and their numbers as NAME.csv, drawn by matplotlib.
 
-Places of panels, labels and the key are decided here, in points from the top left corner, so that
-nothing overlaps and a file is the same for the same numbers. Colours are those of Okabe and Ito
-(2008) and of Tol's "muted" scheme, told apart with any colour vision; dashes and markers tell the
-same apart in grey. A name that begins with a method has its colour in every figure.
+This file places panels, labels and the key, in points from the top left corner, so that nothing
+overlaps and the same numbers give the same file. Colours are those of Okabe and Ito (2008) and of
+Tol's "muted" scheme, which differ for any colour vision; dashes and markers differ in grey too. A
+name that begins with a method has the method's colour in every figure.
 """
 import csv
 import html
@@ -25,14 +25,14 @@ from scales import Scale, scale_of, tick_label  # noqa: E402
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
 DOUBLE, SINGLE = 504.0, 244.0  # widths of two columns of a journal and of one, 178 and 86 mm
-LINE = 11.0   # from line to line of text
-ROW = 10.5    # of a strip
+LINE = 11.0   # distance of lines of text
+ROW = 10.5    # height of a row of the strip
 FAMILIES = "'DejaVu Sans', Helvetica, Arial, sans-serif"
 NOTE = "Shaded: the axis is linear, from 0 to the end of the shade. Beyond, it is logarithmic."
 
 SOLID, DASHES = "-", ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
-MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # with a blank: hollow
-KNOWN = [  # the first whose words are in a name
+MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank marks a hollow one
+KNOWN = [  # the first entry whose words are in a name applies
     ("far pairs", "#009e73", 0, "^"), ("interval", "#009e73", 0, "^"),
     ("far exact", "#56b4e9", 0, "s"), ("exact offset", "#56b4e9", 0, "s"),
     ("far", "#0072b2", 0, "o"), ("obb union", "#0072b2", 0, "o"),
@@ -69,8 +69,8 @@ def mark_names(figure):
 
 
 def looks_of(figure):
-    """A Look for each name. Later names of one method have other dashes and markers; emphasised ones are thick, and get
-    thinner in the order in which they lie over each other, so that those with the same values all stay visible."""
+    """A Look for each name. Later names of one method have other dashes and markers. Emphasised lines are thick, and
+    each is thinner than those below it, so that lines with the same values all stay visible."""
     out, times, unknown, thick = {}, {}, 0, 0
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
     for name in series_names(figure):
@@ -101,11 +101,11 @@ def text_width(text, size=8):
 
 @dataclass
 class Placed:
-    """A panel in its place: left, right, top, bottom of the plot, in points from the top left."""
+    """A placed panel: left, right, top, bottom of the plot, in points from the top left."""
     panel: object
     x: Scale = None
     y: Scale = None
-    labels: list = field(default_factory=lambda: [True, True])  # whether those of x, y are drawn
+    labels: list = field(default_factory=lambda: [True, True])  # whether the labels of x and y are drawn
     room: float = 10.0  # left of the axis for ticks, names of the strip and the label
     box: tuple = ()
 
@@ -131,7 +131,7 @@ def values_along(panel, side):
 
 
 def fit_drawing(placed):
-    """As many points for a unit of x as for one of y, and a tenth of the longer side free."""
+    """Gives x and y the same scale, and leaves a tenth of the longer side free."""
     left, right, top, bottom = placed.box
     ranges = []
     for side in "xy":
@@ -147,7 +147,7 @@ def fit_drawing(placed):
 
 
 def wrapped(label, room):
-    """The label in two lines where it is longer than the axis."""
+    """The label, in two lines if it is longer than the axis."""
     if text_width(label) <= room or " " not in label:
         return label
     at = min((m.start() for m in re.finditer(" ", label)), key=lambda i: abs(i - len(label) / 2))
@@ -174,15 +174,15 @@ class Layout:
         self.place_key(top)
 
     def can_label(self):
-        """Whether the names stand at the ends of their lines instead of in a key."""
+        """Whether the names are drawn at the ends of their lines instead of in a key."""
         panel = self.figure.panels[0]
         return (not panel.drawing and not panel.marks and 0 < len(self.key) <= 6 and
                 all(s.style in ("lines", "lines_points") and len(s.x) > 1 for s in panel.series)
                 and max(text_width(n) for n in self.key) < 0.35 * self.width)
 
     def scale_panels(self):
-        """The scales of all panels; returns the room left of each column. Labels that all panels
-        share stand at the first of a row and the last of a column alone."""
+        """Sets the scales of all panels; returns the room left of each column. Labels that all panels
+        share are drawn only at the first panel of a row and the last of a column."""
         panels, lefts = self.figure.panels, [0.0] * self.columns
         one_x, one_y = (len({getattr(p, side).label for p in panels}) == 1 for side in "xy")
         wide = self.width / self.columns - 50
@@ -228,7 +228,7 @@ class Layout:
             entry = 34 + max(text_width(n) for n in names)
             columns = max(1, min(len(names), int((self.width - 8) / entry)))
             lines = -(-len(names) // columns)
-            columns = -(-len(names) // lines)  # as even as it goes
+            columns = -(-len(names) // lines)  # as even as possible
             start = max(4.0, (self.width - columns * entry + 10) / 2)
             self.entries = [(n, start + i % columns * entry,
                              top + LINE * (i // columns + 0.5)) for i, n in enumerate(names)]
@@ -282,7 +282,7 @@ class Drawer:
             at = (placed.x if mark.vertical else placed.y).place(mark.at)
             if not math.isnan(at):
                 (ax.axvline if mark.vertical else ax.axhline)(at, **self.mark_look(mark.name))
-        # Emphasised ones first: they are thick, so what has the same values stays visible above.
+        # Emphasised series first: they are thick, so a series with the same values stays visible above.
         drawn = [self.series(ax, placed, s)
                  for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
@@ -312,7 +312,7 @@ class Drawer:
                       label, ha="center", rotation=90, linespacing=1.1)
 
     def shade(self, ax, placed):
-        """Where an axis that shows zeros is linear it is shaded, with a line at 0."""
+        """Shades the linear part of an axis that shows zeros, with a line at 0."""
         for scale, span, line in ((placed.x, ax.axvspan, ax.axvline), (placed.y, ax.axhspan, ax.axhline)):
             if scale.linear_to:
                 span(scale.ends[0], scale.place(scale.linear_to), color="#f1f1ee", zorder=0)
@@ -332,7 +332,7 @@ class Drawer:
                         ecolor=look.colour, elinewidth=0.8, capsize=1.5, capthick=0.8)
 
     def series(self, ax, placed, s):
-        """False where no point of the series has a place."""
+        """Draws a series; False if none of its points has a place."""
         look = self.layout.looks[s.name]
         x, y = [placed.x.place(v) for v in s.x], [placed.y.place(v) for v in s.y]
         if not any(a == a and b == b for a, b in zip(x, y)):
@@ -353,7 +353,7 @@ class Drawer:
         return True
 
     def strip(self, placed):
-        """A row for each series below the panel, over the same x."""
+        """Draws a row for each series below the panel, over the same x."""
         left, right, _, bottom = placed.box
         rows = placed.panel.strip
         ax = self.axes(left, right, bottom + 4, bottom + placed.strip)
@@ -371,7 +371,7 @@ class Drawer:
             ax.plot(x, [i] * len(x), **look.points(), clip_on=False)
 
     def direct(self, ax, placed):
-        """The name of each series beside its last point, moved apart where they would overlap."""
+        """Draws the name of each series beside its last point, and moves names apart that would overlap."""
         left, right, top, bottom = placed.box
         low, high = placed.y.ends
         ends = []
@@ -383,7 +383,7 @@ class Drawer:
         for i in range(1, len(ends)):
             ends[i][0] = max(ends[i][0], ends[i - 1][0] + LINE - 1)
         over = ends[-1][0] - bottom if ends else 0
-        for end in reversed(ends):  # back up where the last ones left the panel
+        for end in reversed(ends):  # moves names up again if the last ones left the panel
             end[0] = min(end[0], bottom if over > 0 else end[0])
             bottom = min(bottom, end[0] - LINE + 1) if over > 0 else bottom
         for y, name in ends:
@@ -418,7 +418,7 @@ class Drawer:
 
 
 def numbers_of(figure):
-    """The CSV of a figure: what is drawn, as it was measured."""
+    """The CSV of a figure: the drawn values, as they were measured."""
     out = io.StringIO()
     writer = csv.writer(out)
     ends = ("x_low", "x_high", "y_low", "y_high")
@@ -448,14 +448,14 @@ def files_of(figure):
 
 
 def inline_svg(svg, prefix):
-    """An SVG to be put into a page with others: its ids after `prefix`."""
+    """An SVG for a page with others: its ids get a `prefix`."""
     out = svg[svg.index("<svg"):]
     return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, out)
 
 
-# ---- what of a figure is worth drawing
+# ---- which parts of a figure to draw
 
-LONGEST_NAME = 85  # characters that the key has room for
+LONGEST_NAME = 85  # characters that fit into the key
 
 
 def same(a, b):
@@ -473,7 +473,7 @@ def agree(figure, one, other):
 
 
 def merge_series(figure):
-    """Series that agree in every panel are drawn once, under a name that tells all of them."""
+    """Merges series that agree in every panel into one, whose name lists all of them."""
     groups = []
     for name in dict.fromkeys(s.name for panel in figure.panels for s in panel.series):
         group = next((g for g in groups if agree(figure, g[0], name)), None)
@@ -485,7 +485,7 @@ def merge_series(figure):
     for group in groups:
         if len(group) == 1:
             continue
-        # The first gives the colour: what the figure is about, or ours.
+        # The first name gives the colour: the subject of the figure, or ours.
         group.sort(key=lambda n: not (n in emphasised or n.startswith("FAR")))
         name = " = ".join(group)
         if len(name) > LONGEST_NAME:
@@ -501,7 +501,7 @@ def merge_series(figure):
 
 
 def drop_panels(figure):
-    """Panels without a difference become a sentence of the caption."""
+    """Replaces panels without a difference by a sentence of the caption."""
     kept, constant, empty = [], {}, []
     for panel in figure.panels:
         values = [y for s in panel.series for y in s.y if math.isfinite(y)]

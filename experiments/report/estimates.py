@@ -1,7 +1,7 @@
-"""Numbers of a report: medians, intervals and exponents, and how all of them are written.
+"""Numbers of a report: medians, intervals and exponents, and their formats.
 
-The rules are those of measure/harness.h, so that a report and `farcull bench` tell the same
-intervals of the same runs.
+The rules are those of measure/harness.h, so that a report and `farcull bench` give the same
+intervals for the same runs.
 """
 import functools
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 NONE = math.nan  # a gap in a line
 RESAMPLES = 10000
-FEWEST_FOR_INTERVAL = 6  # points: t is large for fewer, so their interval says little
+FEWEST_FOR_INTERVAL = 6  # points; with fewer, t is large and the interval says little
 
 
 @dataclass
@@ -46,7 +46,7 @@ def random_words(count):
 
 
 def resampled_medians(*samples):
-    """The medians of each sample, drawn RESAMPLES times with replacement, the samples in turns."""
+    """RESAMPLES medians of each sample, each of a draw with replacement; the samples take turns."""
     size = sum(len(sample) for sample in samples)
     words = random_words(RESAMPLES * size).reshape(RESAMPLES, size)
     out, at = [], 0
@@ -70,14 +70,14 @@ def median_estimate(values):
 
 
 def coverage(n):
-    """The probability with which the 95 % interval of the median of n independent runs holds the true median, n odd:
-    its ends are the runs of some rank from below and from above, and each run is below the true median by 1/2."""
+    """The probability that the 95 % interval of the median of n independent runs contains the true median, n odd. Its
+    ends are runs of some rank from below and from above; each run is below the true median with probability 1/2."""
     rank = math.ceil(median_estimate(tuple(range(n))).low)
     return 1 - 2 * sum(math.comb(n, below) for below in range(rank + 1)) / 2**n
 
 
 def ratio_estimate(over, under):
-    """The median of the first over that of the second, both drawn anew; n: of the smaller one."""
+    """The median of the first over that of the second, both resampled; n: of the smaller sample."""
     one, other = resampled_medians(over, under)
     return with_interval(median(over) / median(under), min(len(over), len(under)), one / other)
 
@@ -106,7 +106,7 @@ def beta_share(a, b, x):
 
 
 def solved(rising, target, low, high):
-    """Where a rising function reaches the target, by bisection."""
+    """The point where a rising function reaches the target, by bisection."""
     for _ in range(200):
         middle = (low + high) / 2
         low, high = (middle, high) if rising(middle) < target else (low, middle)
@@ -115,7 +115,7 @@ def solved(rising, target, low, high):
 
 @functools.lru_cache(maxsize=None)
 def rate_of(hits, of):
-    """A share with its 95 % interval by Clopper and Pearson; of no hit the upper bound at 95 %."""
+    """A rate with its 95 % interval by Clopper and Pearson; without a hit, the upper bound at 95 %."""
     if hits == 0:
         return Estimate(0, 0, 1 - 0.05 ** (1 / of), of)
     low = solved(lambda p: beta_share(hits, of - hits + 1, p), 0.025, 0, 1)
@@ -141,7 +141,7 @@ class Exponent:
 
 
 def exponent_of(x, y):
-    """None where fewer than three pairs are positive, or x does not differ."""
+    """The Exponent; None if fewer than three pairs are positive, or all x are equal."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     good = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
     x, u, v = x[good], np.log(x[good]), np.log(y[good])
@@ -163,7 +163,7 @@ def exponent_text(e):
 
 
 def rounded(value, digits=3):
-    """Three significant digits, all of a whole number, thousands grouped: 0.0123, 1.50, 12,346."""
+    """Three significant digits, whole numbers in full, thousands grouped: 0.0123, 1.50, 12,346."""
     if value is None or not math.isfinite(value):
         return "-"
     size, sign = abs(value), "-" if value < 0 else ""
@@ -193,7 +193,7 @@ def listed(words):
 
 
 def sentence(text):
-    """With a point at its end where it has none."""
+    """The text, with a full stop unless it ends a sentence already."""
     return text if not text or text[-1] in ".?!" else text + "."
 
 
@@ -203,7 +203,7 @@ def of_all(part, whole):
 
 
 def share(part, whole):
-    """Per cent; a gap of nothing."""
+    """Per cent; NONE if `whole` is 0."""
     return 100 * part / whole if whole else NONE
 
 
@@ -219,7 +219,7 @@ def rate_text(hits, of):
 
 
 def at_most(n):
-    """The upper bound of a rate of which none of n cases showed one: 3/n (Hanley and Lippman-Hand, 1983)."""
+    """The upper bound of a rate after n cases without a hit: 3/n (Hanley and Lippman-Hand, 1983)."""
     return "at most " + rounded(min(1.0, 3 / n), 2)
 
 
@@ -229,14 +229,14 @@ def with_bound(part, whole):
 
 
 def spread(values, unit=""):
-    """`2 (1 to 3)`: the median with the least and the largest; `-` of no values."""
+    """`2 (1 to 3)`: the median with the least and the largest; `-` for no values."""
     if len(values) == 0:
         return "-"
     return f"{rounded(median(values))}{unit} ({rounded(min(values))} to {rounded(max(values))})"
 
 
 def estimate_text(e, digits=3):
-    """`3.88 (3.70 to 4.10)`; of one run its value alone; `-` of none."""
+    """`3.88 (3.70 to 4.10)`; for one run only its value; `-` for none."""
     if e is None or e.n == 0:
         return "-"
     if e.n == 1:
@@ -245,5 +245,5 @@ def estimate_text(e, digits=3):
 
 
 def median_text(values):
-    """The median of values with its interval; `-` of none."""
+    """The median of values with its interval; `-` for none."""
     return estimate_text(median_estimate(tuple(values))) if len(values) else "-"

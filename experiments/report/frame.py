@@ -1,32 +1,32 @@
-"""What a chapter of the report is made of, and how it looks at its rows.
+"""The parts of a chapter of the report, and functions on the rows of its study.
 
-How a chapter is written. The file chapters/NAME.py (dashes become underscores) is the chapter of
-the study NAME, and has one function `fill(chapter, study)`:
+How to write a chapter. The file chapters/NAME.py (dashes become underscores) is the chapter of the
+study NAME, and has one function `fill(chapter, study)`, which returns nothing:
 
 - `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)`
-  and `chapter.find_broken(text)` (a promise that was not kept), what the study does not show to
-  `chapter.limits`, and Figure, Table, Picture and files to their lists. In text, `backticks` stand
-  around commands. It returns nothing. Broken findings are put first afterwards.
-- `study.rows` is a pandas DataFrame of the rows that were measured, in the order of the grid.
+  and `chapter.find_broken(text)` (a broken promise), what the study does not show to
+  `chapter.limits`, and Figure, Table, Picture and files to their lists. In text, put `backticks`
+  around commands. Broken findings are put first afterwards.
+- `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid.
   `study.all_rows` also has the rows that say in `left_out` why nothing was measured;
-  `study.points` is the whole grid. A column for each
+  `study.points` is the whole grid. There is a column for each
     - axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, ""
       where they do not apply), resolution (0: none), frame (-1: none), seed (0: none);
-    - count, by its name, or NAME_count where an axis has that name; NaN where the row has none;
-    - time, as NAME_ms ("total_ms"), and `runs`: the times of each run, a tuple, perhaps empty;
+    - count, by its name, or NAME_count if an axis has that name; NaN if the row has none;
+    - time, as NAME_ms ("total_ms"), and `runs`: a tuple of the times of the runs, perhaps empty;
     - and `contestant`: the method as figures and tables name it ("FAR (OBB)").
-- Columns that some store may lack are read by `column(rows, name)`, `total(rows, name)`,
-  `value(row, name)`; a row is one of `rows.itertuples()`, with a column as an attribute.
-- Numbers are written by estimates.py (all of its names are here too), never by hand.
+- Read columns that a store may lack by `column(rows, name)`, `total(rows, name)`,
+  `value(row, name)`; a row is one of `rows.itertuples()`, with columns as attributes.
+- Format numbers with estimates.py (all of its names are here too), never by hand.
 
-farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with;
-chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` adds to any chapter
-what further devices gave, where others are pairs of a device's name and its Study. A figure's
+farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with.
+chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` adds the results of
+further devices to any chapter; others are pairs of a device's name and its Study. A figure's
 Panel.strip has Series without y, each a row of its own below the panel.
 
-chapters/stability.py is a short one to begin from. A figure has at most six series a panel where
-that is possible; its `n` says what it rests on, and its caption and title say what is shown. Zeros
-on a logarithmic axis need Axis(..., zero=True), and are then drawn at zero.
+chapters/stability.py is a short example. A figure should have at most six series a panel; its `n`
+states the size of its sample, and its caption and title say what it shows. Zeros on a logarithmic
+axis need Axis(..., zero=True), and are then drawn at zero.
 """
 import json
 import math
@@ -43,18 +43,18 @@ from estimates import (NONE, Estimate, counted, coverage, estimate_text, grouped
 
 
 class Damaged(ValueError):
-    """A text of a row is not what its chapter can read."""
+    """A chapter cannot read a text of a row."""
 
 
 @dataclass
 class Series:
-    """Points of one line or cloud. x and y have one length. NaN: a gap."""
+    """Points of one line or cloud. x and y have the same length. NaN: a gap."""
     name: str
     x: list = field(default_factory=list)
     y: list = field(default_factory=list)
     style: str = "lines_points"  # or "lines", "points", "area" (a polygon, filled lightly)
-    emphasis: bool = False       # drawn thick: ours, or the one that the figure is about
-    x_low: list = field(default_factory=list)  # ends of intervals: of the length of x, or none
+    emphasis: bool = False       # drawn thick: ours, or the subject of the figure
+    x_low: list = field(default_factory=list)  # ends of intervals: as many as x, or none
     x_high: list = field(default_factory=list)
     y_low: list = field(default_factory=list)
     y_high: list = field(default_factory=list)
@@ -70,12 +70,12 @@ class Mark:
 
 @dataclass
 class Axis:
-    """A logarithmic axis that shows zeros is linear from 0 to 1 (where values are below 1: to a
+    """A logarithmic axis that shows zeros is linear from 0 to 1 (or, if values are below 1, to a
     power of ten below them all), and logarithmic beyond; the linear part is shaded."""
     label: str = ""  # with the unit in brackets, "time (ms)"
     log: bool = False
     zero: bool = False
-    low: float = None  # ends that are given
+    low: float = None  # fixed ends
     high: float = None
 
 
@@ -90,7 +90,7 @@ class Panel:
     y: Axis = field(default_factory=Axis)
     series: list = field(default_factory=list)
     marks: list = field(default_factory=list)
-    drawing: bool = False  # shapes without axes, a unit of x as long as one of y
+    drawing: bool = False  # shapes without axes; x and y have the same scale
     strip: list = field(default_factory=list)  # Series without y, a row each below the panel
 
 
@@ -100,7 +100,7 @@ class Figure:
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
-    narrow: bool = False  # as wide as one column of two; draw.py says
+    narrow: bool = False  # one column of two wide (draw.py)
 
 
 @dataclass
@@ -109,8 +109,8 @@ class Table:
     name: str
     caption: str
     columns: list
-    rows: list = field(default_factory=list)  # lists of texts, as people read them
-    in_text: bool = True  # False: long, so linked as CSV alone
+    rows: list = field(default_factory=list)  # lists of texts as shown
+    in_text: bool = True  # False: too long, so only linked as CSV
 
 
 @dataclass
@@ -128,13 +128,13 @@ class Chapter:
     study: str
     title: str
     question: str
-    command: str  # that measures it again
+    command: str  # measures the study again
     findings: list = field(default_factory=list)  # pairs: broken, text
     limits: list = field(default_factory=list)    # what the study does not show
     figures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     pictures: list = field(default_factory=list)
-    files: dict = field(default_factory=dict)     # further files of the report: name, text
+    files: dict = field(default_factory=dict)     # more files of the report: name, text
 
     def find(self, text):
         self.findings.append((False, text))
@@ -170,7 +170,7 @@ BOTH_DIRECTIONS = "x,-x,y,-y,z,-z"
 
 
 def method_label(point):
-    """`FAR (OBB)`, or in another form `CULLIDE, one round, all views`."""
+    """The name of a method with its form: `FAR (OBB)`, `CULLIDE, one round, all views`."""
     method, _, form = point.method.partition(" ")
     out = METHODS.get(method, method)
     if method == "far":
@@ -190,7 +190,7 @@ def method_label(point):
 
 
 def contestant(point):
-    """method_label(), with a radius that is not the budget, and views in both directions."""
+    """method_label(), with a radius other than the budget, and with views in both directions."""
     out = method_label(point)
     if point.radius not in ("", "budget"):
         published = point.radius == "published"
@@ -263,7 +263,7 @@ def promising(rows):
 
 
 def by(rows, name):
-    """Pairs of a value of the column and its rows, in the order of the first of each. name: a
+    """Pairs of a value of the column and its rows, in the order of first occurrence. name: a
     column, or a function of a row."""
     keys = rows[name] if isinstance(name, str) else pd.Series(
         [name(row) for row in rows.itertuples()], rows.index, dtype=object)
@@ -271,7 +271,7 @@ def by(rows, name):
 
 
 def resolutions(rows):
-    """Every resolution above 0, that is: declared in pixels; ascending."""
+    """All resolutions above 0 (those declared in pixels), ascending."""
     return sorted(int(r) for r in set(rows.resolution) if r > 0)
 
 
@@ -281,8 +281,8 @@ def find_row(rows, name, resolution):
 
 
 def estimate(row):
-    """The median time of the row's runs in ms with its 95 % interval; of one run no interval; None
-    where the row has no time."""
+    """The median time of the row's runs in ms with its 95 % interval; without interval for one run;
+    None if the row has no time."""
     if row.runs:
         return median_estimate(row.runs)
     one = value(row, "total_ms")
@@ -290,7 +290,7 @@ def estimate(row):
 
 
 def false_positives(row):
-    """Candidates that do not collide, over what collides; NaN where nothing does."""
+    """Candidates that do not collide over pairs that do; NaN if none does."""
     colliding = value(row, "colliding")
     if not colliding > 0:
         return NONE
@@ -303,7 +303,7 @@ def of_rows(rows, part, whole):
 
 
 def sample_text(rows):
-    """`n = 24 points, each the median of 9 runs`: how much the rows rest on."""
+    """The size of the sample: `n = 24 points, each the median of 9 runs`."""
     runs = sorted({max(len(r), 1) for r in rows.runs}) if len(rows) else []
     out = "n = " + counted(len(rows), "point", "points")
     if not runs:
@@ -354,8 +354,8 @@ def count_cell(row, name):
 
 
 def table_of_rows(name, caption, rows, cells):
-    """A long table. cells: by the name of a column, how a row fills it: a function of the row, or
-    the name of a count (its digits are grouped), `~NAME` (rounded) or `=NAME` (a text)."""
+    """A long table. cells: the value of each column by its name: a function of the row, or the
+    name of a count (its digits are grouped), `~NAME` (rounded) or `=NAME` (a text)."""
     def filled(row, cell):
         if callable(cell):
             return cell(row)
@@ -381,7 +381,7 @@ def estimate_cell(row):
 # ---- findings that every chapter has
 
 def is_lemma(row):
-    """Whether the row promises for points that may be violated, not for pairs that are missed."""
+    """Whether the row's promise is about violated points, not about missed pairs."""
     return row.method.startswith("lemma")
 
 
@@ -396,8 +396,8 @@ def breaks(row):
 
 
 def add_promises(chapter, study):
-    """Adds a broken promise for each row that promises and failed; where none did, how many pairs
-    and points could have been missed. Rows that promise and lack the count are told apart."""
+    """Adds a broken promise for each row that promises and failed; if there is none, how many pairs
+    and points could have been missed. Reports rows that promise and lack the count separately."""
     rows = promising(study.rows)
     lost = pd.Series([failures(row) for row in rows.itertuples()], rows.index, float)
     silent, known = int(lost.isna().sum()), rows[lost.notna()]
@@ -410,7 +410,7 @@ def add_promises(chapter, study):
                 else f" misses {part} colliding pairs, and promises to miss none."))
     pairs, points = known[~lemma], known[lemma]
     if len(pairs) and not (lost[pairs.index] > 0).any():
-        # At a resolution chosen by the size of triangles it is the same method.
+        # Drops the size: at a resolution chosen by the size of triangles it is the same method.
         names = [contestant(row._replace(method=row.method.split(" @")[0]))
                  for row in pairs.itertuples()]
         chapter.find(f"{listed(dict.fromkeys(names))} missed {rate_text(0, total(pairs, 'colliding'))} colliding pairs "
@@ -433,7 +433,7 @@ def add_gaps(chapter, study):
 
 
 def command_of(study, runs):
-    """`farcull experiment NAME` with the options that the last run of its rows was given."""
+    """`farcull experiment NAME` with the options of the last run of its rows."""
     words = ["farcull", "experiment", study.name] + ["--quick"] * study.quick
     words += ["--seed", str(study.seed)] if study.seed != 1 else []
     last = study.all_rows.run.max() if len(study.all_rows) else 0

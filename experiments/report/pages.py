@@ -1,5 +1,5 @@
-"""The report as one page of HTML that needs nothing else, as results.md and as report.tex: broken
-promises first, then a section for each chapter."""
+"""The report as one self-contained page of HTML, as results.md and as report.tex: broken promises
+first, then a section for each chapter."""
 import base64
 import collections
 import os
@@ -11,7 +11,7 @@ from draw import inline_svg
 from estimates import counted, grouped, listed, sentence
 from tables import html_prose, html_text, latex_text, table_html
 
-MARK = '<meta name="generator" content="farcull report">'  # index.html is of this program
+MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
 PREAMBLE = r"""\documentclass[a4paper]{article}
 \usepackage{graphicx}
 \usepackage[margin=25mm]{geometry}
@@ -26,9 +26,9 @@ PREAMBLE = r"""\documentclass[a4paper]{article}
 @dataclass
 class DrawnPicture:
     picture: object
-    png: bytes = b""      # empty: there is none
-    page: bool = False    # whether there is a page of it, pages/NAME.html
-    left_out: str = ""    # why
+    png: bytes = b""      # empty if there is none
+    page: bool = False    # whether it has a page, pages/NAME.html
+    left_out: str = ""    # why it was left out
 
     @property
     def command(self):
@@ -37,7 +37,7 @@ class DrawnPicture:
 
 @dataclass
 class Drawn:
-    """A chapter with all that was made for it."""
+    """A chapter with everything that was made for it."""
     chapter: object
     study: object
     svgs: list = field(default_factory=list)
@@ -82,7 +82,7 @@ def driver_text(run):
 
 
 def rows_of_runs(page):
-    """By run, how many rows each study has of it."""
+    """For each run, the number of its rows in each study."""
     out = collections.defaultdict(collections.Counter)
     for drawn in page.chapters:
         for run in drawn.study.all_rows.run:
@@ -111,7 +111,7 @@ class HtmlPage:
         with open(style, encoding="utf-8") as file:
             css = file.read()
         commit = self.page.commit[:12] or "of no commit"
-        # Without its own icon a browser looks for one beside the page.
+        # A browser looks for an icon beside a page without its own.
         return (
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -124,7 +124,7 @@ class HtmlPage:
             + self.machine() + "</main>\n</body>\n</html>\n")
 
     def machines(self):
-        """Each once, in order: devices and CPUs of the runs."""
+        """The devices and CPUs of the runs, each once, in order."""
         runs = self.page.runs[self.page.runs.run.isin(list(rows_of_runs(self.page)))]
         return list(dict.fromkeys(f"{run.gl_renderer} on {run.cpu} ({run.cores} cores)" for run in runs.itertuples()))
 
@@ -245,7 +245,7 @@ class HtmlPage:
 # ---- Markdown
 
 def markdown_prose(text):
-    """Signs of Markdown are escaped, but in code; a bar ends a cell in code as well."""
+    """Escapes signs of Markdown, except in code; a bar is escaped in code too, where it also ends a cell."""
     parts = re.split("(`[^`]*`)", re.sub(r"[\n\r]", " ", text))
     return "".join(part.replace("|", "\\|") if part[:1] == "`" and len(part) > 1
                    else re.sub(r"([\\*_<>|\[\]#`])", r"\\\1", part) for part in parts)

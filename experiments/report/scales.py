@@ -1,7 +1,7 @@
-"""Where an axis begins and ends and what its ticks say, decided here and not by the plotter, so
-that zeros have a place on logarithmic axes and labels fit.
+"""The ends and ticks of axes. They are not left to the plotter, so that zeros have a place on
+logarithmic axes and labels fit.
 
-Ticks stand at 1, 2 or 5 times powers of ten, or at the values where these are powers of two.
+Ticks are at 1, 2 or 5 times powers of ten, or at the values if these are powers of two.
 """
 import math
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ class Scale:
     ticks: list = field(default_factory=list)  # pairs of value and label ("": a minor tick)
 
     def place(self, value):
-        """Where on the axis of the plotter, which is linear; NaN where a value has no place."""
+        """The position on the plotter's axis, which is linear; NaN if the value has none."""
         if value is None or not math.isfinite(value):
             return math.nan
         if not self.log:
@@ -41,7 +41,7 @@ def power_label(exponent):
 
 
 def tick_label(value):
-    """12345.678 as 12,346; few digits, no zeros at the end; 10⁵ where it is long."""
+    """12345.678 as 12,346: few digits, no zeros at the end; 10⁵ if it would be long."""
     size = abs(value)
     if size != 0 and (size >= 1e7 or size < 1e-4):
         exponent = math.floor(math.log10(size) + 1e-9)
@@ -59,13 +59,13 @@ def round_down(x):
 
 
 def round_up(x):
-    """The least of them that is at least x."""
+    """The least of 1, 2 and 5 times a power of ten that is at least x."""
     base = 10.0 ** math.floor(math.log10(round_down(x)) + 1e-9)
     return next((m * base for m in (1, 2, 5, 10, 20) if m * base >= x), 50 * base)
 
 
 def thinned(ticks, fits):
-    """Labels are taken away, every second first, until the others fit."""
+    """Removes labels, every second one first, until the others fit."""
     while not fits(ticks):
         labelled = [i for i, (_, label) in enumerate(ticks) if label]
         if len(labelled) <= 2:
@@ -76,7 +76,7 @@ def thinned(ticks, fits):
 
 
 def ticks_at_powers_of_two(values):
-    """Resolutions and the like: all values are powers of two, and few."""
+    """Ticks at the values, such as resolutions, if these are few powers of two; else none."""
     distinct = sorted(set(values))
     if not 3 <= len(distinct) <= 10 or any(v <= 0 or math.frexp(v)[0] != 0.5 for v in distinct):
         return []
@@ -91,7 +91,7 @@ def even_ticks(low, high, step):
 
 
 def log_ticks(scale, lowest):
-    if scale.high < 5 * lowest:  # powers say nothing where there is hardly one
+    if scale.high < 5 * lowest:  # powers mean nothing if there is hardly one
         return even_ticks(lowest, scale.high, round_up((scale.high - lowest) / 4))
     first = math.ceil(math.log10(lowest) - 1e-9)
     last = math.floor(math.log10(scale.high) + 1e-9)
@@ -122,17 +122,17 @@ def log_scale(axis, values, fits):
     scale.low, scale.high = min(scale.low, least), max(scale.high, most)
     lowest, zero = scale.low, []
     if axis.zero and len(positive) < len(values):
-        # Counts: linear from 0 to 1. Of what is below 1: to the power of ten below it.
+        # Zeros: linear from 0 to 1, or, for values below 1, to the power of ten below the least.
         lowest = 1.0 if least >= 1 else 10.0 ** math.floor(math.log10(least) + 1e-9)
         band = max(0.3, 0.13 * math.log10(scale.high / lowest))
-        band = min(band, (math.log10(lowest) + 305) / 1.5)  # not below what a double can be
+        band = min(band, (math.log10(lowest) + 305) / 1.5)  # stays within the range of doubles
         scale.zero, scale.linear_to = lowest * 10 ** -band, lowest
         scale.low = lowest * 10 ** (-1.5 * band)
         zero = [(0.0, "0")]
     at = [] if scale.zero else ticks_at_powers_of_two(values)
     if at:
         at = [t for t in at if scale.low <= t[0] <= scale.high]
-        air = (scale.high / scale.low) ** 0.03  # beside the first and the last point
+        air = (scale.high / scale.low) ** 0.03  # space beside the first and the last point
         scale.low = scale.low if axis.low else at[0][0] / air
         scale.high = scale.high if axis.high else at[-1][0] * air
     scale.ticks = thinned(at or zero + log_ticks(scale, lowest), fits)
@@ -141,7 +141,7 @@ def log_scale(axis, values, fits):
 
 def linear_scale(axis, values, fits):
     least, most = (min(values), max(values)) if values else (0.0, 1.0)
-    if 0 < least < 0.5 * most:  # from 0 where that does not squeeze what there is to see
+    if 0 < least < 0.5 * most:  # begins at 0 unless that squeezes the data
         least = 0.0
     least = least if axis.low is None else axis.low
     most = most if axis.high is None else axis.high
@@ -150,7 +150,7 @@ def linear_scale(axis, values, fits):
         least -= around if axis.low is None and least != 0 else 0
         most = least + 2 * around
     step = max(round_up((most - least) / 5), 5e-324)
-    # One tick gives no scale: where both ends are given, hardly a multiple may be between them.
+    # One tick gives no scale: between two fixed ends there may hardly be a multiple.
     while None not in (axis.low, axis.high) and len(even_ticks(least, most, step)) < 3:
         finer = round_down(0.9 * step)
         if not finer > (most - least) / 20:
@@ -158,12 +158,12 @@ def linear_scale(axis, values, fits):
         step = finer
     low = least if axis.low is not None else math.floor(least / step + 1e-9) * step
     high = most if axis.high is not None else math.ceil(most / step - 1e-9) * step
-    # Rounding must not leave a value outside.
+    # Rounding must not leave a value outside the axis.
     low, high = min(low, least), max(high, most)
     return Scale(False, low, high, ticks=thinned(even_ticks(low, high, step), fits))
 
 
 def scale_of(axis, values, fits):
-    """values: all that are drawn along the axis; fits(ticks): whether the labels have room."""
+    """values: all values drawn along the axis; fits(ticks): whether the labels have room."""
     values = [float(v) for v in values if v is not None and math.isfinite(v)]
     return (log_scale if axis.log else linear_scale)(axis, values, fits)

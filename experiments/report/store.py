@@ -1,6 +1,6 @@
 """Reads a store of results (experiments/studies/store.h) into data frames.
 
-The command has opened the store before, and refused one that is damaged or of another version.
+The command has opened the store before, and refuses one that is damaged or of another version.
 """
 import json
 import pathlib
@@ -18,7 +18,7 @@ class Store:
     def __init__(self, folder):
         self.path = f"{folder}/results.sqlite"
         name = urllib.parse.quote(str(pathlib.Path(self.path).absolute()))
-        # What a killed program left half done is taken back first, for which it must be writable.
+        # Opened read-write: SQLite first rolls back the unfinished work of a killed program.
         self.database = sqlite3.connect(f"file:{name}?mode=rw", uri=True)
         self.runs = self.read("SELECT * FROM runs ORDER BY run")
         self.names = list(self.read("SELECT study FROM studies ORDER BY rowid").study)

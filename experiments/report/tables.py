@@ -8,14 +8,14 @@ import re
 
 from store import AXES
 
-# Signs that pdfLaTeX's text fonts lack, and characters of commands.
+# Signs that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
 LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
          "→": "$\\to$", "−": "$-$", "∞": "$\\infty$", "µ": "$\\mu$", "≈": "$\\approx$",
          "⁻": "$^{-}$", **{d: f"$^{i}$" for i, d in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
          **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
          "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
          "|": "$|$", "`": ""}
-ROWS_OF_FLOAT = 40  # a float holds a page at most
+ROWS_OF_FLOAT = 40  # a float is at most one page
 
 
 def html_text(text):
@@ -23,7 +23,7 @@ def html_text(text):
 
 
 def html_prose(text):
-    """What stands between backticks as code; a backtick without a partner is one."""
+    """Text between backticks becomes code; a backtick without a partner stays."""
     return re.sub("`([^`]*)`", r"<code>\1</code>", html_text(text))
 
 
@@ -50,7 +50,7 @@ def table_html(table):
 
 
 def table_latex(table):
-    """Floats with caption, label tab:NAME and the rules of booktabs, scaled where they are wider than the text."""
+    """Floats with caption, label tab:NAME and the rules of booktabs, scaled if they are wider than the text."""
     def line(cells):
         return "    " + " & ".join(latex_text(cell) for cell in cells) + " \\\\\n"
 

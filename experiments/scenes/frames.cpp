@@ -1,4 +1,4 @@
-// Frames come from a built-in motion, or from meshes that are read anew for each frame.
+// Frames come from a built-in motion, or from meshes that are read again for each frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,13 +127,12 @@ FrameNotes FrameSource::notes() const {
   return {.values = built_in_->notes(), .warning = built_in_->warning()};
 }
 
-// Objects that are not tested against each other, by their names; and scenes that are written: a
-// mesh for each object, and a scene file that names them.
+// Objects that are not tested against each other, by their names; and writing scenes: a mesh for
+// each object, and a scene file that names them.
 
 namespace {
 
-// Names are looked up in the scene when it is there: those of frames may differ from frame to
-// frame.
+// Names are looked up in each scene: the names of objects may differ from frame to frame.
 
 constexpr const char* kRemedy =
     "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
@@ -141,8 +140,8 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Whether the name fits a pattern, in which a * stands for any characters. The last * is tried
-/// with one character more whenever the rest does not fit.
+/// Whether the name matches a pattern, in which a * stands for any characters. After a mismatch,
+/// the last * takes one character more.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
   while (n < name.size()) {
@@ -169,7 +168,7 @@ std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view patte
   return out;
 }
 
-/// Whether the pattern is the name of an object, and fits others too, so that it may mean either.
+/// Whether the pattern is ambiguous: it is the name of an object and also matches others.
 bool doubtful(const Scene& scene, std::string_view pattern,
               const std::vector<std::uint32_t>& objects) {
   return std::ranges::any_of(objects,
@@ -188,7 +187,7 @@ std::string some_names(const Scene& scene) {
   return out + (scene.objects.size() > kShown ? ", ..." : "");
 }
 
-/// Every two different objects of the groups.
+/// All pairs of different objects of the groups.
 std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
                                  const std::vector<std::uint32_t>& second) {
   std::vector<ObjectPair> out;
@@ -304,7 +303,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
 
-// A folder and what this call put there, taken away again unless it is kept.
+// A folder and the files that this call put there, removed again unless keep() is called.
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -348,8 +347,8 @@ class Folder {
   WrittenScene written_;
 };
 
-// A name for each object that a file and a group may have, each once; without '_', which stands
-// before the numbers of frames.
+// A unique name for each object, valid for a file and a group; without '_', which precedes the
+// number of a frame.
 std::vector<std::string> file_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -391,7 +390,7 @@ std::string obj_text(const Scene& scene) {
   return out;
 }
 
-// The pairs of ignored objects by their names, which a scene file is read with.
+// The pairs of ignored objects, by the names that a scene file gives them.
 std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const ObjectPair& pair : scene.ignored) {
@@ -477,7 +476,7 @@ class FrameFiles {
   }
 
  private:
-  // The text of the first frame, until another one differs.
+  // The text of the first frame; dropped once another frame differs.
   struct Mesh {
     std::string first;
     bool moves = false;

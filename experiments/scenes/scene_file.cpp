@@ -1,5 +1,5 @@
-// Reads and writes scene files as JSON. Reading takes the syntax first, for the line of an error,
-// then the values one by one.
+// Reads and writes scene files as JSON. Reading checks the syntax first, to name the line of an
+// error, then reads the values one by one.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
@@ -28,11 +28,11 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
-// No file is opened by a longer path (PATH_MAX of Linux), and a byte of one can take 36 in each
-// std::filesystem::path.
+// Linux opens no file by a longer path (PATH_MAX), and std::filesystem::path may need 36 bytes of
+// memory for each byte of a path.
 constexpr std::size_t kMaxPathBytes = 4096;
 
-// The characters of a text, which tell on what line the one stands that was read last.
+// Iterates over the characters of a text and counts the line of the one read last.
 class Reading {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -61,9 +61,9 @@ class Reading {
   long* line_;
 };
 
-// Reads a text for its syntax alone: the place of the first error, which json::parse does not tell
-// for every error, keys that occur twice, of which json::parse silently keeps the last, and the
-// lines of the pairs of ignored objects.
+// Reads only the syntax of a text. Finds what json::parse does not report: the place of the first
+// error, keys that occur twice, of which json::parse silently keeps the last, and the lines of the
+// pairs of ignored objects.
 class Syntax : public nlohmann::json_sax<json> {
  public:
   // line: of the character that was read last.
@@ -99,7 +99,7 @@ class Syntax : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t position, const std::string&,
                    const json::exception& error) override {
     at = position;
-    // The library's text after "[json.exception.parse_error.101] parse error at line 1, column 2:
+    // The library's text without "[json.exception.parse_error.101] parse error at line 1, column 2:
     // ".
     reason = error.what();
     for (const std::string_view mark : {"] ", "column "}) {
@@ -123,12 +123,12 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string last_;  // the last key of the file's object
 };
 
-// A mesh is named relative to the scene file.
+// Names of meshes are relative to the scene file.
 std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
-// The readers of values: each takes the value and its place in the file, as in objects[1].scale.
+// Reads values. Each function takes a value and its place in the file, as in objects[1].scale.
 class SceneFile {
  public:
   SceneFile(std::string path, std::vector<long> ignore_lines, MeshCache& meshes)
@@ -152,7 +152,7 @@ class SceneFile {
     return builder;
   }
 
-  // Precondition: the scene has the objects of the file; of them only the names are read.
+  // Precondition: the scene has the objects of the file. Only their names are read.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
                                        Lacking lacking = Lacking::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
@@ -180,7 +180,7 @@ class SceneFile {
     require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
     require(mesh.size() <= kMaxPathBytes, place + ".mesh",
             fmt::format("is a path of {} bytes", mesh.size()), "name a mesh file");
-    // The system would end the path there and give a mesh that was read before.
+    // The system would end the path there and open another file.
     require(mesh.find('\0') == std::string::npos, place + ".mesh", "contains a NUL byte",
             "name a mesh file");
     std::string name = mesh_stem(mesh);
@@ -288,13 +288,13 @@ class SceneFile {
   MeshCache& meshes_;
 };
 
-/// The text as JSON, and the lines of what it ignores.
+/// The text as JSON, and the lines of its ignored pairs.
 struct Parsed {
   json root;
   std::vector<long> ignore_lines;
 };
 
-// Throws Error for its syntax.
+// Throws Error if the syntax is wrong.
 Parsed parsed(const std::string& text, const std::string& path) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
@@ -325,12 +325,12 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
   return scene;
 }
 
-// Meshes that a streamed scene file keeps.
+// Memory for the meshes that a streamed scene file keeps.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& take) {
   MeshCache meshes;
-  std::size_t bytes = 0;  // of the parts since the cache was empty, at least those of its meshes
+  std::size_t bytes = 0;  // of the parts since the cache was emptied; an upper bound of its meshes
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
   Scene names;  // of the whole scene
@@ -351,8 +351,8 @@ std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& tak
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// A scene of mesh files. Every extension is looked at first, so that nothing is read for minutes
-// before the last argument is refused. `added` is called after each file.
+// A scene of mesh files. Checks every extension first, so that a bad last argument is refused
+// before minutes of reading. `added` is called after each file.
 SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes,
                              const std::function<void(SceneBuilder&)>& added = {}) {
   for (const std::string& path : paths) {

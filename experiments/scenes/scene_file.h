@@ -1,5 +1,5 @@
-// From what stands on the command line to a scene: mesh files, a built-in scene, or a scene file;
-// as a whole, or part by part for those who cannot hold all of it.
+// Makes a scene from command-line arguments: mesh files, a built-in scene, or a scene file; as a
+// whole, or part by part for callers that cannot hold all of it.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@
 
 namespace farcull {
 
-// Objects that are not tested against each other, as the command line and files name them.
+// Objects that are not tested against each other, by the names on the command line and in files.
 
-/// Treatment of a name that no object has. In a frame after the first one it is no mistake: objects
-/// may come and go, and an object that is not there needs not be ignored.
+/// Treatment of a name that no object has. After the first frame it is no error: objects may come
+/// and go, and an absent object need not be ignored.
 enum class Lacking { refused, passed_over };
 
-/// The pairs of different objects of which one has a name of the first pattern and the other one a
-/// name of the second. In a pattern a * stands for any characters. where, line: of an error; what:
-/// the pair as an error names it. Throws Error where a pattern does not tell which objects it
-/// means; and, unless that is passed over, where no object has a name of a pattern, and where both
-/// patterns name one and the same object alone.
+/// The pairs of different objects where one has a name of the first pattern and the other one a
+/// name of the second. A * in a pattern stands for any characters. Errors name `where`, `line` and
+/// the pair as `what`. Throws Error if a pattern is ambiguous; and, unless `lacking` passes it
+/// over, if no object has a name of a pattern, or if both patterns name one and the same object
+/// alone.
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
                                       const std::string& what, long line = 0,
@@ -43,16 +43,15 @@ struct IgnoredNames {
 
 /// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore where one is empty.
 std::vector<IgnoredNames> parse_ignored(const std::string& list);
-/// The pairs of a text file, one a line; empty lines and those that begin with # are passed over.
-/// A byte order mark is passed over. Throws Error naming the file where it cannot be read or names
-/// no pair.
+/// The pairs of a text file, one a line. Empty lines, lines that begin with # and a byte order mark
+/// are passed over. Throws Error naming the file if it cannot be read or names no pair.
 std::vector<IgnoredNames> read_ignored(const std::string& path);
 
-/// The pairs of different objects of which one is of the first group and the other one of the
-/// second; as in_order() gives them. A name may hold colons: each place where both sides name
-/// objects is tried. Throws Error naming `where` and the line for a text without a colon, where two
-/// places fit; and, unless that is passed over, for a name that no object has, and where the two
-/// groups are one object.
+/// The pairs of different objects where one is of the first group and the other one of the second,
+/// as in_order() gives them. A name may hold colons: each place where both sides name objects is
+/// tried. Throws Error naming `where` and the line for a text without a colon and if two places
+/// fit; and, unless `lacking` passes it over, for a name that no object has and if the two groups
+/// are one object.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         Lacking lacking = Lacking::refused);
 
@@ -81,20 +80,20 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 /// file, the line (syntax, and names of ignored objects) or the place as in
 /// objects[1].rotate.axis (contents).
 Scene load_scene(const std::vector<std::string>& arguments);
-/// The same with the meshes that `meshes` gives, and keeps.
+/// The same; meshes come from `meshes` and stay there.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 
 /// Whether load_scene() takes the name for that of a scene file.
 bool is_scene_file(const std::string& name);
-/// The paths of the meshes that a scene file names, each as often as it is named; as many as can be
-/// told, where the file cannot be read or is not of the form above.
+/// The paths of the meshes that a scene file names, each as often as it is named. Returns what
+/// could be read if the file cannot be read or is not of the form above.
 std::vector<std::string> meshes_of_scene_file(const std::string& path);
 
-/// The same for the text of a scene file; `path` stands in errors and is what mesh paths are
-/// relative to.
+/// load_scene() for the text of a scene file. `path` is named in errors, and mesh paths are
+/// relative to it.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
-/// An object of a scene file that is written, unmoved.
+/// An object in a scene file to be written, without a placement.
 struct SceneFileObject {
   std::string name, mesh;
   bool groups = false;  // split: groups
@@ -104,8 +103,8 @@ struct SceneFileObject {
 std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
                             const std::vector<std::pair<std::string, std::string>>& ignored);
 
-/// Throws Error where load_scene({name}) could only fail: no built-in scene as parse_scene_name()
-/// takes it, and no file. A name with a number in it (%d) is not looked for.
+/// Throws Error if load_scene({name}) can only fail: `name` is neither a built-in scene for
+/// parse_scene_name() nor a file. A name with a number in it (%d) is not looked for.
 void require_known(const std::string& name);
 
 /// Takes a part of a scene: some consecutive objects, each whole, as a valid scene of its own with
@@ -123,11 +122,11 @@ using TakePart = std::function<void(Scene& part)>;
 std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
                                      const TakePart& take);
 
-// A scene that moves, frame by frame; and scenes written as files.
+// A scene that moves, frame by frame; and writing scenes to files.
 //
 // In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
-// same memory, so that a backend sees what it has to send again. Where the topology changes,
-// nothing of the frame before is reused.
+// same memory, which tells a backend what it has to send again. If the topology changes, nothing of
+// the previous frame is reused.
 
 /// Frames first to last, both included; 0 <= first <= last. Of a built-in motion that is a path
 /// they are the end of last + 1 frames, so that 30:59 is the second half of 60 frames.
@@ -140,34 +139,34 @@ struct FrameRange {
 /// --frames.
 FrameRange parse_frames(const std::string& text);
 
-/// A scene that depends on a number.
+/// A scene that depends on the number of a frame.
 class FrameSource {
  public:
-  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes
-  /// some of whose names hold %d or %04d, on the command line or in a scene file. self: every
-  /// object is tested against itself. Throws Error where nothing moves, or as load_scene() does for
-  /// the first frame.
+  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes some
+  /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
+  /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
+  /// frame.
   FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
-  /// A scene that is not named, whose frames the range has to be.
+  /// A given scene without arguments. The range must be that of its frames.
   explicit FrameSource(MovingScene moving);
 
-  /// The scene at a frame of the range; the same object each time, and the same memory of triangles
-  /// where the topology is that of the call before. Throws Error naming the file where a mesh
+  /// The scene at a frame of the range. Returns the same object each time, and the same memory of
+  /// triangles if the topology is that of the previous call. Throws Error naming the file if a mesh
   /// cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
-  /// The error that at() will throw for the first frame of the range whose files do not all exist
+  /// The error that at() will throw for the first frame of the range with a missing file, as of
   /// now.
   std::optional<Error> missing() const;
 
-  /// Whether the triangles, by their indices, the number of vertices or the objects were others in
-  /// the call of at() before the last one. False after the first call.
+  /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
+  /// or the objects. False after the first call.
   bool topology_changed() const { return changed_; }
-  /// The notes of a built-in motion on the frame.
+  /// The notes of a built-in motion on the current frame.
   FrameNotes notes() const;
 
  private:
-  // The error of at() where a mesh of the frame has no file now.
+  // The error of at() if a mesh file of the frame is missing now.
   std::optional<Error> missing_at(long frame) const;
 
   std::vector<std::string> arguments_;
@@ -176,7 +175,7 @@ class FrameSource {
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
   Scene scene_;  // of meshes, as it is now
-  // The topology of the call before.
+  // The topology in the previous call.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Object> objects_;
@@ -184,10 +183,10 @@ class FrameSource {
   bool changed_ = false;
 };
 
-// Scenes as files: meshes whose doubles are read back as they were, and the scene file that puts
-// them together again.
+// Scenes as files: meshes with 17 significant digits, so that every double is read back unchanged,
+// and the scene file that puts them together again.
 
-/// The files of one call.
+/// The files that one call has written.
 struct WrittenScene {
   std::string scene_file;  // FOLDER/scene.json
   std::uint64_t files = 0;
@@ -195,18 +194,18 @@ struct WrittenScene {
 };
 
 /// Writes each object as OFF, NAME.off, with the vertices that it uses and 17 significant digits,
-/// and scene.json, whose scene has the same scene_hash(). NAME is that of the object with what is
-/// not a letter, a digit, '.' or '-' replaced, and a number where two would be the same. The
-/// last part of `folder` is made where it does not exist; files that do are replaced, as by other
-/// outputs; scene.json comes last. Throws Error naming a path that the system refuses; files that
-/// were not there before are taken away again then. Precondition: every object has a triangle.
+/// and scene.json, whose scene has the same scene_hash(). NAME is the object's name with everything
+/// but letters, digits, '.' and '-' replaced, and with a number if two would be the same. Creates
+/// the last part of `folder` if it does not exist; replaces existing files, as other outputs do;
+/// writes scene.json last. Throws Error naming a path that the system refuses, and then removes the
+/// files that are new. Precondition: every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 /// The same for frames, for `farcull run FOLDER/scene.json --frames`: NAME_%04d.off with the number
-/// of the frame; NAME.off for an object that stands still while others move. Where objects come and
-/// go (`objects_change`), all of a frame are groups of one OBJ instead, in their order. `at` gives
-/// the frames of the range in order. Throws Error as write_scene(), and where objects come and go
-/// but only some are tested against themselves, which no scene file can say.
+/// of the frame, or NAME.off for an object that stands still while others move. If objects come and
+/// go (`objects_change`), all objects of a frame are groups of one OBJ instead, in their order.
+/// `at` gives the frames of the range in order. Throws Error as write_scene(), and if objects come
+/// and go but only some are tested against themselves, which no scene file can express.
 WrittenScene write_frames(const std::function<const Scene&(long)>& at, FrameRange range,
                           bool objects_change, const std::string& folder,
                           const Progress& progress = {});

@@ -1,5 +1,5 @@
-// The result of a point: as structures, and as a row of the store. The names of the fields of a
-// structure are those of the counts in the store; an optional that is empty is left out there.
+// The result of a point: as structures, and as a row of the store. Fields have the names of the
+// counts in the store; an empty optional is left out there.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace farcull {
 /// An answer compared with the truth of its scene (measure/harness.h).
 struct AnswerCounts {
   std::uint64_t colliding = 0, missed = 0;  // pairs
-  std::uint64_t missed_triangles = 0;       // colliding triangles that are in none of its pairs
+  std::uint64_t missed_triangles = 0;       // colliding triangles in none of its pairs
   std::uint64_t candidates = 0;             // pairs given to exact tests
   std::uint64_t triangles = 0, objects = 0;
 };
@@ -35,8 +35,8 @@ struct RadiusCounts {
   double radius_px = 0, pixel_size = 0;
   FARCULL_FIELDS(radius_px, pixel_size)
 };
-/// FAR: fragments of one drawing (fragments.h). FAR pairs: entries in the lists of pixels
-/// (`fragments`), comparisons (`tests`) and the views that it looked with.
+/// FAR: fragments of one drawing (Fragments in run_point.h). FAR pairs: entries in the lists of
+/// pixels (`fragments`), comparisons (`tests`) and the views used.
 struct FragmentCounts {
   std::optional<std::uint64_t> elements = {}, covered = {};
   std::uint64_t fragments = 0;
@@ -44,14 +44,14 @@ struct FragmentCounts {
   FARCULL_FIELDS(elements, covered, fragments, tests, views)
 };
 
-/// The resolution that was chosen for a RunPoint by the size of triangles.
+/// The resolution that the size of triangles chose for a RunPoint.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
-  double mean_pixels = 0;        // that a triangle covers there
+  double mean_pixels = 0;        // that a triangle covers at it
   FARCULL_FIELDS(resolution, mean_pixels)
 };
 
-/// Neighbours (verify/exact.h) among the candidates of a method, and those of them that collide.
+/// Neighbours (verify/exact.h) among the candidates of a method, and the colliding ones of them.
 struct NeighbourCounts {
   std::uint64_t neighbour_candidates = 0, neighbours = 0;
   FARCULL_FIELDS(neighbour_candidates, neighbours)
@@ -60,16 +60,16 @@ struct NeighbourCounts {
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;  // of `missed` (verify/contact.h); the rest touches
-  /// Pairs that the same run misses with 0.9 of its radius; empty: not asked. Where there are none,
-  /// that nothing was missed says nothing of the radius.
+  /// Pairs that the same run misses with 0.9 of its radius; empty: not measured. If it is 0, a run
+  /// without misses says nothing about the radius.
   std::optional<std::uint64_t> at_risk = {};
   std::uint64_t colliding_triangles = 0;  // of the truth
   std::uint64_t kept_triangles = 0, kept_objects = 0;
-  bool promises = false;  // the method, by its options; a miss then breaks the promise
-  /// True where it promises, and its device does not keep what the promise rests on; else empty.
+  bool promises = false;  // the method guarantees to miss nothing, by its options
+  /// True if it promises, but its device does not keep the assumptions; else empty.
   std::optional<bool> revoked = {};
   std::string scene_hash;
-  std::optional<std::uint64_t> object_triangles = {};  // of i-collide
+  std::optional<std::uint64_t> object_triangles = {};  // only for i-collide
   std::optional<DrawnCounts> drawn = {};
   std::optional<RadiusCounts> radius = {};
   std::optional<FragmentCounts> fragments = {};
@@ -103,7 +103,7 @@ struct LemmaCounts {
                  step_px, radius_px, budget_px, promises, revoked)
 };
 
-/// Counts of a PlacementPoint (placements.h).
+/// Counts of a PlacementPoint (run_point.h).
 struct PlacementCounts {
   std::uint64_t placements = 0;
   std::uint64_t colliding_placements = 0;   // with at least one colliding pair
@@ -116,8 +116,8 @@ struct PlacementCounts {
                  largest_miss_px, radius_px, budget_px, promises)
 };
 
-/// Counts of a frame of the cloth, with every pair of triangles accounted for
-/// (verify/accounting.h), and what the step to it left (scenes/cloth/cloth.h).
+/// Counts of a frame of the cloth with every pair of triangles accounted for (verify/accounting.h),
+/// and results of the step to this frame (scenes/cloth/cloth.h).
 struct ClothCounts {
   std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; neighbours of the colliding
   std::uint64_t candidates = 0;                             // pairs given to exact tests
@@ -135,17 +135,16 @@ struct ClothCounts {
                  iterations, converged, revoked)
 };
 
-constexpr int kSceneResolution = 512;  // px, of PixelCounts
+constexpr int kSceneResolution = 512;  // px, for PixelCounts
 
-/// Pixels that triangles cover at kSceneResolution in the views x, y and z: the area of a
-/// triangle's image. Of a tenth of them it is at most the first number, of half the second, of nine
-/// tenths the third. At another resolution they are as the squares of the resolutions.
+/// Pixels that a triangle covers at kSceneResolution in the views x, y and z (the area of its
+/// image): the 10th, 50th and 90th percentile. They grow with the square of the resolution.
 struct PixelCounts {
   double pixels_tenth = 0, pixels_half = 0, pixels_ninety = 0;
   FARCULL_FIELDS(pixels_tenth, pixels_half, pixels_ninety)
 };
 
-/// Counts of a scene by itself.
+/// Counts of a scene without any method.
 struct SceneCounts {
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t self_objects = 0;               // that are tested against themselves
@@ -155,16 +154,15 @@ struct SceneCounts {
   FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)
 };
 
-/// Counts of a LibraryPoint (peers/score.h): pairs of triangles, of which `missed` and
-/// `wrong` are measured by closed triangles, and `own_` by what the library's documentation
-/// promises.
+/// Counts of a LibraryPoint (peers/score.h): pairs of triangles. `missed` and `wrong` compare with
+/// closed triangles, `own_` with what the library's documentation promises.
 struct LibraryCounts {
   std::uint64_t asked = 0, answered = 0, missed = 0, wrong = 0;
   std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
   std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
   std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
-  std::uint64_t timed = 0;                 // answers of which `total` is the sum of times
-  std::uint64_t twice = 0, differing = 0;  // asked a second time, and answered otherwise then
+  std::uint64_t timed = 0;                 // answers whose times `total` adds up
+  std::uint64_t twice = 0, differing = 0;  // asked a second time, and the different answers
   std::uint64_t neighbours_left_out = 0;   // pairs that it is not made for
   bool promises = false;                   // as in RunCounts
   std::string library = {}, means = {}, call = {};  // as on its card
@@ -173,8 +171,8 @@ struct LibraryCounts {
   std::string scores = {};                          // by kind and parameter: scores_text()
   /// IDs of the first pairs of their kind in the family.
   std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
-  /// Minimized (peers/minimize.h) from the first of their kind about which the documentation
-  /// promises the answer: the line of a pair with ID 0 (suite/writer.h).
+  /// Minimized (peers/score.h) from the first pair of its kind for which the documentation promises
+  /// the answer: the line of a pair with ID 0 (suite/writer.h).
   std::optional<std::string> example_missed = {}, example_wrong = {}, example_death = {};
   FARCULL_FIELDS(asked, answered, missed, wrong, own_asked, own_missed, own_wrong, refused,
                  unanswered, crashed, hung, no_memory, not_asked, timed, twice, differing,
@@ -195,14 +193,14 @@ struct SetCounts {
   FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
 };
 
-/// Counts of a DistancePoint: distances that are wrong in some way, of those asked for
+/// Counts of a DistancePoint: the distances asked for, and the wrong ones by kind
 /// (measure/bench.h).
 struct DistanceCounts {
-  std::uint64_t asked = 0;  // distances that the question has
+  std::uint64_t asked = 0;  // distances in the question
   DistanceErrors errors;
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
-  /// Distances that are not the nearest double, and distances of nothing that was asked for.
+  /// Distances that are not the nearest double, and distances that were not asked for.
   std::uint64_t wrong = 0;
   bool promises = false;     // that every distance is the nearest double
   std::string library = {};  // with its version
@@ -219,30 +217,30 @@ using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
 using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 NamedCounts named(const Counts& counts);
 
-/// Milliseconds, which no two runs share.
+/// Milliseconds; they differ between runs.
 struct PointTimes {
-  std::optional<double> build = {};  // of the hierarchies of a library
+  std::optional<double> build = {};  // of a library's hierarchies
   std::optional<double> cull = {}, exact = {};
   std::optional<double> total = {};  // without setup
   std::optional<double> setup = {};
   std::optional<double> total_min = {}, total_max = {};  // of several runs
-  std::vector<double> totals = {};                       // of several runs, each, in their order
+  std::vector<double> totals = {};                       // of several runs, in their order
   FARCULL_FIELDS(build, cull, exact, total, setup, total_min, total_max, totals)
 };
 
 /// The result of a point.
 struct PointResult {
-  Counts counts = {};  // the same on every run on the same device, bit for bit; those of methods on
-                       // native and cpu are the same on every machine
+  Counts counts = {};  // the same on every run on the same device, bit for bit; on native and cpu
+                       // the same on every machine
   PointTimes times = {};
   std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
-  std::string left_out = {};  // why nothing was measured (a library that this build is without, a
-                              // resolution beyond the device); empty: it was
+  std::string left_out = {};  // why nothing was measured (a library that this build lacks, a
+                              // resolution beyond the device); empty if it was
 };
 
-/// A JSON object that is copied like a value. It is behind a pointer because <nlohmann/json.hpp>
-/// takes up to a second of every file that includes it: only the files that look inside have to.
+/// A JSON object that is copied like a value. A pointer hides it because <nlohmann/json.hpp> costs
+/// up to a second of compile time per file: only files that use the contents include it.
 class JsonObject {
  public:
   JsonObject();  // an empty object
@@ -265,7 +263,7 @@ class JsonObject {
   std::unique_ptr<nlohmann::ordered_json> value_;
 };
 
-/// The same as a row of a store holds it. Rows of other versions may have other names.
+/// A PointResult as a row of a store. Rows of other versions may have other names.
 struct Measurement {
   JsonObject counts = {};
   JsonObject times = {};
@@ -274,8 +272,8 @@ struct Measurement {
 };
 Measurement stored(const PointResult& result);
 
-/// True where a promise was not kept: `promises` is true and `missed`, `missed_pairs`, `wrong` or
-/// `violations` above 0, or a contestant had no answer to a question.
+/// True if a promise is broken: `promises` is true and `missed`, `missed_pairs`, `wrong` or
+/// `violations` is above 0, or a contestant did not answer a question.
 bool breaks_promise(const Measurement& measurement);
 
 }  // namespace farcull

@@ -1,9 +1,8 @@
 // The studies "accuracy" and "error-time": what every method misses, by the number of pixels and by
-// the form of CULLIDE, and against the time that it takes, beside libraries. And "stability" and
-// "cloth": scenes that go to an extreme, and which methods still find what collides; and every
-// frame of a cloth that falls, at four stiffnesses, with every pair of triangles accounted for. The
-// simulation takes hours where the cloth is fine and stiff, so its states are kept
-// (scenes/cloth/cloth.h), and the stiffnesses take turns.
+// the form of CULLIDE, and against its time, beside libraries. Also "stability" and "cloth": which
+// methods still find all collisions in extreme scenes; and every frame of a falling cloth, at four
+// stiffnesses, with every pair of triangles accounted for. The simulation of a fine and stiff cloth
+// takes hours, so its states are kept (scenes/cloth/cloth.h), and the stiffnesses take turns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,12 +24,11 @@ using enum Method;
 struct AccuracyScene {
   std::string name;
   bool self = false;   // one object against itself, by S-CULLIDE and FAR pairs
-  bool again = false;  // a scene that was measured already, drawn with another seed
+  bool again = false;  // the same scene as another one, drawn with another seed
 };
 
-// Scenes of three kinds: smooth surfaces, scans, and scenes that are drawn at random, each of these
-// with several seeds. Their triangles are small or few: at 4096 px large ones take a software
-// device minutes.
+// Scenes of three kinds: smooth surfaces, scans, and randomly drawn scenes, these with several
+// seeds. Their triangles are small or few: at 4096 px, large ones take a software device minutes.
 std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   std::vector<AccuracyScene> out = {{"two-tori"}};
   if (!quick) {
@@ -49,16 +47,16 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   return out;
 }
 
-// A method that promises nothing leaves out no view, so that the published radius takes up to five
-// times as long as the budget's and sets the time of the study.
+// The published radius has no guarantee, so no view can be skipped: it takes up to five times as
+// long as the budget's and dominates the time of the study.
 int most_published(const std::string& offset, bool quick) {
   return quick || offset == "exact" ? 1024 : 4096;
 }
 
 constexpr int kMostOfForms = 1024;  // px
 
-// CULLIDE as published, and what can be changed in it one by one and together. Of a scene that is
-// drawn again, those that miss little.
+// CULLIDE as published, and its changes one by one and together. For a scene that is drawn again,
+// only the forms that miss little.
 std::vector<CullideForm> forms_of(const AccuracyScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
   const CullideForm strict = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
@@ -126,7 +124,7 @@ struct TimedScene {
   bool self = false;  // as in AccuracyScene
 };
 
-// Smooth surfaces, scans, and scenes that are drawn at random, each of these with several seeds.
+// Smooth surfaces, scans, and randomly drawn scenes, these with several seeds.
 std::vector<TimedScene> timed_scenes(bool quick) {
   std::vector<TimedScene> out = {{"two-spheres"}};
   if (!quick) {
@@ -142,7 +140,7 @@ std::vector<TimedScene> timed_scenes(bool quick) {
   return out;
 }
 
-// Libraries with exact decisions after their broad phase, and FCL and ODE as they are.
+// Libraries followed by exact decisions, and FCL and ODE unchanged.
 constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
                                   "fcl-double", "fcl-float", "ode-trimesh"};
 
@@ -158,7 +156,7 @@ void add_drawn(std::vector<Point>& out, const TimedScene& scene, int resolution,
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
   if (scene.self) {
-    // It takes a step per triangle: 2048 px would take as long as all other points together.
+    // One step per triangle: 2048 px would take as long as all other points together.
     if (resolution <= 1024) {
       for (const CullideForm& form : kForms)
         add(in_form(cullide_point(named, s_cullide, resolution), form));
@@ -193,7 +191,7 @@ std::vector<Point> timed_grid(const GridChoice& choice) {
 PointResult measure_timed(const Point& point, Lab& lab) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return measure_run(*run, lab);
   PointResult out = measure_peer(std::get<PeerPoint>(point), lab, usable_cores());
-  // The time is that of the whole call; not every library says what its parts take.
+  // Keeps only the time of the whole call; not every library reports the times of its parts.
   out.times.cull.reset();
   out.times.exact.reset();
   return out;
@@ -292,7 +290,7 @@ std::vector<Point> stability_grid(const GridChoice& choice) {
   return out;
 }
 
-// With the pairs at risk of a radius.
+// Measures a run and counts the pairs at risk (RunCounts::at_risk).
 PointResult measure_with_risk(const RunPoint& run, Lab& lab) {
   PointResult out = measure_run(run, lab);
   auto* counts = std::get_if<RunCounts>(&out.counts);
@@ -320,7 +318,7 @@ PointResult measure_stability(const Point& point, Lab& lab) {
   return out;
 }
 
-constexpr long kTurn = 20;   // frames of one stiffness before the next has its turn
+constexpr long kTurn = 20;   // frames of one stiffness before the next stiffness
 constexpr long kOfFar = 10;  // far looks at every tenth frame
 
 std::vector<Point> cloth_grid(const GridChoice& choice) {
@@ -341,7 +339,7 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
   return out;
 }
 
-// The notes of the simulation, by their names in builtin/cloth.cpp.
+// A note of the simulation, by its name in builtin/papers.cpp.
 double note(const FrameNotes& notes, const std::string& name) {
   for (const auto& [known, value] : notes.values) {
     if (known == name) return value;

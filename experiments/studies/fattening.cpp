@@ -1,8 +1,8 @@
-// Studies of what is drawn in place of a triangle. "offsets": three ways to bound what a triangle
-// may touch in a pixel; the pixel centres that proxies cover are counted on the cores of the CPU.
-// "precision" and "radius": the lemmas and the misses against the format of the depth buffer, the
-// way in which depth is made, and the radius; and how often the published radius misses a pair of
-// patches that are placed at random.
+// Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
+// bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
+// "precision" and "radius" test the lemmas and count misses by the format of the depth buffer, the
+// source of depth, and the radius; and how often the published radius misses a pair of randomly
+// placed patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,8 +27,8 @@ namespace farcull {
 
 namespace {
 
-// The part of a row of pixel centres at `y` that is inside the convex quadrilateral, as [from, to]
-// in x; empty where from > to.
+// The pixel centres of row `y` inside the convex quadrilateral, as [from, to] in x; empty if from >
+// to.
 struct Span {
   double from = 0, to = -1;
 };
@@ -53,7 +53,7 @@ Span span_at(const std::array<float, 8>& corners, double y) {
   return out;
 }
 
-// Counts the elements from .. to - 1. Pixel centres are the halves between the window's borders.
+// Counts the elements from .. to - 1. Pixel centres are half-integers within the window.
 Fragments count_in(const Drawables& drawables, const SolidProgram& program, const Window& window,
                    std::size_t from, std::size_t to) {
   Fragments out;
@@ -83,7 +83,7 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 
 using enum Method;
 
-// As in the study "scaling".
+// The same as in the study "scaling".
 constexpr int kRepeat = 9;
 
 std::vector<Point> grid(const GridChoice& choice) {
@@ -184,15 +184,15 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators whose depth varies inside a pixel; the triangles of the others are too small for it.
+// Generators whose depth varies inside a pixel; the others' triangles are too small for that.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
 
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
-  // Each with its border makes a viewport of a power of two; the depth reaches what a window may
-  // have (core/view/view.h, fit_window).
+  // Each side with its border makes a viewport of a power of two. The largest depth is that of a
+  // window (core/view/view.h, fit_window).
   const std::vector<int> sides =
       choice.quick ? std::vector{508, 1020} : std::vector{508, 2044, 4092};
   const std::vector<double> depths =
@@ -224,7 +224,7 @@ PointResult measure_precision(const Point& point, Lab& lab) {
   return measure_lemma(std::get<LemmaPoint>(point), lab);
 }
 
-// Factors on the budget radius, 1 among them.
+// Factors of the budget radius, including 1.
 std::vector<double> factors(bool quick) {
   std::vector<double> out;
   const int steps = quick ? 11 : 22;
@@ -239,7 +239,7 @@ std::vector<double> factors(bool quick) {
   return out;
 }
 
-// Factors as they are written, so that a key read back gives the same number.
+// Factors rounded as they are written, so that a key read back gives the same number.
 std::vector<RadiusRule> radii(bool quick) {
   std::vector<RadiusRule> out;
   for (const double factor : factors(quick))
@@ -255,9 +255,9 @@ struct Size {
 
 constexpr double kSmallest = 0x1p-5;  // px; of these pairs hardly another one keeps any
 
-// Placements on corners snapped to 8 bits at the published radius by the size of triangles, 10^6 in
-// all, and at smaller radii; then of the smallest triangles by subpixel bits and by resolution; and
-// at the budget radius, which has to miss none.
+// Placements with corners snapped to 8 bits: the published radius by the size of triangles, 10^6 in
+// all, and smaller radii. Then the smallest triangles by subpixel bits and by resolution, and at
+// the budget radius, which must miss none.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;
@@ -305,7 +305,7 @@ std::vector<Point> radius_grid(const GridChoice& choice) {
     LemmaPoint point{.generator = generator,
                      .points = choice.quick ? std::uint64_t{400} : 4000,
                      .seed = choice.seed};
-    // Its own window has 16 million pixels.
+    // The generator's own window has 16 million pixels.
     if (choice.quick && generator == "pixel corners at the rim") point.side = 1020;
     for (const DepthMode mode : {DepthMode::fragment, DepthMode::fixed}) {
       point.depth_mode = mode;

@@ -1,5 +1,5 @@
-// The study "libraries": what other libraries, textbook tests and our own methods miss or report
-// wrongly on a labelled suite. Each is asked in processes of its own (peers/runner.h).
+// The study "libraries": wrong answers of other libraries, textbook tests and our own methods on a
+// labelled suite. Each contestant runs in processes of its own (peers/runner.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::vector<std::string> last_parts(const std::vector<std::string>& paths, bool 
   return out;
 }
 
-// Adds a point for each contestant that was chosen and each name.
+// Adds a point for each chosen contestant and each name.
 void add(const std::vector<std::string>& names, const GridChoice& choice, LibraryPoint point,
          std::vector<Point>& out) {
   const std::vector<std::string>& chosen = choice.contestants;
@@ -46,7 +46,7 @@ void add(const std::vector<std::string>& names, const GridChoice& choice, Librar
   }
 }
 
-// The contestants of one family after the other, so that it is made once.
+// Lists all contestants of one family together, so that the family is made once.
 std::vector<Point> grid(const GridChoice& choice) {
   LibraryPoint pairs{.contestant = {},
                      .family = {},
@@ -71,7 +71,7 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-// The family that was asked for last.
+// The pairs of a family; the last family is cached.
 const SuitePairs& pairs_of(const LibraryPoint& point) {
   static std::pair<std::string, SuitePairs> last;
   const std::string name = key_of(point).scene + fmt::format(", seed {}", point.seed);
@@ -84,7 +84,7 @@ const SuitePairs& pairs_of(const LibraryPoint& point) {
   return last.second;
 }
 
-// A mesh, and a folder with its files as a contestant reads them, which is removed with it.
+// A mesh, and a folder with its files as a contestant reads them, which the destructor removes.
 struct MeshFiles {
   explicit MeshFiles(const LibraryPoint& point)
       : mesh(point.suite.empty() ? make_mesh(point.family, settings_of(point.small, point.seed))
@@ -156,8 +156,7 @@ void add_firsts(const std::vector<SuitePair>& pairs, const std::vector<ContestAn
   }
 }
 
-// The first fault of each kind about a pair of which the documentation promises the answer, made
-// small.
+// Minimizes the first fault of each kind on a pair for which the documentation promises the answer.
 void add_examples(const Invited& invited, const ContestLimits& limits,
                   const std::vector<SuitePair>& pairs, const std::vector<ContestAnswer>& answers,
                   LibraryCounts& counts) {
@@ -202,7 +201,7 @@ PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
 
 PointResult measure(const Point& at, Lab& lab) {
   const auto& point = std::get<LibraryPoint>(at);
-  // Processes of our own methods read it.
+  // The processes of our own methods read it.
   ::setenv("FARCULL_CONTEST_DEVICE", lab.device().c_str(), 1);
   const Invitation invitation = invite_known(known_contestant(point.contestant));
   if (!invitation.invited) return {.device = "none", .left_out = invitation.missing};

@@ -1,5 +1,5 @@
-// Which rows fit together in one store: those of one version of each library. Shards are read, what
-// does not fit is refused, and one store is written.
+// Decides which rows fit together in one store: those with one version of each library. Reads
+// shards, refuses those that do not fit, and writes one store.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// With its version; empty where the row names none.
+// The row's library with its version; empty if the row names none.
 std::string library_of(const Row& row) {
   const auto at = row.measurement.counts->find("library");
   return at != row.measurement.counts->end() && at->is_string() ? at->get<std::string>() : "";
@@ -38,7 +38,7 @@ std::string deletion(const std::string& path, const std::string& study,
       quoted(path), study, study, names);
 }
 
-// A file that is removed again unless it was put in its place.
+// A temporary file, removed unless it was moved to its final place.
 class Part {
  public:
   explicit Part(std::string path) : path_(std::move(path)) { remove(); }
@@ -62,8 +62,7 @@ class Part {
   std::string path_;
 };
 
-// While it lives, signals that would end the program are blocked, so that no half-written file is
-// left.
+// Blocks signals that would end the program, so that no half-written file is left.
 class Uninterrupted {
  public:
   Uninterrupted() {
@@ -95,7 +94,7 @@ Source read(const std::string& path) {
 
 const char* const kMeasureAgain = "measure it again as the others were";
 
-// Commits of the programs that measured the rows of a study.
+// The commits of the programs that measured the rows of a study.
 std::set<std::string> commits_of(const Source& source, std::size_t study) {
   std::set<std::int64_t> used;
   for (const Row& row : source.studies[study].rows) used.insert(row.run);
@@ -130,7 +129,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Refuses a shard that is missing or there twice, and a point without exactly one row.
+// Refuses missing or repeated shards, and points without exactly one row.
 void require_whole(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     const Declaration& all = sources.front().studies[i].declaration;
@@ -171,7 +170,7 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// Refuses rows of two versions of a library.
+// Refuses rows with two versions of a library.
 void require_one_version_each(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     std::vector<StudyOfFile> files;
@@ -258,7 +257,7 @@ std::vector<std::string> shard_files(const std::string& folder) {
 }
 
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out) {
-  // A journal would be taken for that of the new file.
+  // SQLite would take an old journal for that of the new file.
   for (const char* beside : {"", "-journal", "-wal"}) {
     if (fs::exists(fs::symlink_status(out + beside)))
       throw Error(out + beside, "is there already", "move it away, or name another file with -o");

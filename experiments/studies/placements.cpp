@@ -1,5 +1,5 @@
-// Patches grow over shared vertices from a triangle that is drawn. Cell (i, j) of n x n stands at
-// (i, j, i + j modulo n): no two cells share a place in any of the three axis views.
+// Patches grow over shared vertices from a randomly drawn triangle. Cell (i, j) of n x n is at (i,
+// j, i + j modulo n): no two cells share a place in any of the three axis views.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -21,8 +21,8 @@ namespace {
 using shapes::Corners;
 using shapes::Random;
 
-/// The native canvas as a device that snaps: corners of proxies are rounded to the nearest multiple
-/// of 2^-bits px, which A2 allows (docs/reliability.md).
+/// The native canvas as a device that snaps: rounds corners of proxies to the nearest multiple of
+/// 2^-bits px, which A2 allows (docs/reliability.md).
 class SnappingCanvas final : public Canvas {
  public:
   SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
@@ -61,9 +61,9 @@ class Quarry {
          const std::vector<std::vector<std::uint32_t>>& around)
       : scene_(scene), object_(object), around_(around) {}
 
-  /// kPatchTriangles triangles: one that is drawn and those nearest to it over shared vertices;
-  /// what they lack (soups have no neighbours), drawn and put beside them. Scaled to `side`, the
-  /// mean of their longest sides, about their mean point, and turned.
+  /// kPatchTriangles triangles: a random one and the nearest to it over shared vertices. If they
+  /// are too few (soups have no neighbours), others are drawn and put beside them. Scaled so that
+  /// the mean of their longest sides is `side`, about their mean point, and turned.
   std::vector<Corners> cut(Random& random, double side) const {
     std::vector<std::uint32_t> taken = {random.below(object_.triangle_count)};
     for (std::size_t i = 0; i < taken.size() && taken.size() < kPatchTriangles; ++i) {
@@ -81,7 +81,7 @@ class Quarry {
     const double reach = longest(out[0]);
     while (out.size() < kPatchTriangles) {
       Corners more = corners_of(random.below(object_.triangle_count));
-      // Scaled to the size of the first; the place of the first says nothing about the others.
+      // Scaled to the size of the first triangle, and moved beside it.
       const double size = longest(more);
       if (!(size > 0)) continue;
       const Vec3 from = mean(more), to = middle + reach * random.in_ball();
@@ -117,7 +117,7 @@ class Quarry {
     }
   }
 
-  // By a unit quaternion of four draws: no sines, so the same everywhere.
+  // Rotates by a unit quaternion of four draws: without sines, the result is the same everywhere.
   static void turn(std::vector<Corners>& patch, Random& random) {
     Eigen::Quaterniond q;
     do {
@@ -151,14 +151,14 @@ void shift(std::vector<Corners>& patch, const Vec3& by) {
   }
 }
 
-// Moves the second patch so that a point of each is at the same place.
+// Moves the second patch so that a random point of each is at the same place.
 void cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Vec3 to = inner(one[random.below(one.size())], random);
   shift(other, to - inner(other[random.below(other.size())], random));
 }
 
-// Reflects and moves the second patch so that its corner farthest from its middle is below a
-// triangle of the first, by a part of its side (at most of a pixel) of any order of magnitude.
+// Reflects and moves the second patch so that its corner farthest from its middle pokes below a
+// triangle of the first. The depth is a fraction, of any magnitude, of its side (or a pixel).
 void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -173,7 +173,7 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
     return;
   }
   normal /= normal.norm();
-  // The reflection that takes the direction of the tip to that into the triangle.
+  // The reflection that turns the direction of the tip into the triangle.
   const Vec3 across = tip / tip.norm() + normal;
   const double square = across.squaredNorm();
   const auto reflected = [&](const Vec3& p) -> Vec3 {
@@ -186,7 +186,7 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   shift(other, inner(face, random) - reflected(tip) - depth * normal);
 }
 
-// The side of a cell in pixels: room for two patches that touch, a ball and pixels around them.
+// The side of a cell in pixels: room for two touching patches, a ball and a margin of pixels.
 double cell_of(double side) { return std::ceil(10 * side + 6); }
 
 double reach_of(const std::vector<Corners>& patch) {
@@ -224,7 +224,7 @@ PlacedPatches PatchSource::place(bool grazing, double side, int resolution, std:
     const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
-    do {  // Those that reach out of their cell would meet their neighbours, and are drawn again.
+    do {  // Patches that leave their cell would meet their neighbours, so they are drawn again.
       a = first.cut(random, side);
       b = second.cut(random, side);
       (grazing ? graze : cross)(a, b, random);
@@ -277,7 +277,7 @@ std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) 
     words.push_back(static_cast<std::uint32_t>(number));
     words.push_back(static_cast<std::uint32_t>(number >> 32));
   }
-  std::seed_seq sequence(words.begin(), words.end());  // the standard says what it gives
+  std::seed_seq sequence(words.begin(), words.end());  // the standard specifies its output
   std::array<std::uint32_t, 2> out{};
   sequence.generate(out.begin(), out.end());
   return (std::uint64_t{out[0]} << 32) | out[1];

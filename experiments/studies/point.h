@@ -1,5 +1,5 @@
-// The points of studies: several kinds, each with the fields that it needs, and the columns by
-// which a store knows them.
+// The points of studies: several kinds with their own fields, and the columns that identify a point
+// in a store.
 #pragma once
 
 #include <compare>
@@ -21,46 +21,46 @@ namespace farcull {
 struct NamedScene {
   std::string name;
 };
-/// A frame of a scene that moves. The same motion in more frames moves less from one to the next.
+/// A frame of a scene that moves. With more frames for the same motion, each step is smaller.
 struct MotionFrame {
   std::string name;
   long frame = 0;
   long frames = 1;  // of the whole motion
 };
-/// A built-in scene whose vertices are all changed by the same number, a power of ten.
+/// A built-in scene with every vertex changed by the same number, a power of ten.
 struct ChangedScene {
   std::string name;
   enum class Change { offset, scale } change = Change::offset;  // offset: along (1, 1, 1)
   int power = 0;                                                // the number is 10^power
 };
-/// A frame of the cloth of that name above its sphere, not tested against itself.
+/// A frame of the cloth of that name above its sphere, without self-collision tests.
 struct ClothApart {
   std::string name;
   long frame = 0;
 };
-/// Segments that cross next to corners of pixels (pixel_corners() in point_scene.cpp).
+/// Segments that cross next to corners of pixels (pixel_corners() in run_point.cpp).
 struct PixelCorners {};
 
-/// Clusters of small objects in a large cube, drawn at random (clusters() in point_scene.cpp).
+/// Clusters of small objects in a large cube, drawn at random (clusters() in run_point.cpp).
 struct ClusteredScene {
-  int ratio = 64;  // sides of a cluster along the side of the cube
+  int ratio = 64;  // the side of the cube over the side of a cluster
   std::uint64_t seed = 1;
 };
 
 using PointScene =
     std::variant<NamedScene, MotionFrame, ChangedScene, ClothApart, PixelCorners, ClusteredScene>;
 
-/// A method of `farcull run`. What is empty is left to the method.
+/// A method of `farcull run`. The method chooses the value of an empty field.
 struct RunPoint {
   PointScene scene;
   Method method = Method::far;
   std::string offset = {};                       // obb or exact; of far
   std::optional<RadiusRule> radius = {};         // of far
-  std::optional<DepthMode> depth_mode = {};      // how the depth of a fragment is made
-  std::optional<DepthFormat> depth_format = {};  // how the depth buffer holds it
+  std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
+  std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
   int resolution = 0;                            // px; 0: none, or chosen by the scene
-  /// If the resolution is 0: the least one at which the triangles that can take part cover so many
-  /// pixels each, on average over them and the axes; 0: see above.
+  /// If the resolution is 0: take the least one at which triangles that can take part cover this
+  /// many pixels on average, over the triangles and the axes; 0: see above.
   double mean_pixels = 0;
   std::string views = {};
   /// Forms of the methods that draw, as in RunOptions.
@@ -68,7 +68,7 @@ struct RunPoint {
   ClearRule clear = ClearRule::any;
   bool objects_alone = false;
   bool conservative = false;
-  int repeat = 1;  // runs, the one with the median time counts; 1 for a MotionFrame
+  int repeat = 1;  // runs; the one with the median time counts; 1 for a MotionFrame
 };
 
 /// A library in place of a method (peers/peer.h).
@@ -83,46 +83,45 @@ struct LemmaPoint {
   std::string generator;     // one of lemma_generators()
   std::uint64_t points = 0;  // of this generator, at least
   double depth = 256;        // px, of the window
-  bool worst = false;        // on verify/worst_canvas.h, with what is drawn displaced as far as
+  bool worst = false;        // on verify/worst_canvas.h, with the drawing displaced as far as
                              // double arithmetic may; else on the lab's device
   RadiusRule radius = {};
   DepthMode depth_mode = DepthMode::fragment;  // fixed: the boxes as surfaces
-  /// Given, or with fixed depth: the samples are what a buffer of this format holds; empty: what
-  /// the shader computes.
+  /// If given, and always with fixed depth, the samples are what a buffer of this format stores;
+  /// empty: what the shader computes.
   std::optional<DepthFormat> depth_format = {};
   int side = 0;  // px, of the window; 0: the generator's own
   std::uint64_t seed = 1;
 };
 
-/// FAR on many small patches of triangles that are placed into each other at random
-/// (placements.h).
+/// FAR on many small patches of triangles that are placed into each other at random (run_point.h).
 struct PlacementPoint {
   std::string from;      // the built-in scene whose first two objects the patches are cut from
   bool grazing = false;  // a corner of one patch pokes through the other; else they cross
   double side = 1;       // px, mean longest side of a triangle
   std::uint64_t placements = 0;
-  int subpixel_bits = 0;  // what corners of proxies are snapped to; 0: they are not
+  int subpixel_bits = 0;  // grid to which corners of proxies are snapped; 0: none
   RadiusRule radius = {};
   int resolution = 0;  // px
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/runner.h) asked about a family of pairs of a suite, or about a mesh.
+/// A contestant (peers/runner.h) and its question: a family of pairs of a suite, or a mesh.
 struct LibraryPoint {
   std::string contestant;
   std::string family;  // or the name of the mesh
   bool mesh = false;
   bool small = false;           // of the small suite; else of the full one
   std::uint64_t seed = 1;       // of the suite
-  std::string suite = {};       // the folder of a suite that is given; empty: it is made
-  std::string suite_name = {};  // of that: the beginning of its sum
+  std::string suite = {};       // the folder of a given suite; empty: generated
+  std::string suite_name = {};  // of a given suite: the beginning of its checksum
 };
 
 /// The potential neighbours that a method leaves (measure/neighbour_sets.h).
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
-  int resolution = 0;   // cells; 0: the method has none
+  int resolution = 0;   // of the reliable diagram; below 1 nothing is promised
   double widening = 1;  // of the reliable diagram; below 1 it promises nothing
   int repeat = 1;       // runs
 };
@@ -145,8 +144,8 @@ inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
   return std::pair(a.published, a.factor) <=> std::pair(b.published, b.factor);
 }
 
-/// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
-/// of a grid have the same key.
+/// The columns that identify a point in a store. A column that does not apply is empty, 0 or -1; no
+/// two points of a grid have the same key.
 struct PointKey {
   std::string scene = {};   // as on the command line, or as key_of() writes it
   std::string method = {};  // as --method with the options of its form ("cullide --rounds
@@ -169,19 +168,19 @@ struct PointKey {
                  seed)
 };
 
-/// A typed column as the store and tables write it, as in "0.9", "float32", "fragment"; "" where it
+/// A typed column as the store and tables write it, as in "0.9", "float32", "fragment"; "" if it
 /// does not apply.
 std::string column_text(const std::optional<RadiusRule>& radius);  // as --radius
 std::string column_text(const std::optional<DepthFormat>& format);
 std::string column_text(const std::optional<DepthMode>& mode);
-/// The contrary, for these three types. Throws Error where no column is written so.
+/// The inverse for these three types. Throws Error if no value is written as `text`.
 template <class T>
 std::optional<T> column_of(const std::string& text);
 
 PointKey key_of(const Point& point);
 std::vector<PointKey> keys_of(const std::vector<Point>& points);
 
-/// The values of a key as text, in the order of its fields; empty where the column does not apply.
+/// The values of a key as text, in the order of its fields; empty if a column does not apply.
 std::vector<std::string> axis_values(const PointKey& key);
 /// In words, for progress and errors: "two-bunnies, cullide, 512 px".
 std::string describe(const PointKey& key);
@@ -198,7 +197,7 @@ struct LemmaScene {
 /// Precondition: the text is a name(); std::logic_error otherwise.
 LemmaScene parse_lemma_scene(const std::string& text);
 
-// The points that several studies put into their grids, each measured once unless `repeat` is set.
+// Points that several studies use. Each is measured once unless `repeat` is set.
 
 /// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact.
 inline RunPoint far_point(PointScene scene, const std::string& offset, const RadiusRule& radius,
@@ -221,7 +220,7 @@ inline RunPoint cullide_point(PointScene scene, Method method, int resolution) {
           .resolution = resolution};
 }
 
-/// The same in a form, which the options of RunPoint say.
+/// The same with the options of a form, as in RunPoint.
 struct CullideForm {
   int rounds = 0;
   ClearRule clear = ClearRule::any;
@@ -241,15 +240,15 @@ inline RunPoint in_form(RunPoint point, const CullideForm& form) {
 inline const CullideForm kPublishedForm = {.rounds = 1};
 inline constexpr const char* kBothDirections = "x,-x,y,-y,z,-z";
 
-/// The same at the least resolution at which triangles cover so many pixels on average.
+/// The same at the least resolution at which triangles cover this many pixels on average.
 inline RunPoint at_mean_pixels(RunPoint point, double pixels) {
   point.resolution = 0;
   point.mean_pixels = pixels;
   return point;
 }
 
-/// The five seeds that scenes which are drawn at random are measured with: their own, and 101 to
-/// 104. With `count` fewer.
+/// The first `count` of the five seeds with which randomly drawn scenes are measured: their own,
+/// and 101 to 104.
 inline std::vector<std::string> drawn_scenes(const std::string& name, int count = 5) {
   std::vector<std::string> out = {name};
   for (int i = 1; i < count; ++i) out.push_back(name + "@seed" + std::to_string(100 + i));
@@ -264,7 +263,7 @@ inline RunPoint plain_point(PointScene scene, Method method, int resolution = 0)
 inline constexpr RadiusRule kBudgetRadius = {};
 inline constexpr RadiusRule kPublishedRadius = {.published = true};
 
-/// The same point, measured so often.
+/// The same point, measured `repeat` times.
 template <class OfPoint>
 OfPoint repeated(OfPoint point, int repeat) {
   point.repeat = repeat;

@@ -1,6 +1,6 @@
-// The study "proximity": how large potential neighbour sets are, what a grid loses of them, and how
-// far the distances of libraries are off, against time. The exact answers of the last scene are
-// kept, since many points share a scene.
+// The study "proximity": the size of potential neighbour sets, what a grid loses of them, and the
+// errors of libraries' distances against their time. The exact answers of the last scene are
+// cached, since many points share a scene.
 //
 // Sud, Govindaraju, Gayle, Kabul and Manocha, Fast Proximity Computation Among Deformable Models
 // using Discrete Voronoi Diagrams, SIGGRAPH 2006.
@@ -26,7 +26,7 @@ namespace {
 
 constexpr unsigned kThreads = 1;
 
-// A scene without objects that are asked about themselves, and what is exact about it.
+// A scene without self-distances, and its exact answers.
 struct Exact {
   Scene scene;
   std::string hash;
@@ -45,7 +45,7 @@ void require_proved(const std::string& where, const DistanceRecord& record) {
               "this is a fault of farcull: please report it with the scene");
 }
 
-// If several objects are as near, the record names one of them and `nearest` all.
+// Checks that both searches agree: of several equally near objects the record names one.
 void require_alike(const std::string& where, const Exact& exact) {
   for (const PeerDistance& one : exact.distances) {
     const std::vector<std::uint32_t>& all = exact.nearest[one.a].objects;
@@ -83,7 +83,7 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
   return last;
 }
 
-// The counts of the first run, which those of all others have to equal, and the times of all.
+// The counts of the first run, which all others must equal, and the times of all.
 template <class Run>
 PointResult repeated_runs(const Point& point, int repeat, const Run& run) {
   auto [first, ms] = repeat_point(point, repeat, [&] {
@@ -101,9 +101,9 @@ using enum NeighbourMethod;
 std::vector<int> resolutions(bool quick) {
   return quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024};
 }
-constexpr int kCellsInMotion = 256;    // cells, of scenes that move
-constexpr int kCountResolution = 128;  // cells, of times against the number of objects
-constexpr int kMostInDiagrams = 400;   // objects there
+constexpr int kCellsInMotion = 256;    // cells, for scenes that move
+constexpr int kCountResolution = 128;  // cells, for times against the number of objects
+constexpr int kMostInDiagrams = 400;   // objects in those
 constexpr int kRuns = 9;               // as in the study "scaling"
 constexpr int kSeeds = 3;              // of clusters
 
@@ -129,7 +129,7 @@ void add_distances(const PointScene& scene, DistanceTask task, std::vector<Point
 
 struct RestCase {
   const char* scene;
-  DistanceTask task = DistanceTask::nearest;  // that libraries are asked
+  DistanceTask task = DistanceTask::nearest;  // the question for libraries
 };
 
 // Scenes in which not all objects meet.
@@ -143,7 +143,7 @@ void add_scenes_at_rest(bool quick, std::vector<Point>& out) {
     add_sets(NamedScene{c.scene}, quick, false, out);
     add_distances(NamedScene{c.scene}, c.task, out);
   }
-  // Far from the origin doubles have fewer digits left for what is between objects.
+  // Far from the origin doubles have fewer digits left for the distances between objects.
   for (const char* scene : {"crowd:60@far", "cylinders:12@far"})
     add_distances(NamedScene{scene}, nearest, out);
 }
@@ -161,7 +161,7 @@ void add_motion(bool quick, std::vector<Point>& out) {
   static const std::vector<std::string> full = {"crowd:100", "cylinders:30", "field:4000",
                                                 "tree-leaves:60"};
   static const std::vector<std::string> few = {"crowd:30", "cylinders:8"};
-  // Six frames at least, as in the study "efficiency".
+  // At least six frames, as in the study "efficiency".
   const long frames = quick ? 6 : 12;
   for (const std::string& name : quick ? few : full) {
     for (long frame = 0; frame < frames; ++frame) {

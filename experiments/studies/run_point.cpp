@@ -1,5 +1,5 @@
-// Opens the scenes of points and runs methods and libraries on them: each run is compared with the
-// truth and with the first.
+// Opens the scenes of points and runs methods and libraries on them. Each run is compared with the
+// truth and with the first run.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -27,10 +27,10 @@
 namespace farcull {
 namespace {
 
-// Two objects of segments, each of the one crossed by one of the other at 45 degrees, within 2^-10
-// px of a corner of a pixel in the view z at this resolution: both boxes are as many units wide as
-// the window has pixels, so that a unit is a pixel and corners are whole numbers (core/view/view.h,
-// fit_window).
+// Two objects of segments. Each segment is crossed by one of the other object at 45 degrees, within
+// 2^-10 px of a corner of a pixel in the view z at this resolution. Both boxes are as many units
+// wide as the window has pixels, so that a unit is a pixel and corners are whole numbers
+// (core/view/view.h, fit_window).
 constexpr const char* kCorners = "pixel-corners";
 constexpr int kCornersResolution = 96;
 
@@ -52,7 +52,7 @@ Scene pixel_corners() {
       other.push_back({q - down, q + down, q + down});
     }
   }
-  for (const double at : {-1.0, 1.0}) {  // points: they make the boxes as large, and touch
+  for (const double at : {-1.0, 1.0}) {  // points that extend the boxes to this size, and touch
     const Vec3 p(at * kHalf, at * kHalf, 64);
     for (auto* list : {&one, &other}) list->push_back({p, p, p});
   }
@@ -63,7 +63,7 @@ Scene pixel_corners() {
 }
 
 // Two hundred objects of one to four triangles in a cube of side 1: ten clusters of twenty objects,
-// each in a cube whose side is 1 / ratio, anywhere. Two objects of one triangle lie in opposite
+// each in a cube of side 1 / ratio at a random place. Two objects of one triangle lie in opposite
 // corners of the large cube, so that a grid covers all of it.
 Scene clusters(const ClusteredScene& wanted) {
   using shapes::Corners;
@@ -81,7 +81,7 @@ Scene clusters(const ClusteredScene& wanted) {
   for (int cluster = 0; cluster < kClusters; ++cluster) {
     const Vec3 corner = drawn(0, 1 - side);
     for (int object = 0; object < kObjects; ++object) {
-      // An object fills a part of the cluster, so that most do not meet.
+      // An object fills only a part of the cluster, so that most objects do not meet.
       const Vec3 at = corner + drawn(0, 0.9 * side);
       std::vector<Corners> triangles(1 + random.below(4));
       for (Corners& triangle : triangles) {
@@ -126,7 +126,7 @@ void fill(AnswerCounts& counts, const Scene& scene, const Truth& truth, const Er
   counts.objects = scene.objects.size();
 }
 
-// How many of the missed pairs penetrate.
+// The number of missed pairs that penetrate.
 std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
                                  const std::vector<TrianglePair>& pairs) {
   std::vector<TrianglePair> missed;
@@ -222,7 +222,7 @@ void require_same(const PointKey& point, const Outcome& first, const Outcome& ot
     different += (different.empty() ? "" : ", ") + text;
   };
   if (first.device != other.device) add("device " + first.device + " and " + other.device);
-  // By name: the values of both, "none" where one lacks the count.
+  // By name: both values, "none" for a missing count.
   std::map<std::string, std::pair<std::string, std::string>> values;
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;

@@ -1,5 +1,5 @@
-// The list of studies, the loop over their open points, the part of them that this process
-// measures, and the sums that it prints.
+// The list of studies, the loop over their open points, the shard that this process measures, and
+// the sums that it prints.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ bool is_shard(long index, long of) {
   return of >= 1 && of <= kMostShards && index >= 1 && index <= of;
 }
 
-// A study with the points that are to be measured.
+// A study with the points to measure.
 struct Task {
   const Study* study;
   std::vector<Point> points;
@@ -53,8 +53,8 @@ std::string device_text(const Provenance& provenance) {
   return provenance.gl_renderer + (version.empty() ? "" : " (" + version + ")");
 }
 
-// Refuses to go on where earlier rows are of another program or machine: one table would hold both
-// as if they were of one.
+// Refuses to continue if earlier rows are of another program or machine: a table would show both as
+// one.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
@@ -95,7 +95,7 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   }
   require_alike(store, stored, request.provenance);
   std::vector<bool> done(task.points.size());
-  // A library or mesh that was missing then may be there now.
+  // A library or mesh that was missing may be available now.
   for (const Row& row : stored.rows) done[row.position] = row.measurement.left_out.empty();
   for (std::size_t i = 0; i < task.points.size(); ++i) {
     if (!done[i] && request.shard.holds(i)) task.open.push_back(i);
@@ -105,7 +105,7 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   return task;
 }
 
-// The reason why this machine does not have the scene; empty: it has.
+// Why this machine does not have the scene; empty if it does.
 std::string lacking(const PointKey& point) {
   const std::string base = point.scene.substr(0, point.scene.find_first_of(":@"));
   const std::vector<BuiltinScene>& known = builtin_scenes();
@@ -120,8 +120,8 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Seconds for the points that are left, at the mean time of the points of their study in this run,
-// or of all studies where a study has none yet.
+// Seconds for the remaining points, at the mean time of their study's points in this run, or of all
+// studies if their study has none yet.
 std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, std::size_t next) {
   double seconds = 0;
   std::size_t measured = 0;
@@ -141,7 +141,7 @@ std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, 
   return out;
 }
 
-// Measures the open points of all tasks and keeps every row at once.
+// Measures the open points of all tasks and stores every row at once.
 class Runner {
  public:
   Runner(const StudiesRequest& request, StudiesSummary& summary, std::vector<Task>& tasks,
@@ -184,7 +184,7 @@ class Runner {
     if (progress_) progress_(now_);
   }
 
-  // Empty where measuring failed: the failure is noted, and the next point gets a new device.
+  // Empty if measuring failed: the failure is noted, and the next point gets a new device.
   std::optional<Measurement> measure(const Study& study, const Point& point) {
     std::string why = lacking(key_of(point));
     if (!why.empty()) return Measurement{.device = "none", .left_out = std::move(why)};
@@ -245,7 +245,7 @@ Shard shard_from_environment(const std::function<const char*(const char*)>& vari
   const std::optional<long> task = number("SLURM_ARRAY_TASK_ID");
   const std::optional<long> rank = number("OMPI_COMM_WORLD_RANK");
   const std::optional<long> size = number("OMPI_COMM_WORLD_SIZE");
-  // A single process under mpirun or srun divides nothing.
+  // A single process under mpirun or srun does not divide the work.
   const bool ranks = rank && size && *size != 1;
   if (task && ranks) {
     throw Error("SLURM_ARRAY_TASK_ID", "and OMPI_COMM_WORLD_RANK both say which part this is",
@@ -259,7 +259,7 @@ Shard shard_from_environment(const std::function<const char*(const char*)>& vari
       throw Error("SLURM_ARRAY_TASK_COUNT", "the array has gaps, or does not say where it ends",
                   "submit it as --array=1-N, or give --shard K/N");
     }
-    // A part of an array that is submitted again would take itself for the whole.
+    // A resubmitted part of an array would appear to be the whole.
     if (least != 0 && least != 1) {
       throw Error("SLURM_ARRAY_TASK_MIN", fmt::format("the array begins at {}", least),
                   "submit it as --array=1-N, all of it (what is done is not measured again), or "

@@ -1,4 +1,4 @@
-// The tables of the store and their statements; and which program measures, on which machine.
+// The tables of the store and their statements; the provenance of this process.
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -25,13 +25,13 @@
 
 namespace farcull {
 
-// ---- typed counts and times as what a row of a store holds ----
+// ---- typed counts and times as the values in a row of a store ----
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The fields of a member take its place; an optional that is empty is left out.
+// A member with fields is replaced by its fields; an empty optional is left out.
 template <class Value>
 void add(NamedCounts& out, std::string_view name, const Value& value) {
   if constexpr (requires { value.has_value(); }) {
@@ -91,7 +91,7 @@ Measurement stored(const PointResult& result) {
 bool breaks_promise(const Measurement& measurement) {
   const Json& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
-  // A contestant breaks its promise by silence as well.
+  // A contestant also breaks its promise if it does not answer.
   for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
                             "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
     if (counts.value(count, std::uint64_t{0}) > 0) return true;
@@ -107,8 +107,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDeviceFolder = "on-";
 
-// The tables of a file of version kStoreVersion, with the columns of Provenance and PointKey in the
-// order of their fields. `results` is for questions in SQL.
+// The tables of a file of version kStoreVersion; the columns of Provenance and PointKey are in the
+// order of their fields. `results` is a view for queries in SQL.
 constexpr const char* kSchema = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
@@ -133,7 +133,7 @@ CREATE VIEW results AS
   FROM points JOIN rows USING (study, position) JOIN runs USING (run);
 )";
 
-// An error of SQLite as an Error that says what to do.
+// Turns an error of SQLite into an Error with a remedy.
 Error refusal(const std::string& path, const SQLite::Exception& error) {
   const std::string text = error.getErrorStr();
   switch (error.getErrorCode() & 0xff) {
@@ -187,7 +187,7 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Numbers in full; bytes of a text (of a driver, say) that are no UTF-8 are replaced.
+// Numbers in full; invalid UTF-8 in a text (of a driver, say) is replaced.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -276,14 +276,14 @@ Store::Store(const std::string& path, Access access) {
                 "measure first: farcull experiment all --quick");
   }
   guarded(path, [&] {
-    // Also for reading: what a killed program left half done is taken back first.
+    // Read-write also for reading: SQLite first rolls back the unfinished work of a killed program.
     const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
-    // SQLite takes "file:..." for something else than a file.
+    // SQLite interprets "file:..." as a URI.
     const std::string name = path.starts_with('/') ? path : "./" + path;
     state_ = std::make_unique<State>(State{path, SQLite::Database(name, flags)});
     SQLite::Database& database = state_->database;
     database.exec("PRAGMA foreign_keys = ON");
-    // No other program gets in, until the file is closed or the program ends, however it ends.
+    // Locks out other programs until the file is closed or this program ends, however it ends.
     if (write) database.exec("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE");
     const std::int32_t id = database.execAndGet("PRAGMA application_id").getInt();
     const std::int32_t version = database.execAndGet("PRAGMA user_version").getInt();
@@ -423,7 +423,7 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction. What says why nothing was measured gives way.
+    // One statement is one transaction. A row that says why nothing was measured is replaced.
     SQLite::Statement insert(
         state_->database,
         "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "

@@ -1,5 +1,5 @@
-// The store of results: one SQLite file, a transaction for every row, so that a run that is ended
-// (by a signal, a full disk, the power) loses at most the point that was being measured.
+// The store of results: one SQLite file with one transaction per row. If a run ends early (a
+// signal, a full disk, a power failure), it loses at most the point that was being measured.
 //
 //   runs    one row for each start of the program: commit, device, driver, CPU, options, time
 //   points  the declared grid of each study, all shards of it
@@ -18,7 +18,7 @@
 
 namespace farcull {
 
-/// Which program measured, on which machine, when.
+/// The program, the machine and the time of a measurement.
 struct Provenance {
   std::string started;  // UTC, ISO 8601
   std::string commit;   // of the program
@@ -36,8 +36,8 @@ struct Provenance {
 /// Vendor and version of the driver for people; "none" on the native canvas.
 std::string driver_text(const Provenance& provenance);
 
-/// The provenance of this process, with the device that Session chooses. A GL device is opened to
-/// ask for its names; throws Error where the one that was named does not answer.
+/// The provenance of this process, with the device that Session chooses. Opens a GL device to read
+/// its names. Throws Error if the named device does not answer.
 Provenance provenance_now(const std::string& device, const std::string& options);
 
 constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
@@ -47,7 +47,7 @@ constexpr std::int32_t kStoreVersion = 1;
 struct Declaration {
   std::string study;
   GridChoice choice;
-  int shard = 1, of = 1;         // which part of the points this file answers for, 1 <= shard <= of
+  int shard = 1, of = 1;         // the shard in this file, 1 <= shard <= of
   std::vector<PointKey> points;  // of all shards
 };
 
@@ -62,14 +62,14 @@ struct Row {
 struct StoredStudy {
   Declaration declaration;
   std::vector<Row> rows;  // by position
-  /// Whether every point of the grid has a row, of whatever shard.
+  /// Whether every point of the grid has a row.
   bool complete() const { return rows.size() == declaration.points.size(); }
 };
 
 class Store {
  public:
   enum class Access { read, write };
-  /// write: makes the file where it is not there, and keeps every other program out until it is
+  /// write: creates the file if it does not exist, and locks out every other program until it is
   /// closed. Throws Error naming the path for a file that is no store of ours, of another version,
   /// damaged, in use, or that cannot be opened.
   Store(const std::string& path, Access access);
@@ -79,23 +79,23 @@ class Store {
 
   const std::string& path() const;
 
-  /// The number of the run in this file.
+  /// Returns the number of the new run in this file.
   std::int64_t begin_run(const Provenance& provenance);
   std::vector<std::pair<std::int64_t, Provenance>> runs() const;
 
   std::vector<std::string> studies() const;
-  /// Empty where the study was not declared here.
+  /// Empty if the study was not declared here.
   std::optional<Declaration> declaration(const std::string& study) const;
-  /// The same again changes nothing. Throws Error where the study was declared otherwise.
+  /// Repeating a declaration changes nothing. Throws Error if the study was declared differently.
   void declare(const Declaration& declaration);
-  /// Adds a row in one transaction, on the disk when it returns. A row that says why nothing was
-  /// measured is replaced. Throws Error where the point has another row, is not in the grid, or
-  /// the disk refuses; the file is then as before.
+  /// Adds a row in one transaction; it is on the disk when the function returns. Replaces a row
+  /// that says why nothing was measured. Throws Error if the point has another row, is not in the
+  /// grid, or the disk refuses; the file is then unchanged.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
-  /// The same for a row of another store; row.run is the number here. `point` is not read.
+  /// The same for a row of another store; row.run is the number in this one. Ignores `point`.
   void add(const std::string& study, const Row& row);
-  /// Runs `work` in one transaction: all that it adds is kept, or nothing where it throws.
+  /// Runs `work` in one transaction: keeps everything that it adds, or nothing if it throws.
   void together(const std::function<void()>& work);
 
   StoredStudy study(const std::string& name) const;
@@ -108,8 +108,8 @@ class Store {
 /// DIR/results.sqlite, or DIR/results-K-of-N.sqlite for a shard.
 std::string store_path(const std::string& folder, int shard = 1, int of = 1);
 
-/// DIR/on-DEVICE: the folder of the results of a further device, a store of its own. Throws Error
-/// naming --devices where a file cannot be called so.
+/// DIR/on-DEVICE: the folder of the results on a further device, with its own store. Throws Error
+/// naming --devices if that is no valid file name.
 std::string device_folder(const std::string& folder, const std::string& device);
 /// The folders of further devices in DIR that hold a store, by name.
 std::vector<std::string> device_folders(const std::string& folder);

@@ -1,6 +1,6 @@
-// The study "scenes": the scenes of all other studies, and how large their triangles are in pixels.
-// The studies "culling", "efficiency" and "scaling": how much methods leave to exact predicates, at
-// rest and in motion, and how their time grows.
+// The study "scenes": the scenes of all other studies and the size of their triangles in pixels.
+// The studies "culling", "efficiency" and "scaling": how many pairs methods leave to exact
+// predicates, at rest and in motion, and how their time grows.
 //
 // FAR against I-COLLIDE: Govindaraju, Lin and Manocha, Fast and Reliable Collision Culling using
 // Graphics Hardware, TVCG 2006, section 6. Quick-CULLIDE against CULLIDE: IEEE VR 2005. Time
@@ -24,14 +24,14 @@ namespace {
 
 using enum Method;
 
-// The scene of a point; null where it is of the lemma experiment, whose points are no scene.
+// The scene of a point; null for the lemma experiment, which has no scene.
 const PointScene* scene_of(const Point& point) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return &run->scene;
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return &peer->scene;
   return nullptr;
 }
 
-// Each scene once, of one that moves the middle one of its frames that are measured.
+// Each scene once; for a moving scene the middle one of its measured frames.
 std::vector<Point> scenes_grid(const GridChoice& choice) {
   std::vector<std::pair<std::string, std::vector<RunPoint>>> scenes;
   for (const Study& study : studies_of_all()) {
@@ -59,8 +59,8 @@ std::vector<Point> scenes_grid(const GridChoice& choice) {
 }
 
 // Pixels that triangles cover at kSceneResolution: the areas of their images in the views x, y and
-// z, ascending. Only triangles that may take part count, those whose box meets another object's or
-// whose object is tested against itself.
+// z, ascending. Counts only triangles that may take part: their box meets another object's, or
+// their object is tested against itself.
 std::vector<double> covered_pixels(const Scene& scene) {
   std::vector<double> out;
   const Regions regions = find_regions(scene, {.self = true});
@@ -79,7 +79,7 @@ std::vector<double> covered_pixels(const Scene& scene) {
   return out;
 }
 
-// By nearest rank.
+// Percentile by nearest rank.
 double percentile(const std::vector<double>& sorted, double part) {
   const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];
@@ -142,8 +142,8 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
   return out;
 }
 
-// Libraries leave neighbours out. far-pairs hands them to the predicates, so that they are counted
-// here, for the candidates without them.
+// Libraries leave neighbours out, but far-pairs gives them to the predicates. They are counted
+// here, for the number of candidates without them.
 PointResult measure_culling(const Point& point, Lab& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
@@ -155,10 +155,10 @@ PointResult measure_culling(const Point& point, Lab& lab) {
 
 struct MovingCase {
   const char* scene;
-  bool self = false;  // its objects are tested against themselves as well, by few methods
+  bool self = false;  // also tests its objects against themselves, by few methods
 };
 
-// All scenes that move, no larger than the methods that draw can take on a software device.
+// All scenes that move, in sizes that methods that draw can handle on a software device.
 const std::vector<MovingCase>& moving_cases(bool quick) {
   static const std::vector<MovingCase> full = {
       {"two-spheres"},     {"needles:60"},  {"crowd:60"},           {"field:4000"},
@@ -181,11 +181,11 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
   out.push_back(plain_point(frame, far_pairs));
 }
 
-// A scene of one of the plots. A scene may serve in several, where it is measured once.
+// A scene of one of the plots. A scene may appear in several plots; it is measured once.
 struct Case {
   std::string scene;
   int resolution;  // of the methods that draw
-  bool drawn;      // whether they take part: they are far slower on a software device
+  bool drawn;      // by the methods that draw too, which are far slower on a software device
 };
 
 std::vector<Case> cases(bool quick) {
@@ -203,7 +203,7 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
   }
-  // Density: the same objects closer together. What collides grows with it.
+  // Density: the same objects closer together. Collisions grow with it.
   const int objects = quick ? 20 : 100;
   for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
@@ -224,8 +224,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Times vary by a third on a shared machine. Nine runs are the fewest odd number whose bootstrap
-// interval contains the median with 95 % (docs/experiments.md, "Statistics").
+// Times vary by a third on a shared machine. Nine is the smallest odd number of runs whose
+// bootstrap interval contains the median with 95 % (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 9;
 
 std::vector<RunPoint> points_of(const Case& c) {
@@ -236,7 +236,7 @@ std::vector<RunPoint> points_of(const Case& c) {
            cullide_point(scene, cullide, c.resolution)};
   }
   for (const Method method : {far_pairs, i_collide, exact}) {
-    // Alone of these far-pairs has pixels; where the plot is of pixels it takes those.
+    // Of these methods only far-pairs has pixels; it takes the resolution in the plot of pixels.
     const bool pixels = method == far_pairs && c.scene == "two-spheres";
     out.push_back(plain_point(scene, method, pixels ? c.resolution : 0));
   }
@@ -266,7 +266,7 @@ Study efficiency_study() {
       "does Quick-CULLIDE draw and ask less than CULLIDE, frame by frame over scenes that move?";
   study.grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    // Six frames at least: the range of fewer does not contain the median with 95 %.
+    // At least six frames: the range of fewer does not contain the median with 95 %.
     const long frames = choice.quick ? 6 : 12;
     for (const MovingCase& moving : moving_cases(choice.quick)) {
       for (long frame = 0; frame < frames; ++frame)

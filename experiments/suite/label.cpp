@@ -138,8 +138,7 @@ Triangle rational_triangle(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
-/// Whether p is a corner of the set of points: of a segment with three corners the inner one is
-/// none.
+/// Whether p is a corner of the triangle as a set of points: if that is a segment, one of its ends.
 bool is_corner(const Q3& p, const Triangle& t) {
   if (std::find(t.begin(), t.end(), p) == t.end()) return false;
   if (!is_zero(normal(t))) return true;

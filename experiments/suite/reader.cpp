@@ -415,7 +415,7 @@ std::optional<double> parse_hexadecimal(std::string_view word) {
   if (negative) word.remove_prefix(1);
   if (!word.starts_with("0x")) return std::nullopt;
   word.remove_prefix(2);
-  // from_chars would take a second sign, and the names of what is not finite.
+  // from_chars would accept a second sign, and also inf and nan.
   if (word.empty() || word[0] == '-' || word[0] == 'i' || word[0] == 'n') return std::nullopt;
   double value = 0;
   const char* const end = word.data() + word.size();

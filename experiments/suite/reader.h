@@ -24,8 +24,8 @@ enum class SuiteKind : std::uint8_t {
   crossing,
   coplanar,
   equal,
-  neighbours_meet,   // of triangles that share vertices: they meet in more than these and the edge
-  neighbours_apart,  // between them; or they do not
+  neighbours_meet,   // they share vertices, and meet in more than these and the edge between them
+  neighbours_apart,  // they share vertices, and do not meet in more
   unlabelled
 };
 

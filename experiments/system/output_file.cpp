@@ -26,7 +26,7 @@ namespace farcull {
 
 namespace {
 
-// Read by the handler of signals: atomics without locks alone.
+// Read by the signal handler, so only lock-free atomics.
 std::atomic<long> items_done = 0, items_wanted = 0;
 static_assert(std::atomic<long>::is_always_lock_free);
 std::atomic<const char*> items = "", how_it_ends = "";
@@ -125,9 +125,8 @@ std::string folder_of(const std::string& path) {
 // Path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// The path under which a file is written before it is put in place: in the same folder, and named
-// like it as far as the folder's file system lets a name be so long. A character of UTF-8 is not
-// cut.
+// The path of a file until it is put in place: in the same folder, under its name with an ending.
+// The name is cut if the file system does not take it so long, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 without a folder

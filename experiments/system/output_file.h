@@ -15,7 +15,7 @@ namespace farcull {
 
 /// Throws Error naming the path if write_output would refuse it for what is known before anything
 /// is written: no such folder, a directory, no permission, a name or path that is too long, a
-/// closed standard output. So a run of an hour does not end there.
+/// closed standard output. So a run of an hour does not fail at its end.
 void check_output(const std::string& path);
 
 /// Writes the text beside the path and renames it into place; "-" is standard output. A symbolic

@@ -1,5 +1,4 @@
-// The lists are sorted, and so are their pairs taken together: the least of the next lines of all
-// lists is the next line of the whole.
+// Merges sorted lists: the least of the next lines of all lists is the next line of the whole.
 
 #include <fmt/format.h>
 
@@ -30,7 +29,7 @@ constexpr const char* kRecordRemedy =
     "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote";
 constexpr const char* kAgain = "run the tile again";
 
-// A record, as far as it has to fit to the others.
+// The parts of a record that have to fit the other records.
 struct Source {
   std::string path;
   Json json;
@@ -51,7 +50,7 @@ Value at(const Source& source, const char* place) {
     if (!std::is_same_v<Value, std::uint64_t> || value.is_number_unsigned())
       return value.get<Value>();
   } catch (const nlohmann::json::exception&) {
-    // Said below.
+    // The error is thrown below.
   }
   no_record(source.path, fmt::format("is no record of a tile: {} is missing or wrong", place));
 }
@@ -155,15 +154,15 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// A list, read once from its beginning to its end. It is open only while it is read, so that their
-// number is not limited.
+// A list, read once from its beginning to its end. Its file is open only during each read, so that
+// the number of lists is not limited.
 class List {
  public:
   List(const Source& source, std::size_t buffer) : source_(source), buffer_(buffer) {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
-  // The next row; false at the end, where the whole is what the record says.
+  // Reads the next row; false at the end. Throws if the whole is then not what the record says.
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {

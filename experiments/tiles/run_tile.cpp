@@ -23,8 +23,8 @@
 
 namespace farcull {
 
-// The sample holds the triangles whose hashed number has so many zeros at its end; where it becomes
-// too large, one zero more is asked for. So it depends neither on parts nor on chance.
+// The sample holds the triangles whose hashed numbers end in a certain number of zero bits, one
+// more each time it becomes too large. So it depends neither on parts nor on chance.
 
 namespace {
 
@@ -271,8 +271,8 @@ class Gathering {
   std::vector<std::uint32_t> vertex_;  // of the part, in the tile
 };
 
-// Pairs of objects of the whole scene as those of the part; those of which one is elsewhere can
-// have no pair here.
+// Renumbers pairs of objects of the whole scene for the part. Leaves out those with an object
+// outside the part, since they have no pair of triangles here.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -474,7 +474,7 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // A scene that has as much to test: of its objects two with triangles, and one without.
+  // A small scene with the same answer: at most two of the objects with triangles, and one without.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

@@ -54,10 +54,10 @@ struct Census {
 /// What scene_hash() hashes of an object before it comes to the coordinates.
 std::uint64_t size_word(const Object& object);
 
-/// clearance: as of grown_box(). names: of the objects are kept. Throws what `source` throws.
+/// clearance: as of grown_box(). names: keep those of the objects. Throws what `source` throws.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
 
-/// A scene of the objects by their names alone.
+/// A scene whose objects have their names alone.
 Scene names_of(const Census& census);
 
 /// Where a scene is cut.
@@ -188,7 +188,7 @@ struct TileList {
 /// null where there is none, and then `farcull merge` has nothing to join.
 nlohmann::ordered_json tile_json(const TileRun& run, const TileList* list);
 
-/// As nothing_to_test() says of the whole scene.
+/// nothing_to_test() of the whole scene.
 NothingToTest nothing_to_test(const Census& census);
 
 /// The lines for people: what the tile is, and what the run says nothing about.

@@ -1,4 +1,4 @@
-// Making a certificate. Which direction is written is no matter of trust: the checker proves it.
+// Makes certificates. The choice of directions need not be trusted: the checker proves each.
 #include "verify/certificate/certificate.h"
 
 #include <algorithm>

@@ -153,14 +153,13 @@ struct CheckResult {
 };
 
 /// Decides every pair of the scene whose boxes overlap, in integers, and compares.
-/// - refuted: the certificate calls a pair culled that meets, or says of a pair that it meets or
-/// that
-///   it does not, and the contrary is true. The first such pair in order is named.
+/// - refuted: the certificate calls a pair culled that meets, or says wrongly of a pair that it
+///   meets or that it does not. The first such pair in order is named.
 /// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
 ///   byte is no evidence or names a direction that does not separate its disjoint pair, or does not
 ///   say what neighbours are, or a count or the hash of the list is wrong.
 /// - proved: neither. So the pairs of the list meet, and no others that count. What the certificate
-///   calls kept and the whole of its Run stay what they were, unattested.
+///   calls kept, and all of its Run, stays unattested.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
 /// Throws std::logic_error where the clearance is negative or not finite. Precondition: validate()
 /// accepts the scene.

@@ -43,8 +43,8 @@ struct Decision {
       "points within the clearance");
 }
 
-/// Decides the pair, and does not believe the byte: a direction separates it, or a point lies in
-/// both triangles, or two points are within the clearance. Neighbours have a decision of their own.
+/// Decides the pair without trusting the byte: a direction separates it, or a point lies in both
+/// triangles, or two points are within the clearance. Neighbours have a decision of their own.
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);

@@ -38,7 +38,7 @@ struct DistanceCertificate {
   /// objects: each two objects, and each object that is `self` with itself, that are at most
   ///   `within` apart: their distance, and the first of the nearest pairs of triangles.
   /// nearest: each two objects of which one is among the k nearest of the other, and at most
-  ///   `within` apart; of those as far the lower object is nearer.
+  ///   `within` apart; at equal distance the lower object is nearer.
   /// all: each two triangles at most `within` apart, of different objects or of one that is `self`.
   /// Neighbours (verify/exact.h) of one object never count.
   enum class Pairs : std::uint8_t { objects, nearest, all };
@@ -91,18 +91,16 @@ struct DistanceCheck {
 };
 
 /// Decides in integers whether the answers are right and complete.
-/// - refuted: a distance is not that of its triangles, or it is not so that one object is inside
-/// the
-///   other as an entry says, or a pair of triangles is nearer than the
-///   one that is listed for its objects, or belongs to the answer and is not listed, or does not
-///   belong to it and is listed. The pair is named, with its exact squared distance. Of several
-///   pairs that refute the first one is named: first what is wrong in an entry by itself, then
-///   what is nearer than an entry, then what is not listed; each by objects, then by triangles.
+/// - refuted: a distance is not that of its triangles, or an entry is wrong about which object is
+///   inside, or a pair of triangles is nearer than the one that is listed for its objects, or
+///   belongs to the answer and is not listed, or is listed and does not belong to it. The pair is
+///   named, with its exact squared distance. Of several pairs that refute the first one is named:
+///   first what is wrong in an entry by itself, then what is nearer than an entry, then what is not
+///   listed; each by objects, then by triangles.
 /// - not_proved: the certificate is of another scene, and nothing was decided; or nothing refutes,
-///   but entries are not in order or there twice, an entry is of a
-///   pair that does not count, an entry of triangles or of one object or with distance 0 says what
-///   is inside, a pair as near comes before the one that is named, or the nearest
-///   points lie on other features.
+///   but entries are not in order or there twice, an entry is of a pair that does not count, an
+///   entry of triangles or of one object or with distance 0 says what is inside, a pair as near
+///   comes before the one that is named, or the nearest points lie on other features.
 /// - proved: neither.
 /// Throws Error naming `name` where the certificate names an object or a triangle that the scene
 /// does not have. Precondition: validate() accepts the scene.

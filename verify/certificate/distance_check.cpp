@@ -1,5 +1,5 @@
-// The checker of distances: fraction, integer_distance, integer_inside, near_boxes, box_pairs and
-// this file, and what they include of this folder, are all that has to be right.
+// The checker of distances: integers, integer_distance, box_pairs, distance_proofs and this file,
+// and what they include of this folder, are all that has to be right.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -127,8 +127,8 @@ class Checker {
            listed_[i].length.squared.over == 0;
   }
 
-  /// Empty where the entry says of no object falsely that it is inside another. That the objects do
-  /// not meet is proved by their distance.
+  /// What the entry says wrongly about insides; empty if nothing. That the objects do not meet is
+  /// proved by their distance.
   static std::string wrong_inside(const IntegerInside& insides, const DistanceEntry& entry) {
     const auto& [a, b] = entry.objects;
     if (entry.inside == InsideClaim::unknown || a == b) return "";
@@ -225,10 +225,10 @@ class Checker {
   /// are listed `within`, which all answers reach.
   struct Reach {
     const Length* length = nullptr;                                    // null: infinite
-    std::uint32_t object = std::numeric_limits<std::uint32_t>::max();  // of as far ones the last
+    std::uint32_t object = std::numeric_limits<std::uint32_t>::max();  // the last of those as far
   };
 
-  /// Whether an object at this distance is within the reach: of those as far the lower object is.
+  /// Whether an object at this distance is within the reach: of equally far ones the lower one is.
   static bool is_in(const Length& length, std::uint32_t object, const Reach& reach) {
     if (reach.length == nullptr) return true;
     const auto order = length.squared <=> reach.length->squared;

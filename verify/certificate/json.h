@@ -53,7 +53,7 @@ class JsonSyntax : public nlohmann::json_sax<nlohmann::ordered_json> {
 };
 
 /// Readers of values; `place` is where they are, as in unattested.views[1].width. Each throws Error
-/// naming the file where the value is another.
+/// naming the file if the value is of another kind.
 class JsonReader {
  public:
   /// name: of the file; remedy: what the Error advises.

@@ -77,7 +77,7 @@ std::size_t driver_bytes() {
   return (std::size_t{256} + std::size_t{64} * threads) << 20;
 }
 
-// Asks for it and gives it back: a limit of the process (ulimit -v) refuses. Nothing is touched.
+// Reserves it and gives it back untouched: under a limit of the process (ulimit -v) that fails.
 void require_memory() {
   const std::size_t bytes = driver_bytes();
   void* const reserved = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
@@ -346,7 +346,7 @@ std::vector<GlDevice> GlContext::list_devices() {
 }
 
 int driver_threads(const std::string& renderer) {
-  // zink, which draws with it by way of Vulkan, names it too.
+  // zink draws with llvmpipe through Vulkan, and names it too.
   if (renderer.find("llvmpipe") == std::string::npos) return 0;
   return std::max(asked_threads(), running_threads());
 }

@@ -76,10 +76,10 @@ class GlCurrent {
   std::unique_ptr<Before> before_;  // null: the context was current already
 };
 
-/// How many threads of the driver draw in this process: those of Mesa's llvmpipe, if the renderer
-/// is it or draws with it, or as many as LP_NUM_THREADS asked for if that is more; else 0. They may
-/// write to memory that was freed (docs/drivers.md), so no promise rests on a device that has some
-/// (assumption A10).
+/// How many threads of the driver draw in this process: those of Mesa's llvmpipe, or as many as
+/// LP_NUM_THREADS asks for if that is more; 0 if the renderer neither is llvmpipe nor draws with
+/// it. They may write to memory that was freed (docs/drivers.md), so a device with such threads
+/// guarantees nothing (assumption A10).
 int driver_threads(const std::string& renderer);
 
 /// The risk of those threads and the remedy, without a full stop; empty if there are none.

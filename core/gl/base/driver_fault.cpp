@@ -1,5 +1,5 @@
-// Each fault replaces the entry points that it takes; a value of the thread says which call is at
-// fault. Without that value, in other threads, a replacement passes the call on.
+// Each fault replaces the entry points that it needs; a thread-local value says which call is to
+// fail. In threads without that value a replacement passes the call on.
 #include "core/gl/base/driver_fault.h"
 
 #include <optional>
@@ -33,11 +33,11 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// The text of every compute program of ours ends an invocation where its work items end; here, also
-// at the one before far_lost_item.
+// Every compute program of ours ends an invocation by this line, where its work items end. The
+// replacement also ends it at the item before far_lost_item.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
-// Programs of far-pairs may learn on the device how many items they have.
+// Programs of far-pairs may read on the device how many items they have.
 constexpr const char* kCountedEnd = "if (w >= items) break;";
 constexpr const char* kEarlierCountedEnd =
     "if (w >= items || (far_lost_item != 0u && w == items / 2u)) break;";
@@ -90,7 +90,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
   }
 }
 
-// gl_program() gives one text, ended by 0.
+// gl_program() passes one text, ended by 0.
 void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);

@@ -1,7 +1,7 @@
-// Faults of a GL driver for `farcull doctor` and the tests: both see by them that a fault is
-// noticed (assumption A7). While an object lives, functions that fail stand in place of GL's entry
-// points (libepoxy's function pointers), and texts of shaders are changed on their way to the
-// compiler. Only core/gl and its tests include this.
+// Faults of a GL driver, with which `farcull doctor` and the tests check that a fault is noticed
+// (assumption A7). While an object lives, functions that fail stand in place of GL's entry points
+// (libepoxy's function pointers), and texts of shaders are changed on their way to the compiler.
+// Only core/gl and its tests include this.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -71,14 +71,14 @@ enum class DriverFaultKind {
 /// compiled while the object lives for unfinished_item, wrong_count and kept_bits.
 class DriverFault {
  public:
-  /// at: of wrong_count the number of the bin, modulo the number of bins.
+  /// at: for wrong_count, the number of the bin, modulo the number of bins.
   explicit DriverFault(DriverFaultKind kind, std::size_t at = 0);
   ~DriverFault();
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;
 
-  /// The call with this number, counted from now on and from 0, is at fault: of the draws, the
-  /// dispatches or the queries. Before, none is.
+  /// Makes the call with this number fail, counted from now on and from 0: of the draws, the
+  /// dispatches or the queries. Before, none fails.
   void strike(std::size_t call = 0);
 
  private:

@@ -37,8 +37,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Every update goes through this binding. Whether it took effect is asked of GL: the contents that
-// follow would otherwise end in the buffer that was bound before.
+// Every update goes through this binding. GL is asked whether it took effect: else the contents
+// that follow would go to the buffer that was bound before.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;
@@ -207,7 +207,7 @@ void GlClock::forget() {
   for (GlQuery& stamp : stamps_) stamp = GlQuery();
 }
 
-// A new name each time: a stamp that is lost then has no object, and no stale time to give.
+// A new name each time: the name of a lost stamp then has no object, so no stale time is read.
 void GlClock::stamp(std::size_t place) {
   if (!ticks_) return;
   GlQuery& query = stamps_.at(place);

@@ -101,8 +101,8 @@ constexpr std::size_t kTagBytes = 16;
 /// cannot spoil another buffer. Each throws Error where GL fails.
 class GlStore {
  public:
-  /// Grows to hold `wanted` bytes of data, up to half as much again within `most`. True where the
-  /// contents are lost: they are undefined then. The store is as before where it throws.
+  /// Grows to hold `wanted` bytes of data, up to half as much again within `most`. Returns true if
+  /// the contents are lost, and so undefined. The store is unchanged if it throws.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
   /// Zeros, from the beginning; a multiple of 4.
@@ -124,8 +124,8 @@ class GlStore {
 void gl_wait(const std::string& stage);
 constexpr int kLongestWait = 600;  // s
 
-/// Notes when the device gets to a place in its work, where it has a clock (GL_TIMESTAMP). Nothing
-/// is waited for, and no answer depends on it. A context must be current in every call.
+/// Records when the device reaches a place in its work, if it has a clock (GL_TIMESTAMP). It never
+/// waits, and no answer depends on it. A context must be current in every call.
 class GlClock {
  public:
   /// For `stamps` places.
@@ -142,8 +142,8 @@ class GlClock {
   std::vector<GlQuery> stamps_;
 };
 
-// The echo (assumption A7): a device says back what a program read and the sum of what was sent, so
-// that lost commands are seen. kEchoGlsl is the same arithmetic for shaders.
+// The echo (assumption A7): the device returns a hash of what a program read, and of what was sent,
+// so that lost commands are seen. kEchoGlsl is the same arithmetic for shaders.
 
 /// Mixes a word with its place: a bijection of the word, after which a change of any bit may change
 /// every bit (the finalizer of MurmurHash3). So changes of a few words do not cancel in a sum, as

@@ -1,9 +1,9 @@
 // Fetches an element for each draw of a batch (those of one step that read one element buffer) and places it. FAR_PROXY:
 // a quadrilateral of two triangles that share the corners of a diagonal, seven vec4 an element. Otherwise: a triangle,
 // three vec4 an element.
-// FAR_ECHO: the buffers have tags, the draws of a batch follow its head (this pass's serial number; the word of the report
-// that is this batch's), and the first vertex of the batch writes there what the program reads, with FAR_FLAGS for the
-// fragment stage as well.
+// FAR_ECHO: the buffers have tags. The draws of a batch follow its head: this pass's serial number, and the batch's word of
+// the report. The first vertex of the batch writes there an echo of what the program reads; with FAR_FLAGS, also of what the
+// fragment stage reads.
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
@@ -80,7 +80,7 @@ void main() {
 #endif
   v_slot = item.y;
 #ifdef FAR_ECHO
-  // Outside the condition, where llvmpipe reads once for all vertices that it works on together.
+  // Computed outside the condition: llvmpipe then reads once for all vertices that it works on together.
   uint word = head.y, echo = far_echo();
   if (gl_VertexID == 0) FAR_AT(report, word) = echo;
 #endif

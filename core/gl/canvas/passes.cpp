@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // A batch may begin at so many entries.
+      // A batch begins at a multiple of so many entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -122,9 +122,9 @@ class Layout {
   bool fresh_ = true;      // the next draw starts a batch
 };
 
-// The draw list of `pass`. With `marks`, it begins with a store and ends with an ask, which have
-// control items alone where the caller's do not; the first of each carries the mark and asks for
-// that of the pass before, in the pixels that canvas.odd says. Without, it has neither.
+// The draw list of `pass`. With `marks`, it begins with a store and ends with an ask (of control
+// items alone if the caller's steps do not). Its first store draws the mark, and its first ask asks
+// for that of the pass before, in the pixels that canvas.odd says. Without, it has neither.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -401,8 +401,8 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   return out;
 }
 
-// Runs `work` with the context current and the state there; after a failure nothing that lies on
-// the device is believed.
+// Runs `work` with the context current and the state there; a failure drops all that lies on the
+// device.
 template <class Work>
 auto GlCanvas::guarded(const Work& work) {
   const GlCurrent current(context_);
@@ -445,7 +445,7 @@ GlCanvas::~GlCanvas() { forget(); }
 
 const RasterLimits& GlCanvas::limits() const { return limits_; }
 
-// Deletes everything on the device. Without the context that is left to end with it.
+// Deletes everything on the device. If the context cannot be made current, its end does that.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
   if (!gl_forget(context_, [&] { state_.reset(); })) static_cast<void>(state_.release());

@@ -1,7 +1,7 @@
-// Sets the state that a pass draws with. GL is asked for each value after it was set, where it can
-// be; the echo of each batch holds the rest. Compute programs sum what was sent and pack the flags.
-// Each dispatch and each batch of draws leaves an echo in the report, which is compared with the
-// echo computed here.
+// Sets the state that a pass draws with. Each value that GL can return is asked for after it was
+// set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
+// flags. Each dispatch and each batch of draws leaves an echo in the report, which is compared with
+// the echo computed here.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 // control items, by which lost commands are seen. Control items stand in corner pixels of the
 // render target, outside the window. In pixel 0 the store of step k leaves the depth kControlTop -
 // k * kControlGap. The next ask's control item, at that depth (or half a gap behind it, where equal
-// depths are not seen), is seen only if that store ran. A pass marks pixel 1 or 2 in turn and asks
-// in the other, where the pass before it left its mark: kAsked must not be seen, so the buffer has
-// been cleared since.
+// depths are not seen), is seen only if that store ran. Passes mark pixels 1 and 2 in turn, and
+// each asks in the other one, which the pass before marked: kAsked is seen there unless the buffer
+// was cleared.
 #pragma once
 
 #include <array>
@@ -80,7 +80,7 @@ class CanvasReport {
   /// Lets the device pack the flags that hold `serial`; the last dispatch before read().
   void pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count);
   /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are those that were
-  /// expected, every work item finished and GL has no error. A flag each, where pack() was called.
+  /// expected, every work item finished and GL has no error. Returns packed flags.
   std::vector<std::uint8_t> read(const std::string& stage);
   const GlStore& store() const { return store_; }
   /// Totals of all passes: dispatches that were started, and bytes that were read.

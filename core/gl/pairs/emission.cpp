@@ -1,6 +1,6 @@
 // Work items append pairs to a buffer; the pairs are read and sorted into a pool. If they do not
-// fit, tests are done in portions. Entries that stand together have about as many partners each, so
-// a portion takes every n-th of them, and portions report about as many pairs each.
+// fit, tests are done in portions. Neighbouring entries have about as many partners each, so a
+// portion takes every n-th entry, and all portions report about as many pairs.
 #include <algorithm>
 #include <span>
 
@@ -12,19 +12,19 @@ namespace {
 
 constexpr std::uint64_t kEntriesAtOnce = std::uint64_t{1} << 24;
 constexpr std::uint64_t kComparisonsAtOnce = std::uint64_t{1} << 30;  // with large triangles
-// Portions of which one work item is more than one, whatever their number.
+// If a part takes more portions than this, the pairs of a single work item do not fit.
 constexpr std::uint32_t kMostPortions = 1u << 30;
-// Entries of a record, on average, from which pairs are emitted once; and the largest number of
-// records for which the number of a bit fits 32 bits.
+// From so many entries of a record, on average, a pair is emitted only once; and the largest number
+// of records for which the number of a pair's bit fits 32 bits.
 constexpr std::size_t kRepeatedFrom = 16, kMostSettled = std::size_t{1} << 16;
 constexpr std::size_t kLeastPairs = std::size_t{64} << 10;  // bytes for pairs
 constexpr std::size_t kUnitBytes = 2 * kWord;
-// Pairs that are held although they may repeat: this part of the memory, or so many, or as many as
-// are distinct.
+// Pairs are held although they may repeat, up to this part of the memory or so many, whichever is
+// more, or as many as are distinct.
 constexpr std::size_t kBufferPart = 8;
 constexpr std::size_t kLeastBuffer = 4096;
 
-// Most work items of further tests of a level.
+// The largest number of work items of further tests of a level.
 std::size_t most_units_of(const PairTotalWords& totals) {
   const auto first = totals.begin() + kTotalMore;
   return *std::max_element(first, first + kMaxLevel + 1);
@@ -40,7 +40,7 @@ void PairFinder::begin_pairs() {
                  task_->narrow);
 }
 
-// Makes the tests of all lists, and compares large triangles with each active one; false: too many.
+// Runs the tests of all lists, and compares large triangles with each active one; false: too many.
 // Totals are read once, and again with each further portion of the pairs.
 bool PairFinder::make_pairs(PairTotalWords& totals) {
   find_large();
@@ -104,7 +104,7 @@ bool PairFinder::take_portion(const Portion& portion, const PairTotalWords& tota
     counts_.given_up = counts_.tests > task_->most_tests;
     return true;
   }
-  // Bits say that pairs were emitted which did not fit.
+  // The bits mark pairs as emitted that did not fit.
   if (settled_words_ > 0) device_.zero(settled_, settled_words_, true);
   divide(portion, emitted, more, two_words(totals, kTotalTests));
   return true;
@@ -116,7 +116,7 @@ void PairFinder::divide(const Portion& portion, std::uint64_t emitted, std::size
   const std::size_t most = most_bytes();
   const std::size_t units = more * kUnitBytes;
   std::uint64_t bytes = emitted * sizeof(TrianglePair);
-  // Further tests that did not run would have reported as many pairs each.
+  // Further tests that did not run are taken to report as many pairs each.
   if (more > unit_capacity() && tests > 0) {
     const double all = static_cast<double>(bytes) *
                        (1 + static_cast<double>(more) * kUnit / static_cast<double>(tests));

@@ -1,8 +1,8 @@
-// Finds the pairs of a window. If its work can be foreseen from the last windows, or guessed from
-// the bounds of its triangles, it is done without a wait: each dispatch learns on the device how
-// much there is to do. If there was too little room for something, all is done again, step by step,
-// and counts are read between the steps. A part of the window that is too much for the memory is
-// split in two, down to single pixels.
+// Finds the pairs of a window. If the sizes of buffers can be predicted from the last windows, or
+// guessed from the bounds of its triangles, the window needs one readback: each dispatch reads on
+// the device how much there is to do. If there was too little room for something, all is done
+// again, step by step, and counts are read between the steps. A part of the window that is too much
+// for the memory is split in two, down to single pixels.
 //
 // GlPairs owns a PairFinder and forgets it after any failure, so that nothing on the device is
 // believed then.
@@ -29,9 +29,9 @@ void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
     throw_lost("pairs", "the same was counted twice with different results", kLostInvocation);
 }
 
-// Whether an eighth of the triangles says that all of them take several times the work that may be
-// done. A device tells how much it did when it has done it, so this is asked before. Pixels grow
-// with the triangles, and comparisons with their square.
+// Whether a sample, an eighth of the triangles, predicts several times the work that may be done.
+// The device reports its work only afterwards, so this comes first. Pixels grow with the triangles,
+// comparisons with their square.
 bool takes_too_much(const PairTask& task) {
   constexpr std::size_t kOneOf = 8, kTimes = 4;
   if (task.most_tests == UINT64_MAX || std::max(task.width, task.height) > kMostCpuPixels)
@@ -248,7 +248,7 @@ GlPairs::GlPairs(const GlContext& context, const GlPairOptions& options)
 
 GlPairs::~GlPairs() { forget(); }
 
-// Deletes everything on the device. Without the context that is left to end with it.
+// Deletes everything on the device. If the context cannot be made current, its end does that.
 void GlPairs::forget() {
   if (!gl_forget(context_, [&] { finder_.reset(); })) static_cast<void>(finder_.release());
 }

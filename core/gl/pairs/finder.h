@@ -24,8 +24,8 @@ namespace farcull {
 
 /// Totals that programs count, as words of the counter buffer; two words, low first, where noted,
 /// or a word for each level. The same names with FAR_ are macros of the shaders. Totals that are
-/// set to 0 together follow a serial number, which is sent with the zeros: where it comes back,
-/// they have arrived.
+/// set to 0 together follow a serial number, which is sent with the zeros: if it comes back, the
+/// zeros have arrived.
 enum PairTotal : std::uint32_t {
   kSerialStart,
   kTotalMismatches,
@@ -67,10 +67,10 @@ struct PairTotals {
 constexpr PairTotals kItemTotals{kSerialItems, kSerialPairs - kSerialItems};
 constexpr PairTotals kPairTotals{kSerialPairs, kTotals - kSerialPairs};
 
-/// How many work items a dispatch has: `most` where no total is given. Else a total that the device
-/// counts says it, so that nobody has to wait and read it: one work item for each `per` of it,
-/// `times`. The total may be `most`, the room that there is for what it counts. Where it is more,
-/// no work is done, nor by the dispatches after it that ask for a total, and read() says so.
+/// How many work items a dispatch has: `most` if no total is given. Else a total that the device
+/// counted says it, so the host need not wait and read it: one work item for each `per` of the
+/// total, `times`. The total may be at most `most`, the room for what it counts. If it is more,
+/// neither this dispatch nor those after it that use a total do any work, and read() says so.
 struct PairWork {
   PairWork(std::uint64_t count) : most(count) {}
   PairWork(std::uint64_t room, PairTotal counted, std::uint32_t each = 1, std::uint32_t times_ = 1)
@@ -161,8 +161,8 @@ class PairQueue {
   /// must be given.
   void run(PairProgram program, const PairWork& work, const PairUniforms& uniforms,
            const std::vector<PairBinding>& bindings);
-  /// The sums before each of `count` numbers, or of as many as the total `counted` says, unless it
-  /// is kSerialStart; their sum becomes the total `sum`.
+  /// Writes the sums before each of `count` numbers, or of as many as the total `counted` says,
+  /// unless it is kSerialStart; their sum becomes the total `sum`.
   void scan(const GlStore& numbers, const GlStore& before, std::size_t count, PairTotal counted,
             PairTotal sum);
   /// Lets the device sum what five stores hold; read() compares the sum with that of the data, of a
@@ -327,8 +327,8 @@ struct SeenWindow {
   float side = 0;             // px; the larger one
 
   explicit SeenWindow(const PairTask& task);
-  /// True if the other is of this view, or of one in which objects are at the same places, a step
-  /// of a motion apart.
+  /// True if the other one shows this view, perhaps a step of a motion apart, or a view with
+  /// objects at the same places.
   bool is_like(const SeenWindow& other) const;
 };
 
@@ -376,7 +376,7 @@ class PairFinder {
   void break_off_lists();
   bool overflow(const PairTotalWords& totals) const;
 
-  // forecast.cpp: the room that is expected to do, and what it is expected from.
+  // forecast.cpp: the room that is expected to suffice, and the windows that it is expected from.
   std::optional<PairForecast> expected_room(const SeenWindow& window) const;
   void remember(const SeenWindow& window);
 
@@ -446,7 +446,7 @@ class PairFinder {
   const PairForecast* room_ = nullptr;  // null: counts are read between the steps
   PartMemory memory_;
   PairUniforms common_;
-  bool fresh_ = true;                 // nothing was told to the device but what was sent
+  bool fresh_ = true;                 // the device was only sent data so far
   std::optional<PairForecast> seen_;  // its counts, when all of them are known
   // Its items. With a forecast the numbers are upper bounds.
   GlStore heads_, records_, record_heads_, listed_flags_, shown_list_;

@@ -20,7 +20,7 @@ constexpr std::size_t kGuessedCells = std::size_t{1} << 20;  // where triangles 
 constexpr std::size_t kPairsOfEntry = 256;                // reported, on average
 constexpr std::size_t kMostUnits = std::size_t{1} << 22;  // work items of further tests
 constexpr float kUnsure = 0x1p-8f;  // px, far more than the rounding of bounds
-// Cutting a cell leaves entries that are in several of its parts: guessed as twice as many in all.
+// Entries may be in several parts of a cell that is cut: guessed as twice as many in all.
 constexpr std::size_t kCutEntries = 2;
 
 // Calls change(mine, other) for each count.
@@ -107,7 +107,7 @@ PairForecast count_bounds(const PairTask& task, CellCounts& cells) {
     const PairBounds bounds = grid.bounds(t);
     if (bounds.empty()) continue;
     PairItem item = grid.item(t, bounds);
-    // Those that rounding may make either are counted as both.
+    // Triangles that rounding may turn into either kind are counted as both.
     const bool grown_whole = grid.item(t, grown(bounds, kUnsure)).whole;
     const bool shrunk_whole = grid.item(t, grown(bounds, -kUnsure)).whole;
     if (item.whole && !grown_whole) ++guess.wholes;
@@ -137,9 +137,9 @@ PairForecast count_bounds(const PairTask& task, CellCounts& cells) {
   return guess;
 }
 
-// Room for the work on a window, by the bounds of its active triangles: enough for most scenes.
-// Nothing depends on its being enough, since a device counts all that it does. memory: bytes for
-// the masks and lists; block: bytes of one buffer. Nothing if they would not do.
+// Room for the work on a window, by the bounds of its active triangles: enough for most scenes. No
+// answer depends on that, since the device counts all its work. memory: bytes for the masks and
+// lists; block: bytes of one buffer. Empty if they would not suffice.
 std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory,
                                         std::size_t block) {
   CellCounts cells(task.width, task.height);
@@ -169,7 +169,7 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
   // An entry with at most 256 others in its cell has no further tests.
   if (cells.largest > static_cast<int>(kUnit))
     guess.more = std::min(entries * (static_cast<std::size_t>(cells.largest) / kUnit), kMostUnits);
-  // More pairs than this cost a second pass of the tests, but a device need not have the memory.
+  // More pairs cost a second pass of the tests, but more room may be beyond a device's memory.
   const std::size_t most = std::min(memory / 2, block) / sizeof(TrianglePair);
   guess.pairs = std::min(kPairsOfEntry * entries, most - std::min<std::size_t>(most, 1));
   return guess;
@@ -190,8 +190,8 @@ PairForecast PairForecast::with_room() const {
   return out;
 }
 
-// The device asked the same; here it is compared again. Rows of pixels, and crowded cells of the
-// last level, are work that nobody foresaw and that was left out.
+// Repeats the comparison that the device made. Rows of pixels beyond the forecast, and crowded
+// cells of the last level, were left out.
 bool PairForecast::holds(const PairTotalWords& totals, std::size_t cut) const {
   bool enough = totals[kTotalWholes] <= wholes && totals[kTotalItems] <= items &&
                 totals[kTotalLarge] <= large && totals[kTotalListed] <= shown &&
@@ -222,7 +222,7 @@ bool SeenWindow::is_like(const SeenWindow& other) const {
          std::equal(places.begin(), places.end(), other.places.begin(), other.places.end(), near);
 }
 
-// Nothing if the counts are to be read between the steps.
+// Empty if the counts are to be read between the steps.
 std::optional<PairForecast> PairFinder::expected_room(const SeenWindow& window) const {
   if (options_.step_by_step || scene_.gathered()) return {};
   std::optional<PairForecast> room;

@@ -326,7 +326,7 @@ bool PairFinder::count_entries() {
 // Marks the slices that two owners touch in each pixel.
 void PairFinder::mark(std::size_t mask_bytes) {
   const Stopwatch start;
-  // If this is lost, slices are left that seem to be touched: more is listed, nothing less.
+  // If this is lost, old slices still count as touched: more is listed, never less.
   masks_.clear(mask_bytes);
   visit(PairProgram::mark_wholes, PairProgram::mark_rows, 0);
   PairUniforms u = common_;

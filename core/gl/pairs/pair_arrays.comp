@@ -1,7 +1,7 @@
 // Steps over arrays of words. 0: the sums of the words of up to five buffers, each mixed with its place (gl_sum has the same on the
 // CPU). 1: copies words. 2: sets words to 0; u_extra.x: not 0 where they are bits of pairs.
-// 3 and 4: sums of all numbers before each. 3: 64 at a time are summed, and each sum is added to those of 64^2 and 64^3 numbers, which
-// are 0 before. 4: what precedes 64 numbers is summed from these, and handed down. A sum beyond 32 bits raises FAR_OVERFLOW.
+// 3 and 4: sums of all numbers before each. 3 sums 64 numbers at a time, and adds each sum to those of 64^2 and 64^3 numbers, which
+// are 0 before. 4 sums from these what precedes its 64 numbers, then each one. A sum beyond 32 bits raises FAR_OVERFLOW.
 // 5: slices of a pixel that two owners touch: they differ in some bit of their numbers, so one of them touches the region of that
 // bit's 0 and the other that of its 1. 6: after counting, counts the crowded cells.
 #if FAR_STEP == 0

@@ -71,7 +71,7 @@ void far_add(uint counter, uint n) {
   if (before + n < before) atomicAdd(counters[counter + 1u], 1u);
 }
 
-// The place of one more pair in the output. Of a total beyond 32 bits the places begin anew, but the total is known.
+// The place of one more pair in the output. Beyond 32 bits the places begin anew at 0, but the total stays right.
 #define FAR_ONE_PAIR 1u
 uint far_next_pair() {
   uint place = atomicAdd(counters[FAR_PAIRS], FAR_ONE_PAIR);

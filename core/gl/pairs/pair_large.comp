@@ -1,5 +1,5 @@
-// Large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs/cpu.cpp. Step 0 lists
-// the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with a triangle that was sent.
+// Compares large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs/cpu.cpp. Step
+// 0 lists the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with a triangle that was sent.
 layout(std430, binding = 5) buffer Records { uvec4 tag_5; readonly vec4 records[]; };
 #define FAR_TAG_5 tag_5.x
 layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
@@ -49,7 +49,7 @@ void work(uint w) {
     return;
   uint begin = (u_items + w / u_cells) * FAR_LARGE_BATCH;
   uint end = min(begin + FAR_LARGE_BATCH, min(counters[FAR_LARGE_FOUND], u_extra.w));
-  // First to the next one whose box meets the triangle's, so that few steps compute a strip.
+  // Skips to the next one whose box meets the triangle's, so that few iterations compute a strip.
   for (uint k = begin; k < end; ++k) {
     uint l = 0u;
     uint other = 0u;

@@ -1,6 +1,6 @@
-// The loop over work items, and the echo of what the program reads; after the text of a program. The first invocation writes
-// the sum of the program's number, its uniforms and the tags of its buffers, each mixed with its place, beside the
-// counter of finished work items. PairQueue::run computes the same sum from what it meant: a lost call to GL makes the two differ.
+// The loop over work items, and the echo of what the program reads; after the text of a program. The first invocation writes the
+// sum of the program's number, its uniforms and the tags of its buffers, each mixed with its place, beside the counter of finished
+// work items. PairQueue::run computes the same sum from the intended values: a lost call to GL makes the two differ.
 
 uint far_echo() {
   uint sum = 0u;

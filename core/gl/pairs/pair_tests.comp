@@ -107,7 +107,7 @@ void work(uint w) {
 #endif
     bool emit = hit && !elsewhere;
 #ifdef FAR_SETTLED
-    // Whoever sets the bit emits the pair. If that does not fit the output, all bits are cleared before it is done again.
+    // The invocation that sets the bit emits the pair. If pairs do not fit, all bits are cleared before a new try.
     if (emit) {
       uint r = FAR_AT(places, e).y;
       uint s = FAR_AT(places, p).y;

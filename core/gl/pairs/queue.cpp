@@ -300,7 +300,7 @@ void PairQueue::check_finished(const std::string& stage) {
     const bool counted = work.total != kSerialStart;
     const std::uint32_t finished = words_[kTotals + 2 * d];
     const std::uint64_t meant = work.items(counted ? words_[work.total] : work.most);
-    // After an overflow nothing is done, and nothing is believed.
+    // After an overflow no work is done, and the results are not used.
     if (finished != meant && !(counted && overflow_)) {
       throw_lost(stage, std::to_string(finished) + " of " + std::to_string(meant) +
                             " work items finished");

@@ -35,7 +35,7 @@ void main() { o_colour = v_colour; }
 #endif
 )glsl";
 
-// Light comes over the left shoulder of who looks; x right, y up, depth away.
+// Light comes from over the viewer's left shoulder; x right, y up, depth away.
 const Vec3 kLight = Vec3(-0.45, 0.60, -0.66).normalized();
 constexpr double kAmbient = 0.42;
 constexpr std::size_t kBatch = 1 << 18;  // corners on the way to the device at a time
@@ -59,7 +59,7 @@ double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
   if (!(length > 0) || !std::isfinite(length)) return 1;
-  // Nearly black where the light only grazes would hide the shape; the half-Lambert keeps it.
+  // Without the ambient part, surfaces at grazing light would be nearly black and hide the shape.
   const double facing = std::abs(normal.dot(kLight)) / length;
   return kAmbient + (1.08 - kAmbient) * facing;
 }

@@ -64,8 +64,8 @@ constexpr int kMostPicture = 4096;
 
 /// The window that looks along the view and holds the boxes with `margin` (a part of its size, <
 /// 1/2) around them, in a picture of that many pixels (each even, 2 to kMostPicture). The origin is
-/// inside the boxes, so what is far from the origin of the world is drawn as sharply as what is
-/// not. Throws Error naming the scene where doubles cannot distinguish its pixels.
+/// inside the boxes, so a scene far from the world's origin is drawn as sharply as one near it.
+/// Throws Error naming the scene where doubles cannot distinguish its pixels.
 Window picture_window(const View& view, std::span<const Box> boxes, int width, int height,
                       double margin, const std::string& scene_name);
 

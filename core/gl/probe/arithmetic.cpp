@@ -95,7 +95,7 @@ std::vector<Operands> make_operands(Random& random) {
         break;
     }
     float c = a * b;
-    // Products that are neither flushed nor overflow are taken from themselves.
+    // c is about the product, unless that may be flushed or overflow.
     if (!(std::abs(c) > 0x1p-100f && std::abs(c) < 0x1p100f)) c = random.normal(-24, 20);
     out[i] = {a, b, neighbour(c, random.below(3) - 1), 0};
   }
@@ -216,8 +216,8 @@ ProbeResult transport(const ProbeOptions& options) {
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// canvas.frag itself on sorted depths: what the depth buffer holds must not fall, lie in [1/4,
-// 3/4], or as far behind as an exit is asked, and an exit at an entry must not be before it.
+// Runs canvas.frag itself on sorted depths: the values in the depth buffer must not fall, and lie
+// in [1/4, 3/4], exits up to kAskedBehind beyond; an exit at an entry must not be before it.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
@@ -334,7 +334,7 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
   const std::vector<float> entry = canvas.samples(Verb::store, draws);
   const std::vector<float> exit = canvas.samples(Verb::ask, draws);
   std::vector<SolidAnswer> out;
-  // Hit by only one of the two is an answer that holds nothing.
+  // If only one of the two hits, the other depth is NaN, so the interval contains nothing.
   for (std::size_t i = 0; i < cases.size(); ++i)
     out.push_back({!std::isnan(entry[i]) || !std::isnan(exit[i]), entry[i], exit[i]});
   return out;

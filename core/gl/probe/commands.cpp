@@ -283,7 +283,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Memory that a driver damages cannot be seen from outside. Of one fault the cause is known.
+// Memory that a driver damages cannot be seen from outside; its threads are one known cause.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

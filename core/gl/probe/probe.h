@@ -19,7 +19,7 @@ namespace farcull {
 enum class ProbeUse { all, drawing, pairs };
 
 struct ProbeResult {
-  std::string assumption;  // "A1" .. "A9"
+  std::string assumption;  // "A1" .. "A10"
   std::string name;
   double measured = 0;  // the worst seen, in `unit`
   double bound = 0;     // in `unit`
@@ -86,7 +86,7 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
 
 /// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
 /// programs of the method, in a window this deep (px): with flags, with queries, and with queries
-/// on 24 bits, all three. Where the two are the same solid and the line hits it, it must be.
+/// on 24 bits, all three. Where the two are the same solid and the line hits it, it must be seen.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

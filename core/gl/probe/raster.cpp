@@ -71,8 +71,8 @@ class Coverage {
 
 enum class Direction { upright, level, diagonal, any };
 
-// Edges near pixel centres, one proxy each; how far beyond its edge a centre was still covered, or
-// before it was not, is the least displacement (px per axis) that explains it.
+// Edges near pixel centres, one proxy each. If a centre is wrongly covered or left out, its
+// distance from the edge is the least displacement (px per axis) that explains it.
 void short_edges(Coverage& coverage, Random& random, Direction direction, double reach,
                  Worst& worst) {
   constexpr int kCell = 6, kEdge = 3;
@@ -226,7 +226,7 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
   return wrong;
 }
 
-// A mesh of shaken cells whose triangles share their corners: every pixel inside once.
+// A mesh of jittered cells whose triangles share their corners: covers every pixel inside once.
 Worst abutting_mesh(Coverage& coverage, Random& random) {
   const int side = coverage.target().width();
   Worst wrong;
@@ -236,7 +236,7 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         const bool border = i == 0 || j == 0 || i == n || j == n;
-        // Cells of one pixel keep their corners on pixel centres in every other place.
+        // In cells of one pixel every other corner stays on a pixel centre.
         const double shake = border || (cell == 1 && (i + j) % 2 == 0) ? 0 : 0.2 * cell;
         points[static_cast<std::size_t>(j) * (n + 1) + i] = {
             (i - middle) * cell + 0.5 + random.in(-shake, shake),

@@ -16,7 +16,7 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
   struct Row {
     std::vector<std::string> assumptions;
     probe::Group* run;
-    bool drawing = true, pairs = false;  // who relies on it; of A4, pairs on a part alone
+    bool drawing = true, pairs = false;  // who relies on it; pairs only on a part of A4
   };
   const Row groups[] = {{{"A1", "A2"}, probe::edges},
                         {{"A3", "A9"}, probe::coverage},

@@ -159,7 +159,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
 )glsl";
 inline SolidProgram depth_solid() { return {"probe", kDepthSolid, nullptr}; }
 
-/// How often what is repeated `n` times is done.
+/// How often to repeat what is repeated `n` times in full.
 inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }
 
 /// Largest target side (px) that a canvas on this device could have.

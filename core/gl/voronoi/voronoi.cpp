@@ -81,7 +81,7 @@ class GlVoronoi : public VoronoiDevice {
     try {
       const GlCurrent current(context_);
       on_ = {};
-    } catch (const Error&) {  // the context is in another thread's hands: it ends with it
+    } catch (const Error&) {  // another thread holds the context: the objects end with it
     }
   }
 
@@ -148,7 +148,7 @@ class GlVoronoi : public VoronoiDevice {
     bool two_objects = false;
   };
 
-  // Runs work with the context current. Where it throws, no later call is believed.
+  // Runs work with the context current. If it throws, every later call throws.
   template <class Work>
   void answer(const Work& work) {
     if (failed_)
@@ -356,7 +356,7 @@ class GlVoronoi : public VoronoiDevice {
     on_.list.reserve(bytes, block_);
   }
 
-  // Takes the echo of each out of the sum of its cell, so that one that was not written is missed.
+  // Subtracts the echo of each from the sum of its cell, so that a missing one is noticed.
   std::vector<VoronoiNear> read_list(std::uint32_t listed) {
     std::vector<Words> words(listed, Words{0xffffffff, 0, 0, 0});
     on_.list.read(16, words.data(), words.size() * sizeof(Words));
@@ -419,7 +419,7 @@ class GlVoronoi : public VoronoiDevice {
 
 std::unique_ptr<VoronoiDevice> gl_voronoi_device(const GlContext& context,
                                                  const GlVoronoiOptions& options) {
-  const GlCurrent current(context);  // also while what was made goes, where it throws
+  const GlCurrent current(context);  // also while a constructor that throws deletes what it made
   return std::make_unique<GlVoronoi>(context, options);
 }
 

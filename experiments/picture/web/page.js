@@ -1,5 +1,5 @@
-// The controls of the page: which answer is shown, what of the scene, and the triangle that was
-// clicked. All that they choose is in the address behind the #, so that an address is a view.
+// The controls of the page: the answer, the visible parts of the scene, and the clicked triangle.
+// The address holds all choices behind the #, so that an address reproduces a view.
 
 const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
@@ -16,14 +16,14 @@ function stepsOf(method) {
   return about.steps.filter((step) => step.method === method && step.frame === state.frame);
 }
 
-// The step of the state: the resolution that is nearest to the one asked for.
+// The step of the state, at the resolution nearest to the requested one.
 function currentStep() {
   const steps = stepsOf(state.method);
   const far = (step) => Math.abs(step.resolution - Math.min(state.resolution, 1e9));
   return steps.reduce((best, step) => (far(step) < far(best) ? step : best));
 }
 
-// ---- what is shown ------------------------------------------------------------------------------
+// ---- display ------------------------------------------------------------------------------------
 
 function nameOf(triangle) {
   const o = frame.owner[triangle], [name, first] = frame.objects[o];
@@ -58,7 +58,7 @@ function showLegend() {
   }));
 }
 
-// The pairs of the chosen triangle, each a button that chooses the other one.
+// The pairs of the chosen triangle, each a button that chooses the other triangle.
 const MOST_SHOWN = 200;
 function showChosen() {
   const box = byId("chosen");
@@ -171,8 +171,8 @@ function showControls() {
   }
 }
 
-// Loads the answer that the state asks for, and shows it. Where another one was asked for meanwhile,
-// that one is shown.
+// Loads and shows the answer for the state. If another answer was requested meanwhile, shows that
+// one.
 async function update() {
   const turn = ++loading;
   const of = await loadFrame(state.frame);
@@ -193,7 +193,7 @@ async function update() {
   writeAddress();
 }
 
-// ---- what the reader does -----------------------------------------------------------------------
+// ---- actions of the reader ----------------------------------------------------------------------
 
 function choose(triangle, centred = false) {
   state.triangle = triangle;
@@ -232,7 +232,7 @@ function setFrame(number) {
   return update();
 }
 
-// The next missed triangle after the chosen one; a colliding one where none is missed.
+// Chooses the next missed triangle after the chosen one; a colliding one if none is missed.
 function next() {
   let first = -1, after = -1;
   const any = answer.step.missedPairs === 0;
@@ -262,7 +262,7 @@ function isDark() {
   return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-// Frame after frame; a frame that takes long to unpack holds up the next one. Odd: it plays.
+// Plays the frames; a frame that is slow to unpack delays the next one. Odd: playing.
 let plays = 0;
 async function play() {
   const turn = ++plays;
@@ -309,7 +309,7 @@ function writeAddress() {
 
 const finite = (list) => list.length === 3 && list.every(Number.isFinite);
 
-// Takes from the address what this page can show, and leaves the rest as it is. An address may be
+// Applies the parts of the address that this page can show, and ignores the rest. An address may be
 // anything.
 function readAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
@@ -433,7 +433,7 @@ function onKey(event) {
   event.preventDefault();
 }
 
-// The flat picture in place of the scene, and why.
+// Shows the flat picture in place of the scene, and why.
 function standIn(why) {
   document.documentElement.classList.add("flat");
   byId("trouble").hidden = false;
@@ -480,7 +480,7 @@ async function start() {
   });
 }
 
-// For tests, and for who wants to know more in the console.
+// For tests and the console.
 window.farcull = { about, state, get view() { return view; }, get frame() { return frame; }, get answer() { return answer; } };
 start().catch((error) => {
   standIn(`The data of this page cannot be shown: ${error.message}.`);

@@ -1,7 +1,7 @@
-// Unpacks the scene of the page, and draws it with three.js and WebGL 2. Every triangle has three
-// corners of its own, so that gl_VertexID / 3 is its number; two textures hold what may change: a
-// byte of state for each triangle, and a place for each object. Lengths are those of the scene's
-// box, whose largest extent is 2 and whose middle is the origin.
+// Unpacks the scene of the page, and draws it with three.js and WebGL 2. Every triangle has its own
+// three corners, so that gl_VertexID / 3 is its number. Two textures hold what may change: one byte
+// of state per triangle, and a place per object. The unit of length is half the largest extent of
+// the scene's box; the middle of the box is the origin.
 
 const REST = 0, IDLE = 1, COLLIDES = 2, MISSED = 4, CHOSEN = 8, PARTNER = 16;
 const STATE_WIDTH = 2048, OBJECT_WIDTH = 256;
@@ -73,7 +73,7 @@ function shareOf(colour) {
 }
 
 class SceneView {
-  // Throws where the browser has no WebGL 2.
+  // Throws if the browser has no WebGL 2.
   constructor(canvas, about) {
     const context = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
     if (!context) throw new Error("This browser has no WebGL 2 here.");
@@ -117,7 +117,7 @@ class SceneView {
       side: THREE.DoubleSide, transparent: over, depthTest: !over, depthWrite: !over
     });
     if (part === 1) {
-      // Once in a pixel, however many triangles lie behind one another.
+      // Once per pixel, even if several triangles lie behind one another.
       material.stencilWrite = true;
       material.stencilFunc = THREE.EqualStencilFunc;
       material.stencilRef = 0;
@@ -162,8 +162,8 @@ class SceneView {
     this.setIndices();
   }
 
-  // An exploded view moves each object: away from the middle of the scene, and those in the
-  // middle in directions of their own.
+  // An exploded view moves each object away from the middle of the scene; objects in the middle
+  // move in directions of their own.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
     const old = this.places && this.places.image.height === rows ? this.places.image.data : null;
@@ -192,7 +192,7 @@ class SceneView {
     this.ask();
   }
 
-  // The state of every triangle, and what is drawn once more because of it.
+  // Sets the state of every triangle, and thereby what is drawn a second time.
   setStates(states) {
     this.states.image.data.set(states);
     this.states.needsUpdate = true;
@@ -207,7 +207,7 @@ class SceneView {
     return geometry;
   }
 
-  // Corners of the triangles whose state has one of the bits; as edges, or as one point each.
+  // The corners of the triangles whose state has one of the bits; as edges, or as one point each.
   indexOf(bits, kind) {
     const data = this.states.image.data, out = [];
     for (let t = 0; t < this.triangles; ++t) {
@@ -243,7 +243,7 @@ class SceneView {
     };
     add(new THREE.Mesh(this.geometry(null), this.materials[0]), 0);
     some(COLLIDES, 1, ["faces"], 1);
-    // An edge and a point, however small the triangle is, so that no miss goes unseen.
+    // Also draws an edge and a point, so that a miss is visible however small its triangle is.
     some(MISSED, 2, ["faces", "edges", "points"], 2);
     some(PARTNER, 3, ["faces", "edges"], 5);
     some(CHOSEN, 3, ["faces", "edges", "points"], 7);
@@ -284,7 +284,7 @@ class SceneView {
     return out;
   }
 
-  // The place of a triangle's corner (0 to 2) as it is displayed.
+  // The position of a triangle's corner (0 to 2) as displayed.
   corner(triangle, k) {
     const a = this.points.array, i = 4 * (3 * triangle + k), ratio = this.uniforms.ratio.value;
     const p = new THREE.Vector3(a[i], a[i + 1], a[i + 2]).multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
@@ -342,7 +342,7 @@ class SceneView {
     this.ask();
   }
 
-  // Moves the view by parts of its height.
+  // Moves the view by fractions of its height.
   move(right, up) {
     const by = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0)
       .multiplyScalar(2 * right / this.camera.zoom);
@@ -360,7 +360,7 @@ class SceneView {
     this.ask();
   }
 
-  // Draws before the next refresh of the screen, once however often it is asked.
+  // Requests one draw before the next refresh of the screen, however often it is called.
   ask() {
     if (this.asked) return;
     this.asked = true;
@@ -369,14 +369,14 @@ class SceneView {
 
   draw() {
     this.asked = false;
-    // Collisions lie on surfaces that they would flicker with: they are drawn 2 px nearer.
+    // Collisions lie on surfaces and would flicker with them, so they are drawn 2 px nearer.
     this.uniforms.lift.value = 4 / (this.size()[1] * this.camera.zoom);
     this.renderer.setClearColor(this.paper, 1);
     this.renderer.render(this.scene, this.camera);
     this.onDraw();
   }
 
-  // The triangle that is seen at (x, y) of the canvas, CSS px; -1 where none is.
+  // The visible triangle at (x, y) of the canvas, CSS px; -1 if there is none.
   pick(x, y) {
     const [width, height] = this.size();
     this.camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
@@ -398,8 +398,8 @@ class SceneView {
 
 // ---- the camera and the pointer ----------------------------------------------------------------
 
-// The place of the camera; and the place that shows everything, which a new size of the window asks
-// for again while the reader has not moved the camera.
+// The place of the camera; and `fitted`, the place that shows everything. When the window is
+// resized, the view is fitted again if the reader has not moved the camera.
 const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
 let fitted = "";
 
@@ -467,7 +467,7 @@ async function numbersOf(name) {
   return out;
 }
 
-// Everything of a frame, kept for the last frame alone.
+// All data of a frame; only the last frame is kept.
 let frame = null;
 
 async function loadFrame(number) {
@@ -484,7 +484,7 @@ async function loadFrame(number) {
   return { number, given, positions, a, b, contacts, corners, objects, triangles, owner };
 }
 
-// The pairs that a step missed (a bit each), and the triangles that it kept in vain (a bit each).
+// The pairs that a step missed (a byte each), and the triangles that it kept in vain (a bit each).
 async function loadStep(step, of) {
   const lost = step.missed ? await numbersOf(step.missed) : [];
   const missed = new Uint8Array(of.a.length);

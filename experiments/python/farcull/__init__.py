@@ -16,15 +16,15 @@ MemoryError where there is no memory; there is no answer then.
 
 import os
 
-# Mesa's llvmpipe draws without threads, which may damage the memory of this process. It reads the
-# variable when a display is opened. A value of the caller's own stands, and reports name it.
+# Mesa's llvmpipe draws without threads: they may damage the memory of this process. Mesa reads the
+# variable when a display is opened. A value set by the caller stays, and reports name it.
 os.environ.setdefault("LP_NUM_THREADS", "0")
 del os
 
 from ._errors import Error, InputError
 from . import _farcull
 
-_farcull.require_main_interpreter()  # before numpy is imported, which needs it as well
+_farcull.require_main_interpreter()  # before the import of numpy, which needs it too
 
 from ._collide import KINDS, Collider, Distance, Part, Report, Result, Stream
 from ._collide import collide, distances, join, stream

@@ -18,7 +18,7 @@ def array(name: str, given: Any) -> np.ndarray:
         out = np.asarray(given)
     except MemoryError:
         raise
-    except Exception as error:  # whatever the __array__ of the argument raises
+    except Exception as error:  # any exception of the argument's __array__
         raise InputError(
             name, f"cannot be read as an array ({error})", "give rows of three numbers"
         ) from error

@@ -1,9 +1,9 @@
-"""Missed pairs against resolution, of FAR and of the form of CULLIDE that misses the fewest; all forms of CULLIDE
-beside each other; and a picture of CULLIDE beside FAR where CULLIDE misses something."""
+"""Missed pairs against resolution, for FAR and the form of CULLIDE that misses the fewest; a comparison of all forms
+of CULLIDE; and a picture of CULLIDE beside FAR where CULLIDE misses something."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
-LEAST_PIXELS = 128  # a picture with fewer pixels shows hardly more than misses
+LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
 COUNTS = {"colliding pairs": "colliding", "missed pairs": "missed", "of them penetrating": "missed_penetrating",
           "colliding triangles": "colliding_triangles", "missed triangles": "missed_triangles",
           "kept triangles": "kept_triangles", "candidates": "candidates"}
@@ -23,15 +23,15 @@ def family(rows):
 
 
 def left_out(rows):
-    """Forms that are left to the tables: the figures would have too many names with them."""
+    """Forms that appear only in tables: the figures would have too many names with them."""
     return (rows.method.str.startswith("quick-cullide") | (rows.views == BOTH_DIRECTIONS) |
             rows.method.str.endswith("--clear all"))
 
 
 class Family:
     """The forms of CULLIDE (or S-CULLIDE, which tests objects against themselves, where FAR was not measured) that
-    cull triangles, at the scenes and resolutions that all of them have. forms: those that leave no more candidates
-    than the rival first; of these the fewest missed pairs first, then the fewest candidates."""
+    cull triangles, at the scenes and resolutions that all of them have. forms: first those with no more candidates
+    than the rival; within each group by missed pairs, then by candidates."""
 
     def __init__(self, rows, own):
         self.name, rival = ("S-CULLIDE", "FAR pairs") if own else ("CULLIDE", "FAR (OBB)")
@@ -60,7 +60,7 @@ def families(rows):
 
 
 def value_or_spread(values):
-    """One value where all are equal, else the median with the least and the most."""
+    """The value if all are equal, else the median with the least and the most."""
     return rounded(values[0]) if len(set(values)) == 1 else spread(values)
 
 
@@ -79,7 +79,7 @@ def add_lines(panel, group, seeds):
         line = Series(name, emphasis=name in OURS)
         for resolution, here in rows.groupby("resolution"):
             missed = list(column(here, "missed"))
-            if len(missed) < seeds:  # it would not be a median of the same scenes
+            if len(missed) < seeds:  # the median would be over fewer scenes
                 continue
             line.x.append(resolution)
             line.y.append(median(missed))
@@ -113,7 +113,7 @@ def missed_figure(rows, name, title, shows):
 
 
 def kept_figure(own):
-    """Misses against what is left, each point a run."""
+    """Misses against the candidates left; each point is a run."""
     out = Figure("accuracy-kept", "Missed pairs against the candidates that are left",
                  "Each point is a run at one resolution. A method that leaves all pairs of overlapping boxes (exact) "
                  "misses nothing and has culled nothing: below and to the left is better. Scenes that are drawn at "
@@ -177,7 +177,7 @@ def short_table(rows):
             out.rows.append([group, name, colliding])
             for resolution in pixels:
                 missed = list(column(of[of.resolution == resolution], "missed"))
-                # What was measured with one seed of several has no median.
+                # A value measured with one of several seeds is no median.
                 one = len(missed) == 1 < seeds
                 out.rows[-1].append((value_or_spread(missed) if missed else "-") + (" (own seed)" if one else ""))
     return out
@@ -246,7 +246,7 @@ def add_courses(chapter, rows, forms):
 
 
 def add_sizes(chapter, rows):
-    """Adds the misses where triangles have a size, of each form."""
+    """Adds the misses of each form at resolutions chosen by the size of triangles."""
     sized = rows[rows.sized]
     for size, here in sized.groupby([float(m.split("@")[1].split("px")[0]) for m in sized.method]):
         words = [f"{name} misses {of_rows(of, 'missed', 'colliding')}" for name, of in here.groupby("form")

@@ -1,4 +1,4 @@
-"""What the simulation of the cloth did in each frame at each stiffness, and which pairs were found and missed."""
+"""The simulation of the cloth in each frame at each stiffness, and which pairs were found and missed."""
 from frame import *  # noqa: F403
 
 
@@ -19,8 +19,8 @@ def courses_of(study):
 
 
 def gains(pairs):
-    """Joules by which the total energy of a frame exceeds that of the frame before and the work of the forces that
-    its step left unbalanced, for each frame whose frame before is there."""
+    """The joules by which the total energy of a frame exceeds the sum of the previous frame's energy and the work of
+    the forces that its step left unbalanced; for each frame whose previous frame is there."""
     rise = column(pairs, "total").diff() - column(pairs, "slack")
     return list(rise[pairs.frame.diff() == 1])
 
@@ -86,7 +86,7 @@ def add_energy(chapter, name, pairs):
 
 
 def add_agreement(chapter, courses):
-    """Both methods look at every tenth frame, and have to find the same pairs."""
+    """Adds whether both methods found the same number of pairs, as they must, in the frames of both."""
     both = differ = 0
     for pairs, far, _ in courses.values():
         for row in far.itertuples():

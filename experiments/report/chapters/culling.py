@@ -7,7 +7,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 BOXES, ORIENTED, CHOSEN = "boxes", "oriented boxes (FCL)", "FAR pairs, own choice"
 ONE_VIEW, THREE_VIEWS = "FAR pairs, 1 view", "FAR pairs, 3 views"
 WAYS = [BOXES, ORIENTED, CHOSEN, ONE_VIEW, THREE_VIEWS]
-MOST_BOXES = 90  # per cent of the pairs of boxes; who keeps as many is little more than a join
+MOST_BOXES = 90  # per cent of the pairs of boxes; a method that keeps as many is little more than a join
 
 
 def way_of(row):
@@ -43,7 +43,7 @@ def figure_of(rows):
             track = of[of.way == way].sort_values("resolution")
             level = track[track.resolution == 0].left_each
             x, y = (sides, [level.iloc[-1]] * len(sides)) if len(level) else (track.resolution, track.left_each)
-            if len(x):  # boxes are thick as well, since the line of FAR pairs often lies on theirs
+            if len(x):  # emphasises boxes too: the line of FAR pairs often covers theirs
                 panel.series.append(Series(way, list(x), list(y), "lines" if len(level) else "lines_points",
                                            way in (BOXES, THREE_VIEWS)))
         out.panels.append(panel)
@@ -75,7 +75,7 @@ def tables_of(rows, best):
 
 
 def add_choice(chapter, best):
-    """Adds where FAR pairs by its own choice keeps nearly what boxes keep, and where less."""
+    """Adds the scenes where FAR pairs, by its own choice, keeps nearly what boxes keep, and those with less."""
     join, less = [], []
     for scene, ways in best.items():
         if BOXES in ways and CHOSEN in ways:
@@ -89,7 +89,7 @@ def add_choice(chapter, best):
 
 
 def add_views(chapter, rows, best):
-    """Adds what views leave where they are asked for."""
+    """Adds how many candidates views leave if they are requested."""
     def told(scene):
         views, boxes = best[scene][THREE_VIEWS], best[scene][BOXES]
         return (f"{rounded(views.left_each)} candidates for each pair that collides on {scene} (at {views.resolution} "

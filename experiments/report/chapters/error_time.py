@@ -3,13 +3,13 @@ from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
 SHOWN = (*OURS, "FAR (exact)", "CULLIDE, one round", "CULLIDE, one round, conservative", "cgal-boxes")
-MOST_SCENES = 8  # that the first figure has a panel for
+MOST_SCENES = 8  # largest number of panels of the first figure
 
 
 @dataclass
 class Entry:
-    """A contestant at a resolution, on a scene or on several drawn alike with different seeds. times: ms of each run,
-    or of several seeds the median of each. The counts are of all seeds; an error is a pair that the answer lacks, or
+    """A contestant at a resolution, on a scene or on several drawn with different seeds. times: ms of each run, or for
+    several seeds the median of each. The counts are of all seeds; an error is a pair that the answer lacks, or
     a pair in it that does not collide."""
     row: object  # of the first seed
     name: str
@@ -42,7 +42,7 @@ class Entry:
 
 @dataclass
 class Group:
-    """A scene without its seeds, with what was measured with all of them."""
+    """A scene without its seeds, with the measurements of all of them."""
     name: str
     seeds: int
     entries: list
@@ -52,8 +52,8 @@ class Group:
         return self.name + (f" ({self.seeds} seeds)" if self.seeds > 1 else "")
 
     def front(self):
-        """Entries that no other beats: none is as fast with as little error, and better in one of them. Fastest
-        first; of equals the first."""
+        """The Pareto front: no other entry is as good in both time and error, and better in one. Fastest first; of
+        equal ones the first."""
         out = []
         for entry in sorted(self.entries, key=lambda e: (e.ms, e.error)):
             if not out or entry.error < out[-1].error:
@@ -61,7 +61,7 @@ class Group:
         return out
 
     def yardstick(self):
-        """The peer that times are given against: CGAL's box join, which every build has."""
+        """The reference for times: CGAL's box join, which every build has."""
         return next((e for e in self.entries if e.row.method == "cgal-boxes"), None)
 
     def by_name(self):
@@ -103,8 +103,8 @@ def sample_of(groups):
 # ---- figures
 
 def cloud(name, points):
-    """Points of an entry and a y each, over the time with its interval. A line follows the resolution; what chooses
-    its resolution is no point of the line."""
+    """Points of pairs (entry, y), over the time with its interval. A line follows the resolution; a method that chooses
+    its resolution is no point of a line."""
     out = Series(name, style="lines_points" if sum(e.pixels > 0 for e, _ in points) > 1 else "points",
                  emphasis=name in OURS)
     for entry, y in points:
@@ -119,7 +119,7 @@ def cloud(name, points):
 
 
 def drawn_names(group):
-    """Forms in which all views have to clear are left to the tables, so that the key stays short."""
+    """Leaves forms in which all views have to clear to the tables, so that the key stays short."""
     return {name: of for name, of in group.by_name().items() if "all views" not in name}
 
 
@@ -137,7 +137,7 @@ def error_panel(title, label, entries):
 
 
 def summary_panel(groups):
-    """What was measured on every scene: the errors of all of them over the median of the times, as multiples of those
+    """Methods measured on every scene: the errors on all of them over the median of the times, as multiples of those
     of cgal-boxes on the same scene."""
     entries = {}
     if any(group.yardstick() is None for group in groups):
@@ -196,8 +196,8 @@ def front_table(groups):
 
 
 def equal_times(group):
-    """FAR at each resolution, and of the runs of CULLIDE, in any form and at any resolution, that took no longer, the
-    one with the fewest errors; None where none was as fast."""
+    """For FAR at each resolution: the run of CULLIDE, in any form and at any resolution, that took no longer and has
+    the fewest errors; None if none was as fast."""
     rivals = [e for e in group.entries if "cullide" in e.row.method]
     return [(far, min((e for e in rivals if e.ms <= far.ms), key=lambda e: e.error, default=None))
             for far in group.entries if far.name == "FAR (OBB)"]
@@ -248,7 +248,7 @@ def add_equal_times(chapter, groups):
 
 
 def add_front(chapter, group):
-    """Adds the fastest method without an error, the next one, and what is faster with errors."""
+    """Adds the fastest method without an error, the next one, and methods that are faster with errors."""
     right = sorted((e for e in group.entries if e.error == 0), key=lambda e: e.ms)
     if not group.entries:
         return

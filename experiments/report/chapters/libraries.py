@@ -1,7 +1,7 @@
-"""What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs and meshes.
+"""Pairs that each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs and meshes.
 
 Counts of pairs of triangles and of pairs of meshes are never added: the first are questions, each with its answer, the
-second are what one answer about a mesh has to consist of.
+second are the parts of one answer about a mesh.
 """
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ REFERENCE = "far-pairs"  # stands beside all others in figures
 # The counts of a score, in the order of peers/score.cpp.
 SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
-# Panels of figures: contestants by the first word of their library; the last takes the others.
+# Panels of figures: contestants by the first word of their library; the last panel has all others.
 GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet and ODE": ["Bullet", "ODE"],
           "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"], "tests of papers, others": []}
 PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
@@ -57,15 +57,15 @@ def without_answer(rows):
 
 
 def differing(rows):
-    """`78 of 646`: answered otherwise the second time, of those that were asked twice."""
+    """`78 of 646`: questions answered differently the second time, of those asked twice."""
     otherwise = total(rows, "differing")
     return of_all(otherwise, total(rows, "twice")) if otherwise else "0"
 
 
 def answers(rows, pairs, own):
-    """Missed pairs and false alarms of the pairs of triangles that were answered, each with the number that it is a
-    part of: of pairs all answers; of meshes what collides and what was reported, since nobody knows how many pairs are
-    apart. own: only where the contestant's documentation promises the answer."""
+    """Missed pairs and false alarms among the answers, each with the number that it is a part of: for pairs all
+    answers; for meshes the colliding and the reported pairs, since nobody knows how many pairs are apart. own: only
+    where the contestant's documentation promises the answer."""
     asked, missed, false = (total(rows, name) for name in (
         ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
     return missed, asked, false, asked if pairs else asked - missed + false
@@ -187,7 +187,7 @@ def time_figure(rows):
 
 
 def parameter_figure(scores, groups, family):
-    """Errors over the parameter of a family, of the contestants that err there."""
+    """Errors over the parameter of a family, for the contestants that err there."""
     sums = scores[(scores.family == "pairs/" + family) & (scores.answered > 0)].groupby(
         ["contestant", "parameter"])[SCORE].sum()
     rates = 1e6 * (sums.missed + sums.wrong) / sums.answered
@@ -204,7 +204,7 @@ def parameter_figure(scores, groups, family):
 # ---- findings
 
 def add_ours(chapter, rows):
-    """Each method of farcull that promises. A wrong answer breaks the promise, and so does no answer."""
+    """Adds each method of farcull that promises. A wrong answer breaks the promise, and so does no answer."""
     for name, of in by(promising(rows), "method"):
         pairs, meshes = of[of.pairs], of[~of.pairs]
         missed, asked, wrong, _ = answers(pairs, True, False)
@@ -226,8 +226,8 @@ def add_ours(chapter, rows):
 
 
 def own_errors(rows, pairs):
-    """The part of wrong answers by the contestant's own documentation, NaN where it promises none that was given; and
-    in words."""
+    """The share of answers that are wrong by the contestant's own documentation, NaN if that promises none of them; and
+    the share in words."""
     missed, asked, false, reported = answers(rows, pairs, True)
     whole = asked if pairs else asked + false  # pairs that collide or were reported
     return (missed + false) / whole if whole else NONE, of_all(missed + false, asked) if pairs else \
@@ -235,7 +235,7 @@ def own_errors(rows, pairs):
 
 
 def add_others(chapter, rows, pairs):
-    """Those that do not promise: without a wrong answer by their own documentation, the others, and those that died."""
+    """Adds those that do not promise: those right by their own documentation, the others, and those that died."""
     right, wrong, published, changing, dead = [], [], [], [], []
     for name, of in by(rows, "method"):
         if flag(next(of.itertuples()), "promises"):
@@ -302,15 +302,15 @@ def examples_of(rows):
 
 
 def in_unit_cube(corners):
-    """Moved and stretched along each axis until the box of the corners is the unit cube. Halves, since the difference
-    of two doubles may be infinite."""
+    """Moves and scales the corners along each axis so that their box is the unit cube. Uses halves, since
+    the difference of two doubles may be infinite."""
     half = corners / 2
     low, size = half.min(axis=0), half.max(axis=0) - half.min(axis=0)
     return np.where(size > 0, (half - low) / np.where(size > 0, size, 1), 0)
 
 
 def seen_along(direction, corners):
-    """The corners in the plane across a direction."""
+    """The corners projected along a direction."""
     along = np.array(direction) / np.linalg.norm(direction)
     right = np.cross([0, 0, 1] if abs(along[2]) < 0.9 else [0, 1, 0], along)
     right /= np.linalg.norm(right)
@@ -318,7 +318,7 @@ def seen_along(direction, corners):
 
 
 def clearness(seen):
-    """Large where both triangles are seen from their broad sides; a degenerate one has its length."""
+    """Large if both triangles are seen from their broad sides; a degenerate one counts by its length."""
     def size(a, b, c):
         (ux, uy), (vx, vy) = b - a, c - a
         return abs(ux * vy - uy * vx) / 2 + 0.1 * max(np.linalg.norm(edge) for edge in (b - a, c - b, a - c))
@@ -326,7 +326,7 @@ def clearness(seen):
 
 
 def panel_of(example):
-    """Both triangles from that of 16 directions from which they are seen best."""
+    """Both triangles, seen from the best of 16 directions."""
     corners = in_unit_cube(example.corners)
     seen = max((seen_along((x, y, z), corners) for x in (-1, -0.3, 0.3, 1) for y in (0.4, 1) for z in (0.3, 0.8)),
                key=clearness)

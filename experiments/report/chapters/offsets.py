@@ -1,4 +1,4 @@
-"""Boxes, exact offsets and intervals beside each other: what they keep, draw and take."""
+"""Compares boxes, exact offsets and intervals: what they keep and draw, and how long they take."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
 BOX, EXACT, INTERVALS = "FAR (OBB)", "FAR (exact)", "FAR pairs"
@@ -59,7 +59,7 @@ def add_comparison(chapter, rows, a, b):
 
 
 def add_order(chapter, rows):
-    """A smaller solid inside the other one must not keep more."""
+    """Adds whether the exact offset, whose solid is inside the box, keeps more anywhere: it must not."""
     pairs = beside(rows, EXACT, BOX)
     ours, theirs = (column(pairs, "kept_triangles" + end).fillna(0) for end in ("", "_b"))
     for row in pairs[ours > theirs].itertuples():

@@ -1,5 +1,5 @@
-"""How far the depths that a buffer holds are outside the bounds that they should keep, over the generators of the
-lemma experiment."""
+"""How far the depths in a buffer are outside the bounds that they should keep, over the generators of the lemma
+experiment."""
 from frame import *  # noqa: F403
 
 OURS = "fragment, budget radius"
@@ -7,7 +7,7 @@ COUNTS = ("points", "no_sample", "not_bounding", "rounded")
 
 
 def with_axes(rows):
-    """Rows with how their depth comes about, the buffer, the generator and the depth of the scene."""
+    """Rows with the source of their depth, the buffer, the generator and the depth of the scene."""
     words = [scene.split(":") for scene in rows.scene]
     return rows.assign(
         line=[("fixed-function" if mode == "fixed" else "fragment") + f", {radius} radius"
@@ -22,13 +22,13 @@ def grouped_by(rows, names):
 
 
 def most(rows, name):
-    """The largest distance; infinite where that of a row is not a number."""
+    """The largest distance; infinite if that of a row is not a number."""
     return max(0.0, column(rows, name).fillna(math.inf).max())
 
 
 def drawn(rows):
-    """Where only pixels without a sample are violated there is no distance, and no point of a line: the line of
-    zeros would say that all is well."""
+    """The value to draw. If only pixels without a sample are violated, there is no distance, and so no point of a line:
+    the line of zeros would hide the violations."""
     steps = most(rows, "largest_steps")
     return NONE if steps == 0 and total(rows, "no_sample") else steps
 
@@ -102,7 +102,7 @@ def add_violations(chapter, rows):
     for row in rows[rows.line == OURS].itertuples():
         violations = number(row, "no_sample") + number(row, "not_bounding")
         broken = broken or violations > 0
-        if violations and not breaks(row):  # else said already
+        if violations and not breaks(row):  # else reported already
             chapter.find_broken(
                 f"fragment depth at the budget radius, {row.bits}, {row.resolution} px, scene {row.depth:g} px deep: "
                 f"{of_all(violations, number(row, 'points'))} points of the generator \"{row.generator}\" have no "

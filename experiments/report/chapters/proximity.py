@@ -1,7 +1,7 @@
 """Sizes of potential neighbour sets, what a grid loses of them, both over frames, time against the number of objects,
 and errors of distances.
 
-A row is either of the sets that a method leaves, or of the distances that a contestant answers. At rest (frame -1) the
+A row is about the sets that a method leaves, or about the distances that a contestant returns. At rest (frame -1) the
 sets of a scene differ by seed and resolution, in motion by frame.
 """
 from frame import *  # noqa: F403: a chapter uses most of it
@@ -26,8 +26,8 @@ def with_names(rows):
 
 
 class SetScene:
-    """The rows of a scene, summed over its seeds by method and `at`, the resolution or frame. What a method lost is
-    `missed`, of the objects that have a nearest neighbour."""
+    """The rows of a scene, summed over its seeds by method and `at`, the resolution or frame. `missed` counts what
+    a method lost, among the objects that have a nearest neighbour."""
 
     def __init__(self, base, rows, at):
         rows = rows.assign(**{name: column(rows, name) for name in SUMS})
@@ -42,7 +42,7 @@ class SetScene:
         return self.sums.at[(method, at), what] if (method, at) in self.sums.index else NONE
 
     def factor(self, method, at, at_boxes):
-        """How many times more triangles the boxes leave than the method; NaN where one is not there."""
+        """How many times more triangles the boxes leave than the method; NaN if one of both is missing."""
         kept = self.value(method, at, "set_triangles")
         return self.value(BOXES, at_boxes, "set_triangles") / kept if kept else NONE
 
@@ -56,7 +56,7 @@ def scenes_of(rows, at):
 
 
 def objects_text(scenes):
-    """How many objects each panel rests on."""
+    """The number of objects behind each panel."""
     return "n: " + listed(
         f"{scene.base} ({counted(scene.sums.with_nearest.max(), 'object', 'objects')}"
         f"{f', {scene.seeds} seeds' if scene.seeds > 1 else ''})" for scene in scenes)
@@ -65,7 +65,7 @@ def objects_text(scenes):
 # ---- promises
 
 def broken_text(row):
-    """How a row that promises did not keep it; "": it did."""
+    """How a row broke its promise; "" if it did not."""
     wrong, missed, pairs = (number(row, name) for name in ("wrong", "missed", "missed_pairs"))
     if not row.sets:
         return f"{of_all(wrong, number(row, 'asked'))} distances are not the nearest double" if wrong else ""
@@ -137,7 +137,7 @@ def size_figure(scenes, what):
         f"below what holds all nearest neighbours. {objects_text(scenes)}.")
     for scene in scenes:
         series = [scene.series(method, what + "_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
-        if series:  # boxes and trees have no cells: the same at each resolution
+        if series:  # boxes and trees have no cells, so they are the same at each resolution
             x, levels = series[0].x, [(method, scene.value(method, 0, what + "_each")) for method in (BOXES, TREES)]
             series += [Series(method, x, [y] * len(x), "lines") for method, y in levels if y == y]
             out.panels.append(Panel(scene.base, log(CELLS), log(f"{what} per object", zero=True), series))

@@ -1,9 +1,9 @@
-"""How often the published radius misses something where nothing was constructed against it; then violated points of
+"""How often the published radius misses something in scenes that were not constructed for it; then violated points of
 the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
 from frame import *  # noqa: F403
 
 CLOSE = 0.96  # the second row of panels shows CLOSE to 2 - CLOSE
-NAMED = 3     # generators with a line of their own
+NAMED = 3     # number of generators with a line of their own
 SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
 
 
@@ -42,7 +42,7 @@ class Line:
 
     @property
     def published_factor(self):
-        """The published radius over the budget, as the rows of FAR at both say."""
+        """The published radius over the budget, from the rows of FAR at both."""
         if self.published.empty or 1 not in self.at:
             return NONE
         one, other = (column(rows, "radius_px").iloc[-1] for rows in (self.published, self.at[1]))
@@ -63,8 +63,8 @@ def panel_of(title, label):
 
 
 def hardest_generators(lines):
-    """Those whose points are violated at the largest factors, on any surface; of equals those with the larger share
-    there."""
+    """Generators whose points are violated at the largest factors, on any surface; of equal ones first those with the
+    larger share there."""
     at = {}
     for of in lines.values():
         for name, line in of.items():
@@ -74,7 +74,7 @@ def hardest_generators(lines):
 
 
 def envelope_of(lines):
-    """At each factor the largest share of a generator."""
+    """The largest share of a generator at each factor."""
     most = {}
     for line in lines.values():
         for factor, rows in line.at.items():
@@ -98,7 +98,7 @@ def lemma_figure(generators, points):
         panel.series += published_series("published radius, each generator", lines,
                                          lambda line: line.published.factor.iloc[-1], violated)
         out.panels.append(panel)
-    for panel in list(out.panels):  # the same once more, close to the published radius
+    for panel in list(out.panels):  # the same again, close to the published radius
         out.panels.append(Panel("the same, close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
                                 [Series(**vars(s)) for s in panel.series], panel.marks))
     count = max(len(lines) for lines in generators.values())
@@ -155,8 +155,8 @@ def lemma_table(name, caption, lines):
 
 
 def add_lemmas(chapter, lemmas):
-    """The lemmas at the budget radius and beyond: with fragment depth a proof stands behind them, also where the rows
-    do not say that they promise. Rows for which breaks() holds are said already."""
+    """The lemmas at the budget radius and beyond: with fragment depth they are proved, even if a row does not say that
+    it promises. Rows for which breaks() holds are reported already."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")
@@ -208,8 +208,8 @@ def add_misses(chapter, depths):
 # ---- placements
 
 def with_placements(rows):
-    """Rows with what was placed: the scene of the patches, the contact, the side in px, and to how many subpixel bits
-    corners are snapped (0: they are not)."""
+    """Rows with their placements: the scene of the patches, the contact, the side in px, and the subpixel bits to which
+    corners are snapped (0: not snapped)."""
     words = [re.fullmatch(r"(.*)@(\w+):([^:]*):.*", scene).groups() for scene in rows.scene]
     return rows.assign(patches=[w[0] for w in words], contact=[w[1] for w in words], side=[float(w[2]) for w in words],
                        bits=[int(m.removeprefix("far-snapped-")) if m.startswith("far-snapped-") else 0
@@ -225,8 +225,8 @@ def rate_of_rows(rows):
 
 
 def add_headline(chapter, runs, placements):
-    """Adds how often the published radius misses something in scenes that nobody constructed for it, and that its
-    failure end to end rests on those that were. First, since the rest is about constructed points."""
+    """Adds how often the published radius misses something in scenes that were not constructed for it, and that it
+    fails end to end only in those that were. Comes first, since the rest is about constructed points."""
     published = runs[runs.published & (runs.depth_mode == "fragment")]
     constructed = published[published.scene == "pixel-corners"]
     natural = published[published.scene != "pixel-corners"]
@@ -244,7 +244,7 @@ def add_headline(chapter, runs, placements):
         more = f"; the longest intersection that it missed is {longest} px long" if total(rows, "missed") else ""
         chapter.find(f"Of patches placed into each other at random, {bits_text(bits)}, the published radius missed "
                      f"something in {rate_of_rows(rows)} placements{more}.")
-    # So that a rate of 0 says something: what a smaller radius misses in the same placements.
+    # Gives a rate of 0 a meaning: the misses of smaller radii in the same placements.
     words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
              for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
     if words:
@@ -252,14 +252,14 @@ def add_headline(chapter, runs, placements):
 
 
 def usual(rows, name):
-    """The value that most placements have; of equals the least."""
+    """The value that most placements have; of equally common ones the least."""
     times = {key: total(of, "placements") for key, of in groups(rows, name)}
     return max(times, key=times.get)
 
 
 def placements_by_radius(rows):
-    """The rate of placements in which something is missed against the radius, by the size of triangles, where corners
-    are snapped to as many bits as in most placements."""
+    """The rate of placements with a miss against the radius, by the size of triangles. Corners are snapped to as many
+    bits as in most placements."""
     bits = usual(rows, "bits")
     panel = panel_of(f"{bits_text(bits)}, by the size of triangles", "placements with a miss (%)")
     for side, here in groups(rows[(rows.bits == bits) & np.isfinite(rows.factor)], "side"):
@@ -271,8 +271,8 @@ def placements_by_radius(rows):
 
 
 def rates_panel(title, x, rows, name):
-    """Rates with their intervals against a column. Not lines: fewer bits are not on the way to corners that are not
-    snapped."""
+    """Rates with their intervals against a column. As points, not lines: corners that are not snapped (0 bits) do not
+    continue the order of the bits."""
     panel = Panel(title, x, log("placements with a miss (%)", zero=True))
     for kind, of in groups(rows, rows.patches + ", " + rows.contact):
         series = Series(kind, style="points")
@@ -287,14 +287,14 @@ def rates_panel(title, x, rows, name):
 
 
 def placement_figure(placements):
-    """The rate of placements in which something is missed by the radius; and at the published radius, with its
-    interval, by subpixel bits, by the size of triangles and by resolution."""
+    """The rate of placements with a miss, by the radius; and at the published radius, with its interval, by subpixel
+    bits, by the size of triangles and by resolution."""
     out = Figure("radius-placements", "How often the published radius misses something in random placements")
     panel, rows = placements_by_radius(placements), placements[placements.published]
     out.panels += [panel] if panel.series else []
     if rows.empty:
         return out
-    bits, pixels = usual(rows, "bits"), usual(rows, "resolution")  # what most rows have is what the others vary
+    bits, pixels = usual(rows, "bits"), usual(rows, "resolution")  # most rows have these, and the other rows vary them
     others = sorted(rows[rows.bits != bits].side)
     side = others[0] if others else rows.side.iloc[0]
     with_bits, with_side, with_pixels = rows.bits == bits, rows.side == side, rows.resolution == pixels

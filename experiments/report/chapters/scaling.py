@@ -22,7 +22,7 @@ def rows_of(rows, plot):
 
 
 def miss_table(chapter, rows):
-    """Missed of colliding pairs by method, over all rows; a method that misses is a finding."""
+    """Missed and colliding pairs by method, over all rows; a method that misses is a finding."""
     out = Table(
         "scaling-missed",
         "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run. Where none "

@@ -8,7 +8,7 @@ MESHES, SIMULATED, DRAWN, CONSTRUCTED = "scanned or modelled", "simulated", "dra
 
 
 def builtin(study, scene):
-    """What the program knows of the scene, by its name without numbers and suffixes."""
+    """The program's entry for the scene, by its name without numbers and suffixes."""
     return study.constants["scenes"].get(re.split("[:@]", scene)[0], {})
 
 
@@ -22,7 +22,7 @@ def source_of(study, scene):
 
 
 def source_text(study, scene):
-    """Where the scene comes from; if it is drawn, with the seed after @seed, else its own."""
+    """The source of the scene; for a randomly drawn one with its seed, from @seed or its own."""
     given = re.search("@seed([^@]*)", scene)
     seed = given[1] if given else builtin(study, scene).get("seed")
     source = source_of(study, scene)
@@ -30,7 +30,7 @@ def source_text(study, scene):
 
 
 def pixels_text(row, rank, resolution, at):
-    """Pixels that the triangle of this rank covers at a resolution, from those `at` another one."""
+    """Pixels that the triangle of this rank covers at `resolution`, computed from the resolution `at`."""
     there = value(row, rank) * (resolution / at) ** 2
     return "-" if there != there else rounded(there, 2) if there >= 1 else f"{there:.2g}"
 

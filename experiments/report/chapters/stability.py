@@ -4,7 +4,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 
 
 def extreme_of(row):
-    """The family of a scene, what it drives to an extreme, and how far."""
+    """The family of a scene, the quantity that it takes to an extreme, and its value."""
     scene = row.scene
     for mark, family, axis in (("@offset-", "far from the origin", "offset (units)"), ("@scale-", "scaled", "scale")):
         if mark in scene:
@@ -45,7 +45,7 @@ def keeps(rows):
 
 
 def excess(rows):
-    """Kept over colliding triangles; NaN where one of the two is not there."""
+    """Kept over colliding triangles; NaN if one of both is missing."""
     colliding = total(rows, "colliding_triangles")
     return total(rows, "kept_triangles") / colliding if keeps(rows) and colliding else NONE
 
@@ -167,7 +167,7 @@ def add_failures(chapter, tracks, promising_names):
 
 
 def add_degradation(chapter, tracks, method):
-    """Adds how much more than what collides a method keeps, over the places of each family."""
+    """Adds how much more than the colliding triangles a method keeps, over the places of each family."""
     parts = []
     for family, name, places in tracks:
         values = {at: excess(rows) for at, rows in places.items()}

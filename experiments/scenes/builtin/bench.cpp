@@ -1,8 +1,7 @@
 // Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Blobs
-// of the field are drawn one after the other, so a part of it needs nothing of those before it but
-// the state of the random numbers. And scenes that go to an extreme by a number: slivers of any
-// aspect, gaps of any number of ulps, stacks of sheets at any distance, triangles of any ratio of
-// sizes.
+// of the field are drawn one after the other, so a part needs only the state of the random numbers
+// from earlier parts. Also scenes that one number takes to an extreme: slivers of any aspect, gaps
+// of any number of ulps, stacks of sheets at any distance, triangles of any ratio of sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -28,7 +27,7 @@ constexpr double kJitter = 0.3;            // of a blob in its cell, along each 
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // of one part
 
-// Blobs of kFieldBlob triangles, as near as their number comes, at least one.
+// Blobs of kFieldBlob triangles: at least one, and the number nearest to the wanted triangles.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -72,7 +71,7 @@ constexpr double kLength = 4700;  // of a needle
 constexpr double kWidth = 0.002;
 constexpr double kBending = 1e-4;  // radians that a needle may differ from its direction
 constexpr double kSpan = 24000;    // of a layer, across its needles
-constexpr double kShear = 1;       // needles start the later the farther across they lie
+constexpr double kShear = 1;       // shift of a needle along itself per distance across
 constexpr double kGap = 1;         // between the two layers
 
 // An orthonormal frame whose first axis is the direction of needles.
@@ -86,7 +85,7 @@ Frame frame_of(const Vec3& direction) {
   return {along, across, along.cross(across)};
 }
 
-// About the origin.
+// A needle about the origin.
 Corners hair(const Frame& frame, Random& random) {
   const Vec3 along = (frame.along + kBending * random.in_ball()).normalized();
   const Vec3 aside = across(along, kWidth, random);
@@ -95,15 +94,15 @@ Corners hair(const Frame& frame, Random& random) {
   return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
 }
 
-// Somewhere in the layer of an object, a quarter of the gap thick.
+// A random place in the layer of an object, which is a quarter of the gap thick.
 Vec3 in_layer(const Frame& frame, int object, Random& random) {
   const double across = random.between(-kSpan / 2, kSpan / 2);
   const double height = kGap * (object + random.between(-0.125, 0.125));
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// The needles of two objects take the frames in turn. One in eight of the second object is moved so
-// that it crosses one of the first.
+// The needles of both objects take the frames in turn. One in eight of the second object is moved
+// so that it crosses one of the first.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -173,12 +172,11 @@ std::vector<BuiltinScene> bench_scenes() {
   };
 }
 
-// Scenes that go to an extreme by a number: slivers of any aspect, gaps of any number of ulps,
-// stacks of sheets at any distance, triangles of any ratio of sizes.
+// Scenes that one number takes to an extreme.
 
 namespace {
 
-// Some direction across another one, of length 1.
+// A random unit vector perpendicular to another one.
 Vec3 across(const Vec3& along, Random& random) {
   for (;;) {
     const Vec3 out = along.cross(random.direction());
@@ -186,7 +184,7 @@ Vec3 across(const Vec3& along, Random& random) {
   }
 }
 
-// Its longest side 1 long, its height over that side 1 / aspect, in any direction.
+// A triangle with a longest side of 1 and a height over it of 1 / aspect, in a random direction.
 Corners sliver(double aspect, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 start = -0.5 * along;
@@ -194,7 +192,7 @@ Corners sliver(double aspect, Random& random) {
           start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
 }
 
-// Equilateral, about the origin, in any direction.
+// An equilateral triangle about the origin, in a random direction.
 Corners equilateral(double side, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 other = across(along, random);
@@ -215,7 +213,7 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three in four cross the sliver of the first object, the fourth passes it at twice its height.
+    // Three in four cross the sliver of the first object; the fourth misses it by twice its height.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -231,8 +229,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> large, little;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
-    // Eight small ones at each large one: every other crosses it, the rest stand off by two of
-    // their sides.
+    // Eight small triangles at each large one: every other one crosses it, the rest are two of
+    // their sides away.
     for (int k = 0; k < 8; ++k) {
       Vec3 at = inner_point(large.back(), random);
       if (k % 2 == 1) at += 2 * small * normal_of(large.back());
@@ -242,9 +240,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// The sheets lie in the slope z = x/4 + y/8, and their places and tilts are multiples of an eighth
-// of the gap, a power of two from 2^-47 to 2^-3: of at most 2^10 sheets every sum is exact in
-// double.
+// The sheets have the slope z = x/4 + y/8. Their places and tilts are multiples of an eighth of the
+// gap, a power of two from 2^-47 to 2^-3: with at most 2^10 sheets every sum is exact in double.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
   constexpr std::uint32_t kCells = 8;  // of a sheet, along a side
@@ -264,8 +261,8 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are in [1/2, 1), where an ulp is 2^-53, and multiples of it: every number here is
-// exact.
+// All coordinates are in [1/2, 1), where an ulp is 2^-53, and are multiples of it, so every number
+// is exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -276,8 +273,8 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // Eighths of the cell along two axes; along the third quarters of it from below its middle, in
-    // a slope, since what is parallel to a view has no image in it.
+    // Eighths of the cell along two axes; along the third, quarters of it from below its middle.
+    // The slope avoids triangles parallel to a view, which have no image in it.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

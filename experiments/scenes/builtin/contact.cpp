@@ -1,5 +1,5 @@
-// Scenes for benchmarks whose objects touch: a plug in its socket, a rope, a heap of spheres, and
-// the list with those of contact_cloth.cpp.
+// Scenes for benchmarks with objects in contact: a plug in its socket, a rope, a heap of spheres,
+// and the list, which includes those of contact_cloth.cpp.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace farcull {
 
-// A plug of six pins in its socket, triangulated as CAD tessellators do it: flat faces with round
-// holes in fans of slivers, walls of cylinders in quads as long as the part, split in two.
+// A plug of six pins in its socket, triangulated as CAD tessellators do: flat faces with round
+// holes as fans of slivers, cylinder walls as quads of the part's full length, split in two.
 
 using namespace shapes;
 
@@ -29,7 +29,7 @@ struct Circle {
 
 class Part {
  public:
-  bool inside_out = false;  // what is added faces the other way
+  bool inside_out = false;  // the added triangles face the other way
 
   Vec3 at(std::uint32_t vertex) const { return vertices_[vertex]; }
   std::uint32_t point(const Vec3& p) {
@@ -49,7 +49,7 @@ class Part {
     add(corners[0], corners[1], corners[2]);
     add(corners[0], corners[2], corners[3]);
   }
-  // Between loops of as many vertices.
+  // A wall between loops of equally many vertices.
   void wall(const Loop& from, const Loop& to) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const std::size_t next = (i + 1) % from.size();
@@ -59,8 +59,8 @@ class Part {
   void fan(const Loop& loop) {
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) add(loop[0], loop[i], loop[i + 1]);
   }
-  // Between a loop and a round hole in it, all of which is seen from the middle of the hole. Each
-  // side of the hole goes to the corner of the loop that is the nearest in angle.
+  // Fills the region between a loop and a round hole in it; all of the loop is visible from the
+  // middle of the hole. Each side of the hole is joined to the corner of the loop nearest in angle.
   void holed(const Loop& outer, const Loop& hole) {
     Vec3 middle = Vec3::Zero();
     for (const std::uint32_t v : hole) middle += at(v) / static_cast<double>(hole.size());
@@ -86,7 +86,7 @@ class Part {
       }
     }
   }
-  // The mesh with its axes along these.
+  // The mesh rotated: its axes become x, y and z.
   Mesh placed(const Vec3& x, const Vec3& y, const Vec3& z) && {
     for (Vec3& p : vertices_) p = Vec3(p.x() * x + p.y() * y + p.z() * z);
     return finished(std::move(vertices_), std::move(triangles_));
@@ -101,10 +101,10 @@ class Part {
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
-constexpr double kDeep = 6;           // of the socket; its face, 3 x 2, lies at z = 0
-constexpr double kLong = 5.7;         // of the pins
-constexpr double kPlay = 0.02;        // between the faces of plug and socket
-constexpr double kThick = 0.3;        // of the plate of the plug
+constexpr double kDeep = 6;           // depth of the socket; its face, 3 x 2, lies at z = 0
+constexpr double kLong = 5.7;         // length of the pins
+constexpr double kPlay = 0.02;        // gap between the faces of plug and socket
+constexpr double kThick = 0.3;        // thickness of the plate of the plug
 constexpr double kRound = 0.2;        // radius of the upright edges
 constexpr double kFillet = 0.06;      // at the root of a pin
 constexpr double kChamfer = 0.1;      // of a bore
@@ -157,7 +157,7 @@ Vec3 middle(std::uint32_t cell, double z) {
   return {x[cell], cell < 3 ? -0.5 : 0.5, z};
 }
 
-// The six cells of the face within an outline, 1 x 1 each but for the rounded corners,
+// The six cells of the face within an outline, 1 x 1 each except at the rounded corners,
 // counterclockwise seen from above.
 std::array<Loop, kBores> cells(Part& part, const Outline& o, double z) {
   const std::uint32_t west = part.point({-0.5, 0, z});
@@ -296,8 +296,8 @@ Part plug(const std::array<Bore, kBores>& pins, std::uint32_t sides) {
 
 }  // namespace
 
-// The first pin is a thinner one, pressed into its bore: of the same radius but with other corners.
-// The others have a clearance and are off their middle by up to most of it.
+// The first pin is thinner and pressed into its bore: the same radius, but other corners. The
+// others have a clearance and are off their middle by up to most of it.
 BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kPerSide = 160;  // triangles for each side of a bore
   constexpr double kTube = 0.1;     // wall of a pin
@@ -317,7 +317,7 @@ BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed) {
     pins[b].inner = radius - kTube;
     bores[b].inner = radius - kTube - kClearance;
   }
-  // Oblique, so that boxes of slivers are large.
+  // Oblique axes, so that the boxes of slivers are large.
   const Vec3 z = (Vec3(1, 0.9, 0.8) + random.in_cube(0.1)).normalized();
   const Vec3 x = across(z, 1, random);
   const Vec3 y = z.cross(x);
@@ -329,8 +329,8 @@ BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed) {
 
 namespace {
 
-// A rope of three strands, wound in turns around a ring. Lengths are of the radius of a strand. The
-// strands are one closed tube: after each way around the ring a strand goes on as the next one.
+// A rope of three strands, wound in turns around a ring. The unit of length is the radius of a
+// strand. The strands are one closed tube: after the ring a strand continues as the next one.
 constexpr std::uint32_t kStrands = 3;
 constexpr double kApart = 1.05;  // distance of strands and of turns, where 1 is contact
 constexpr double kWinding = 5;   // radius of the turns
@@ -346,7 +346,7 @@ struct RopeShape {
   double twist;         // turns of the strands, all the way around the ring: whole ones and a third
 };
 
-// Below the usual size the rope is shorter, above it is divided more finely.
+// Below the usual size the rope is shorter; above it, it is divided more finely.
 RopeShape rope_shape(std::uint64_t triangles) {
   constexpr double kUsual = 80'000, kUsualTurns = 24, kUsualSides = 12;
   const auto wanted = static_cast<double>(triangles);
@@ -382,7 +382,7 @@ RopeFrame rope_at(const RopeShape& shape, double turn) {
   return {far * radial + kWinding * std::sin(wound) * Vec3::UnitZ(), out, along.cross(out)};
 }
 
-// A smooth bend of all space that is one to one: the derivatives of its waves stay far below 1.
+// A smooth one-to-one map of space: the derivatives of its waves stay far below 1.
 class Bend {
  public:
   Bend(double size, Random& random) {
@@ -408,8 +408,8 @@ class Bend {
 
 }  // namespace
 
-// Rings of a strand lie across the rope, not across the strand: they turn about
-// its middle with all strands, so that the parts between two rings stay apart as the rings do.
+// Rings of a strand are perpendicular to the rope, not to the strand. They turn about the rope's
+// middle with all strands, so that strands stay apart between two rings as they do at the rings.
 BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   const RopeShape shape = rope_shape(parameters.size);
@@ -483,8 +483,8 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
   return out;
 }
 
-// Balls of radius 0.5 to 1 that have settled in a box without a lid. Those that touch are kDeep of
-// the sum of their radii nearer than that, as their meshes lie inside of them.
+// Balls of radius 0.5 to 1, settled in a box without a lid. Balls in contact are nearer than the
+// sum of their radii, by kDeep of it, because their meshes lie inside them.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;
@@ -525,7 +525,7 @@ std::vector<Ball> heap(std::uint64_t count, Random& random) {
 
 }  // namespace
 
-// A sphere has 320 triangles.
+// Each sphere has 320 triangles.
 BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   const Mesh shape = sphere(2);

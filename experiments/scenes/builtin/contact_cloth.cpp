@@ -1,5 +1,5 @@
 // Cloth in contact with itself: a sheet crumpled to a ball, and a cloth that hangs in a funnel.
-// Both are smooth surfaces that are sampled more finely for more triangles.
+// Both are smooth surfaces; more triangles sample them more finely.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,8 +14,8 @@ using namespace shapes;
 
 namespace {
 
-// Control points of a uniform cubic B-spline over the unit square: point i * side + j, both from 0
-// to side - 1, is that of the parameter ((i - 1) / spans, (j - 1) / spans).
+// Control points of a uniform cubic B-spline over the unit square. Point i * side + j, with i and j
+// from 0 to side - 1, belongs to the parameter ((i - 1) / spans, (j - 1) / spans).
 struct Lattice {
   explicit Lattice(std::uint32_t spans) : spans(spans), side(spans + 3), points(side * side) {}
   std::uint32_t spans;
@@ -47,7 +47,7 @@ Vec3 value(const Lattice& lattice, const Weights& u, const Weights& v) {
   return sum;
 }
 
-// Brings the distance of two points from outside [least, most] to its nearer end.
+// Moves two points so that their distance is in [least, most].
 void keep_distance(Vec3& a, Vec3& b, double least, double most) {
   const Vec3 d = b - a;
   const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
@@ -57,8 +57,8 @@ void keep_distance(Vec3& a, Vec3& b, double least, double most) {
   b -= step;
 }
 
-// Position based dynamics (Müller et al. 2007): neighbours in the lattice come to the distance
-// that they have in the flat sheet, and a bend is limited by the distance of every second point.
+// Position based dynamics (Müller et al. 2007): moves neighbours in the lattice to their distance
+// in the flat sheet, and limits bends by the distance of every second point.
 void relax(Lattice& sheet, int rounds) {
   constexpr double kBend = 1.5;  // of the distance of neighbours; 2 is flat
   const double h = 1.0 / sheet.spans;
@@ -103,22 +103,22 @@ Lattice crumple(Random& random) {
   return sheet;
 }
 
-// Cells along the side of a grid of about so many triangles.
+// The number of cells along a side of a grid with about this many triangles.
 std::uint32_t cells_for(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
 }
 
-// The funnel stands upright: a pipe below, a cone above. The cloth hangs in it by a square whose
-// middle was pulled down the pipe. Lengths are of half the side of the cloth.
+// The funnel stands upright: a pipe below, a cone above. The cloth hangs in it, a square whose
+// middle was pulled down the pipe. The unit of length is half the side of the cloth.
 constexpr double kCap = 0.22;    // from the middle of the cloth, the part that has no pleats
 constexpr double kPipe = 0.62;   // from the middle of the cloth, where the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
 
-// Mean radius and height of the cloth at each distance from its middle, and the pleats there: a
-// sine-generated curve, whose direction swings by `swing` radians and whose length is that of the
-// cloth while it advances as far as the mean radius allows.
+// Mean radius and height of the cloth at each distance from its middle, and the pleats there. The
+// pleats are a sine-generated curve: its direction swings by `swing` radians, and its length is
+// that of the cloth while it advances as far as the mean radius allows.
 struct Ring {
   double radius = 0, height = 0;
   std::vector<std::array<double, 2>> pleat;  // (along, outward) at steps of one pleat, length 1
@@ -174,8 +174,7 @@ std::vector<Ring> rings() {
   return out;
 }
 
-// Place of the point of the cloth that was at this distance and angle (in turns) of the flat
-// square.
+// The place of a point of the cloth, by its distance and angle (in turns) in the flat square.
 Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
   const double row = s / kReachOfCloth * kRings;
   const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);
@@ -204,7 +203,7 @@ constexpr std::uint32_t kAround = 96;  // quads around the funnel
 constexpr std::uint32_t kPipeRings = 8, kConeRings = 12;
 constexpr std::uint64_t kRigid = 2 * kAround * (kPipeRings + kConeRings);  // its triangles
 
-// A surface of revolution that holds all of the points, `gap` away from the nearest.
+// A surface of revolution around all of the points, `gap` away from the nearest.
 Mesh funnel_around(const std::vector<Vec3>& points, double gap) {
   const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
   const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);
@@ -214,7 +213,7 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap) {
     pipe = std::max(pipe, r - slope * std::max(0.0, p.z() - begin));
     top = std::max(top, p.z());
   }
-  // Chords of the polygon come nearer to the axis than its corners.
+  // The sides of the polygon are nearer to the axis than its corners.
   const double widen = 1 / std::cos(kTurn / 2 / kAround);
   std::vector<std::array<double, 2>> profile;  // radius, height
   for (std::uint32_t k = 0; k <= kPipeRings; ++k)

@@ -35,8 +35,8 @@ Scene make_two_spheres() {
 }
 
 Scene make_two_tori() {
-  // Moved by 1.5, the second ring passes within 0.5 of the first: linked, and tubes of radius 0.35
-  // cross.
+  // Moved by 1.5, the second ring passes within 0.5 of the first: they are linked, and their tubes
+  // of radius 0.35 cross.
   const Mesh mesh = torus(1, 0.35, 100, 50);
   return two_objects("two-tori", "first", mesh, "second", mesh,
                      {.scale = {},
@@ -60,11 +60,11 @@ Scene make_random_soup(std::uint64_t seed) {
 }
 
 constexpr std::uint64_t kAxial =
-    0x9e3779b97f4a7c15;  // xor the seed: that of what lies along the axes
+    0x9e3779b97f4a7c15;  // xor the seed: the seed of the slivers along the axes
 
 Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
 
-// A sliver along an axis, its other side along the next one.
+// A sliver along axis k, with its width along the next axis.
 Corners axial_needle(std::uint32_t k, double width, Random& random) {
   const Vec3 start = -0.5 * axis(k);
   return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
@@ -91,8 +91,8 @@ Motion turning_and_sliding(const Scene& scene) {
   };
 }
 
-// size: slivers in each of the two oblique objects, bit for bit the same ones in a larger scene;
-// three in eight as many in each of the two along the axes.
+// size: slivers in each of the two oblique objects; a larger scene begins with the same ones, bit
+// for bit. The two objects along the axes have three eighths as many each.
 BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
@@ -100,8 +100,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
-    // One in four stands anywhere. The others cross the needle of the first object or pass it
-    // within their width.
+    // Of four slivers one has a random place, two cross the needle of the first object, and one
+    // misses it by twice the smaller width.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -113,8 +113,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Along the axes: each of one object along x, y or z, and through it one of the other along each
-  // axis in turn, the same one included.
+  // Along the axes: each sliver of one object lies along x, y or z, and one sliver of the other
+  // object crosses it, along each axis in turn, the same one included.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;
@@ -141,7 +141,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
 Scene make_degenerate() {
   constexpr double kHair = 0x1p-40;
   const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  // Every pair touches or crosses, by integers, in the way that the comment beside it names.
+  // Every pair touches or crosses, with integer coordinates, as the comment beside it says.
   const std::vector<std::pair<Corners, Corners>> cases = {
       {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
       {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge
@@ -171,9 +171,9 @@ Scene make_degenerate() {
       {face, {Vec3(1, 1, -2), Vec3(1, 1, 2), Vec3(1 + kHair, 1, 2)}},  // sliver through face
       {face, {Vec3(1, 1, 0), Vec3(1, 3, 4), Vec3(1 + kHair, 3, 4)}},   // sliver, vertex on face
   };
-  // Each three times in a grid of cells: as it is, and with the second triangle a hair higher and
-  // lower. Cells are apart by integers and a hair is far above an ulp there, so every coordinate is
-  // exact.
+  // Each case appears three times in a grid of cells: as it is, and with the second triangle a hair
+  // higher and lower. Cells are integers apart, and a hair is far above an ulp there, so every
+  // coordinate is exact.
   std::vector<Corners> first;
   std::vector<Corners> second;
   for (std::size_t i = 0; i < cases.size(); ++i) {

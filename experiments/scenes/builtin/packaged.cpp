@@ -1,5 +1,5 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks. Among them the dragon of the
-// papers, its triangles divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha, VRST
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Two use the dragon of the papers,
+// with its triangles divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha, VRST
 // 2004), or it breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware
 // 2003).
 #include <Eigen/Geometry>
@@ -41,8 +41,8 @@ constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
 
-// The second mesh scaled to the diagonal of the first and moved so that their boxes have one
-// centre.
+// Scales the second mesh to the diagonal of the first and moves the centre of its box to that of
+// the first.
 Placement onto(const Mesh& first, const Mesh& second) {
   const double scale = diagonal(bounds(first)) / diagonal(bounds(second));
   return {.scale = Vec3(Vec3::Constant(scale)),
@@ -73,8 +73,8 @@ Scene make_dragon_bunny() {
   return two_objects("dragon-bunny", "dragon", dragon, "bunny", bunny, onto(dragon, bunny));
 }
 
-// A mesh and its copy, moved by so many diagonals along (2, 3, 6), a direction of no axis whose
-// length is 7.
+// A mesh and a copy, moved by so many diagonals along (2, 3, 6), which has length 7 and is parallel
+// to no axis.
 Scene with_copy(const std::string& name, const char* file, const char* first, const char* second,
                 double diagonals) {
   const Mesh mesh = packaged(file);
@@ -116,7 +116,7 @@ struct Breaking {
   double height = 0;                    // of the dragon
 };
 
-// The triangles that `takes`.
+// The triangles for which `takes` is true.
 template <class Takes>
 Piece part_of(const Mesh& mesh, const Takes& takes) {
   PartMaker maker(mesh.vertices);
@@ -130,8 +130,8 @@ Piece part_of(const Mesh& mesh, const Takes& takes) {
   return piece;
 }
 
-// Triangles belong to the nearest of some of their centres, drawn; pieces come off in the order of
-// their distance from where the dragon is hit, its highest point.
+// Breaks the dragon up: kPieces triangles are drawn, and each triangle belongs to the nearest of
+// their centres. Pieces come off by their distance from the hit, the dragon's highest point.
 std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   shapes::Random random(seed);
   auto out = std::make_shared<Breaking>();
@@ -177,7 +177,7 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   return out;
 }
 
-// The topology when the first `off` pieces have come off: what is left, then these.
+// Sets the topology after the first `off` pieces have come off: the rest, then these pieces.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();

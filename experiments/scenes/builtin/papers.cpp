@@ -1,7 +1,7 @@
-// Scenes that move. Those of the papers, generated: deforming cylinders and torii (CULLIDE:
-// Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall from a tree and a
-// simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004); shapes, counts and kinds of
-// motion are the papers', the rest is ours. And open sheets.
+// Scenes that move. Generated versions of the papers' scenes: deforming cylinders and torii
+// (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall from a
+// tree and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004). Shapes, counts and
+// kinds of motion are the papers', the rest is ours. Also open sheets.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,7 @@ Way draw_way(double room, double reach, Random& random) {
   return way;
 }
 
-// Objects of one shape, each on its way; `deformed` gives a vertex of the shape at a time, in the
+// Objects of one shape, each on its way. `deformed` gives a vertex of the shape at a time, in the
 // object's own frame.
 template <class Deformed>
 BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
@@ -92,7 +92,7 @@ Mesh tube(std::uint32_t around, std::uint32_t along) {
   return finished(std::move(vertices), std::move(triangles));
 }
 
-// Steps along and around a torus of as nearly `triangles` as a grid of fair cells comes.
+// Steps along and around a torus: as close to `triangles` as a grid of nearly square cells gets.
 std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
   const std::uint64_t cells = triangles / 2;
   const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
@@ -193,7 +193,7 @@ BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed)
                        });
 }
 
-// size: triangles of a torus, as near as a grid comes.
+// size: triangles of a torus, as close as a grid allows.
 BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Way> ways;
@@ -212,7 +212,7 @@ BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
 
 // size: leaves.
 BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t seed) {
-  constexpr double kFall = 4;  // of a leaf, all in all
+  constexpr double kFall = 4;  // fall of a leaf in total
   Random random(seed);
   SceneBuilder builder("tree-leaves", "tree-leaves");
   const Mesh tree = make_tree(random);
@@ -249,7 +249,7 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   return halfway(std::move(built));
 }
 
-// ---- sheets of which no argument about closed meshes holds: open, with edges of three triangles,
+// ---- sheets for which no argument about closed meshes holds: open, with edges of three triangles,
 // and stacked so closely that a depth buffer of 24 bits cannot separate them ----
 
 constexpr std::uint32_t kCells = 18;  // along a side, which is 1 long
@@ -257,8 +257,8 @@ constexpr double kGrain = 0x1p-40;    // heights are multiples of it
 
 std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; }
 
-// A square of 18 by 18 cells of two triangles. From the middle of its grid lines i = 6 and i = 12
-// rise flaps of 12 by 1 cells, over the cells beyond: on these edges three triangles meet. The
+// A square of 18 by 18 cells of two triangles. Flaps of 12 by 1 cells rise from the middle of its
+// grid lines i = 6 and i = 12, over the cells beyond: three triangles meet at these edges. The
 // raised vertices come after those of the grid.
 Mesh sheet() {
   auto [vertices, triangles, source_face, group, group_names, folded] = grid(kCells);
@@ -280,8 +280,8 @@ Mesh sheet() {
 double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
 
 // size: sheets. All heights are multiples of 2^-40 below 2^10, so that sums with the gap, 2^-34,
-// are exact: a sheet of the stack is an exact translate of the one below it and never meets it; nor
-// do the flaps, half a gap high over cells of the same corners.
+// are exact: a sheet of the stack is an exact translate of the one below it and never meets it.
+// Neither do the flaps, which are half a gap high over cells with the same corners.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();
@@ -310,7 +310,7 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
         if (s < stacked) {
           lift += static_cast<double>(s) * kShellGap;
         } else {
-          // From below the stack to above it, the direction turning with time.
+          // From below the stack to above it; the direction turns with time.
           const double turn = kTurn * (now.time + phases[s]);
           const double across =
               0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);
@@ -323,7 +323,7 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   return halfway(std::move(built));
 }
 
-// ---- the simulated cloth, of which a frame is a time step ----
+// ---- the simulated cloth; a frame is a time step ----
 
 FrameNotes notes_of(const ClothReport& report) {
   return {.values = {{"kinetic J", report.kinetic},
@@ -339,7 +339,7 @@ FrameNotes notes_of(const ClothReport& report) {
           .warning = report.warning};
 }
 
-// A simulation, and the folder that keeps its states where there is one.
+// A simulation, and the folder that keeps its states if there is one.
 class Simulated {
  public:
   explicit Simulated(const ClothSettings& settings) : settings_(settings), cloth_(settings) {}
@@ -347,8 +347,8 @@ class Simulated {
   const Scene& scene() const { return cloth_.scene(); }
   const ClothReport& report() const { return cloth_.report(); }
 
-  // Starts from the last frame that is known at or before `frame`: the one that it is at, a kept
-  // one, or the first.
+  // Goes to `frame`, from the last known frame before it: the current one, a kept one, or the
+  // first.
   void go_to(long frame) {
     if (frame == report().frame) return;
     const std::string folder = cloth_folder();
@@ -372,7 +372,7 @@ class Simulated {
   std::optional<KeptCloth> kept_;
 };
 
-// size: triangles of the cloth, as near as a square grid comes; second: stiffness, N/m.
+// size: triangles of the cloth, as close as a square grid allows; second: stiffness, N/m.
 BuiltScene make_cloth(const SceneParameters& parameters) {
   ClothSettings settings;
   settings.triangles = parameters.size;

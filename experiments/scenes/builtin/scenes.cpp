@@ -19,8 +19,8 @@
 
 namespace farcull {
 
-// Puts together the entries of built-in scenes, and moves objects as they are: each motion keeps
-// the vertices at rest and writes those of an instant.
+// Assembles the entries of built-in scenes, and moves objects. Each motion keeps the vertices at
+// rest and writes those of an instant.
 
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement) {
@@ -67,7 +67,7 @@ struct ObjectAtRest {
   std::vector<std::uint32_t> vertices;  // each once
 };
 
-// The scene without frames and its objects.
+// The vertices of the scene without frames, and its objects.
 struct Rest {
   std::vector<Vec3> vertices;
   std::vector<ObjectAtRest> parts;

@@ -1,5 +1,5 @@
-// Scenes that need no file of the user: generated ones, the same on every run, and ones made of the
-// packaged meshes; as they are without frames, and in motion.
+// Scenes that need no file of the user: generated ones, the same on every run, and scenes made of
+// the packaged meshes; still, and in motion.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace farcull {
 
-/// The numbers that a name may carry after colons, as in crowd:3000:0.2; those that it leaves out
-/// are the usual ones, and 0 where the scene has none.
+/// The numbers that a name may carry after colons, as in crowd:3000:0.2. An omitted number has its
+/// usual value, or 0 if the scene takes no such number.
 struct SceneParameters {
   std::uint64_t size = 0;
   double second = 0;
@@ -27,23 +27,23 @@ struct SceneParameters {
 
 /// The range of the first number, as in field:1000000.
 struct SceneSize {
-  std::string what;  // of which it is the number, such as "triangles"
+  std::string what;  // what it counts, such as "triangles"
   std::uint64_t least = 0;
   std::uint64_t most = 0;
-  std::uint64_t usual = 0;  // where the name has none
+  std::uint64_t usual = 0;  // if the name has none
 };
 
-/// The range of the second one, both ends included.
+/// The range of the second number, both ends included.
 struct SceneSecond {
-  std::string what;  // with its unit, such as "stiffness in N/m"
+  std::string what;  // what it measures, with its unit, such as "stiffness in N/m"
   double least = 0;
   double most = 0;
   double usual = 0;
 };
 
-/// A moment of a motion that is watched in frames.
+/// A moment of a motion.
 struct Instant {
-  long frame = 0;   // for what goes on step by step
+  long frame = 0;   // for a simulation
   double time = 0;  // 0 to 1, for a path
 };
 
@@ -53,14 +53,14 @@ struct FrameNotes {
   std::string warning;                                 // empty: none
 };
 
-/// Brings the scene, which is the one that was built or what an earlier call left of it, to an
-/// instant. Where the topology stays, only Scene::vertices is written, in place. A path gives the
-/// same scene for a time whatever was asked for before; so does a simulation for a frame, but one
-/// that lies back is reached from the start again. Throws Error where the scene cannot be had.
+/// Moves the scene to an instant. The scene is the built one or the result of an earlier call. If
+/// the topology stays, only Scene::vertices is written, in place. The result depends on the time of
+/// a path, or the frame of a simulation, and not on earlier calls; an earlier frame of a simulation
+/// is computed from the start or a kept state. Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {
-  Scene scene;    // as it is without frames
+  Scene scene;    // without frames
   Motion motion;  // empty: nothing moves
 };
 
@@ -69,10 +69,10 @@ struct BuiltinScene {
   std::string description;                 // one line
   std::uint32_t objects = 0;               // of the usual size
   std::uint32_t triangles = 0;             // of the usual size
-  std::string motion = {};                 // one line; empty: nothing moves
+  std::string motion = {};                 // one line; empty if nothing moves
   std::optional<SceneSize> size = {};      // empty: of one size
   std::optional<SceneSecond> second = {};  // empty: no second number
-  bool costly = false;            // of its usual size it is for farcull bench, not every test
+  bool costly = false;            // at its usual size for farcull bench, not for every test
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // what it was drawn with; empty: nothing in it is random
@@ -82,14 +82,14 @@ struct BuiltinScene {
   Scene make() const { return build(usual()).scene; }
 };
 
-/// A change of a scene by a suffix: every vertex times scale, plus translate, in double; then one
-/// more object "ground" of two triangles with these corners, counterclockwise seen from above.
+/// The change of a scene by a suffix: every vertex times scale, plus translate, in double; then an
+/// object "ground" of two triangles with these corners, counterclockwise seen from above.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
   std::optional<std::array<Vec3, 4>> ground = {};
 };
-/// Throws Error naming the scene if a coordinate is not finite then.
+/// Throws Error naming the scene if a coordinate is not finite afterwards.
 void apply(const SceneChange& change, Scene& scene);
 
 /// Every vertex times scale, plus translate, in double. Throws Error as apply().
@@ -99,7 +99,7 @@ Scene transformed(Scene scene, double scale, const Vec3& translate);
 struct SceneSuffix {
   std::string suffix;       // with its @
   std::string description;  // one line
-  /// The change for this scene. In frames, that of the scene as it is without them serves for all.
+  /// The change for this scene. All frames get the change of the scene without frames.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();
@@ -107,18 +107,18 @@ const std::vector<SceneSuffix>& scene_suffixes();
 /// All built-in scenes, generated ones first. The list is made once.
 const std::vector<BuiltinScene>& builtin_scenes();
 
-// Its parts, of a file each.
+// The parts of the list, one per file.
 std::vector<BuiltinScene> generated_scenes();
-/// For benchmarks; the counts are those of docs/results/bench.md.
+/// For benchmarks; docs/results/bench.md has the same counts.
 std::vector<BuiltinScene> bench_scenes();
-/// For benchmarks too, of kinds that people have: cloth, rope and parts in contact.
+/// Also for benchmarks, of common kinds: cloth, rope and parts in contact.
 std::vector<BuiltinScene> contact_scenes();
 /// Scenes that move, most of them of the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST 2004).
-/// Without frames they are as halfway through their motion, but for the cloth.
+/// Without frames they are halfway through their motion, except the cloth.
 std::vector<BuiltinScene> paper_scenes();
 /// Scenes whose second number goes to an extreme, for the study "stability".
 std::vector<BuiltinScene> extreme_scenes();
-/// Scenes made of the packaged meshes. Making one throws Error where a mesh cannot be read.
+/// Scenes made of the packaged meshes. Building one throws Error if a mesh cannot be read.
 std::vector<BuiltinScene> packaged_scenes();
 
 /// The scene of this name up to its first ':' or '@'; null if no scene has it.
@@ -133,44 +133,43 @@ struct SceneRequest {
   SceneParameters parameters;
   std::vector<const SceneSuffix*> suffixes;
 };
-/// Throws Error naming `name` if the scene or a suffix is unknown, or if a number is
-/// malformed, out of range, or one that the scene does not take, as a seed where nothing in it is
-/// random.
+/// Throws Error naming `name` if the scene or a suffix is unknown, or if a number is malformed, out
+/// of range, or not accepted by the scene, such as a seed for a scene without randomness.
 SceneRequest parse_scene_name(const std::string& name);
 
 /// A built-in scene by name. Throws Error as parse_scene_name(), if the packaged meshes it needs
 /// are not there, and if suffixes move it beyond what a double can hold.
 Scene make_builtin_scene(const std::string& name);
 
-/// The seed of the built-in scene of this name, perhaps with numbers and suffixes: that of @seedN,
-/// or its own. Empty where nothing in it is random, and for any other name.
+/// The seed of the built-in scene of this name, with or without numbers and suffixes: that of
+/// @seedN, or its own. Empty if nothing in the scene is random, and for any other name.
 std::optional<std::uint64_t> builtin_seed(const std::string& name);
 
-/// Whether the built-in scene of this name, perhaps with numbers and suffixes, moves.
+/// Whether the built-in scene of this name, with or without numbers and suffixes, moves.
 bool has_motion(const std::string& name);
 
-/// The names of those that do, for messages.
+/// The names of the scenes that move, for messages.
 std::string moving_names();
 
-/// A built-in scene that moves, as it is at a frame. Where the motion is a path, the frames go once
-/// through it, from time 0 in frame 0 to time 1 in the last; where it is a simulation, a frame is a
-/// time step. The same on every run.
+/// A built-in scene that moves, frame by frame. The frames of a path go through it once, from time
+/// 0 in frame 0 to time 1 in the last frame; a frame of a simulation is a time step. The same on
+/// every run.
 class MovingScene {
  public:
-  /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself, besides
-  /// those that are anyway. Throws Error as make_builtin_scene(), and where nothing moves.
+  /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself. Throws Error
+  /// as make_builtin_scene(), and if nothing moves.
   explicit MovingScene(const std::string& name, long frames, bool self = false);
   MovingScene(const std::string& name, long frames, long first) = delete;  // a number is no bool
   /// The same for a scene that is not built in. Precondition: it has a motion.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
-  /// The scene at a frame of the range, validated: the same object each time, and the same memory
-  /// of triangles and vertices where the topology is that of the call before. The changes of
-  /// suffixes are computed once, from the scene without frames; a ground stays. Throws Error as
-  /// Motion does.
+  /// The scene at a frame of the range, validated. Returns the same object each time, and the same
+  /// memory of triangles and vertices if the topology is that of the previous call. The changes of
+  /// suffixes are computed once, from the scene without frames; a ground does not move. Throws
+  /// Error as Motion does.
   const Scene& at(long frame);
 
-  /// The notes of the motion on the frame that at() gave last, such as energies; mostly none.
+  /// The notes of the motion on the last frame from at(), such as energies; most motions have none.
   const std::vector<std::pair<std::string, double>>& notes() const { return notes_.values; }
   const std::string& warning() const { return notes_.warning; }
 
@@ -180,7 +179,7 @@ class MovingScene {
   Motion motion_;
   std::vector<SceneChange> changes_;
   Scene plain_;    // before the suffixes
-  Scene changed_;  // after them, where there are any
+  Scene changed_;  // after them, if there are any
   FrameNotes notes_;
 };
 
@@ -194,33 +193,33 @@ std::string mesh_folder();
 /// A file of mesh_folder(). Throws Error where it cannot be read.
 Mesh packaged(const char* file);
 
-/// Calls take() with one part of the scene "field" after the other, which has about parameters.size
-/// triangles and is made object by object, so that the memory does not grow with it: some
-/// consecutive objects, whole, as a scene called `name` that take() may change. Together they are
-/// the scene, bit by bit.
+/// Calls take() with the parts of the scene "field" one after the other. The scene has about
+/// parameters.size triangles and is made object by object, so that memory does not grow with it. A
+/// part is some consecutive objects, whole, as a scene called `name` that take() may change.
+/// Together the parts are the scene, bit by bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
 // The generators of built-in scenes: each file gives the entries of its scenes. Generated scenes
 // are drawn with core/base/random.h and fixed seeds, so that every platform makes the same doubles.
 
-/// Between neighbours in the stack of the scene "shells", all over their surface.
+/// The distance between neighbours in the stack of the scene "shells", everywhere on their surface.
 inline constexpr double kShellGap = 0x1p-34;
 
 /// size: slivers of each object; second: aspect, the longest side over the height above it.
 BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
-/// size: sheets; second: from one to the next, in their widths, see stack_gap(). Every fourth leans
-/// and crosses both neighbours.
+/// size: sheets; second: distance between neighbours, in units of their width, see stack_gap().
+/// Every fourth sheet leans and crosses both neighbours.
 BuiltScene make_stack(const SceneParameters& parameters);
 /// The nearest power of two (in its exponent), so that no height of the stack is rounded.
 double stack_gap(double wanted);
 /// size: large triangles, with eight small ones at each; second: ratio of their sides.
 BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
-/// size: pairs; second: ulps of their coordinates, the nearest whole number, by which a vertex
-/// stands above a face, or an edge above an edge: they collide where it is 0 or less.
+/// size: pairs; second: height of a vertex above a face, or of an edge above an edge, in ulps of
+/// their coordinates, rounded to a whole number. They collide if it is 0 or less.
 BuiltScene make_gap(const SceneParameters& parameters);
 
-/// The scenes of the same names in contact_scenes(). size: triangles.
+/// The scenes of the same names in contact_scenes(). size: number of triangles.
 BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
@@ -230,11 +229,11 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 /// A scene of two objects, the second one placed.
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement = {});
-/// The scene as its motion has it halfway.
+/// The scene halfway through its motion.
 BuiltScene halfway(BuiltScene built);
 
-/// Makes a scene from a function of any of these arguments: none, the seed, the parameters, or both
-/// of these; it returns a Scene or a BuiltScene.
+/// Makes a scene from a function that takes nothing, the seed, the parameters, or both, and returns
+/// a Scene or a BuiltScene.
 class SceneMaker {
  public:
   template <class Make>
@@ -257,24 +256,24 @@ class SceneMaker {
  private:
   std::function<BuiltScene(const SceneParameters&, std::uint64_t)> make_;
 };
-/// `motion` of the scene without frames.
+/// The scene that `make` returns, with the motion that `motion` makes from it.
 SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&));
 
 inline constexpr bool kCostly = true, kChanges = true;
-/// A row of the table of scenes: its members as BuiltinScene has them. seed: that of the scene,
-/// where the name gives none; 0 where nothing in it is random.
+/// A row of the table of scenes, with the members of BuiltinScene. seed: used if the name gives
+/// none; 0 if nothing in the scene is random.
 BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
                    const char* description, std::uint32_t objects, std::uint32_t triangles,
                    const char* motion = "", const SceneSize& size = {},
                    const SceneSecond& second = {}, bool costly = false,
                    bool topology_changes = false);
 
-/// `rest` is the scene without frames, whose objects share no vertex. The second object comes from
-/// beside the first, goes through it and leaves on the other side.
+/// `rest` is the scene without frames, whose objects share no vertex. The second object approaches
+/// from the side, passes through the first and leaves on the other side.
 Motion pass_through(const Scene& rest);
-/// All objects breathe, out of step, while waves run along them.
+/// All objects swell and shrink, out of phase, while waves run along them.
 Motion pulse(const Scene& rest);
-/// Each object goes its own way, by up to its diagonal, and comes back.
+/// Each object moves along its own path, by up to its diagonal, and returns.
 Motion drift(const Scene& rest);
 
 }  // namespace farcull

@@ -1,9 +1,9 @@
-// Takes one step after the other: the model gives the function of a step, the solver its minimum.
-// States are kept in files: text for people, then numbers as they are in memory, then a checksum:
+// Advances the cloth step by step: the model gives the function of a step, the solver minimizes it.
+// States are kept in files: a line of text, then numbers as they are in memory, then a checksum:
 //   farcull cloth 1, settings HASH, arithmetic HASH, frame N
-//   the report, positions, velocities, and what the solver remembers
+//   the report, positions, velocities, and the state of the solver
 //   FNV-1a of all bytes before it
-// A checksum of FNV-1a differs whenever one byte differs: each of its steps is a bijection.
+// A changed byte always changes the checksum: each step of FNV-1a is a bijection.
 #include "experiments/scenes/cloth/cloth.h"
 
 #include <Eigen/Core>
@@ -152,11 +152,10 @@ std::string hash_of(const ClothSettings& s) {
   return hash.hex();
 }
 
-// A hash of what this program computes for a small stiff cloth that meets the sphere, which needs
-// interior points as well. Another version of the simulation, or another way to round, gives other
-// doubles.
-// Products of large matrices round by the blocks that they are cut into, which Eigen chooses by the
-// sizes of the caches.
+// A hash of the results for a small stiff cloth that meets the sphere, which needs interior points
+// as well. Another version of the simulation, or another rounding, gives other doubles. The hash
+// includes the sizes of the caches: Eigen cuts products of large matrices into blocks by them, and
+// the blocks determine the rounding.
 std::string arithmetic() {
   static const std::string hash = [] {
     constexpr int kSteps = 12;  // it meets the sphere in step 7
@@ -194,7 +193,7 @@ void put(std::string& out, const Eigen::VectorXd& values) {
   for (const double value : values) put(out, value);
 }
 
-// Takes numbers from a text. Past its end it gives zeros, and fits() is false.
+// Reads numbers from a text. Past its end it returns zeros, and fits() is false.
 class Reader {
  public:
   explicit Reader(const std::string& text) : text_(text) {}
@@ -230,7 +229,7 @@ class Reader {
   bool at_end() const { return fits_ && at_ == text_.size(); }
 
  private:
-  // The number of the parts that follow, of so many bytes each; 0 where they are not there.
+  // The number of the parts that follow, `bytes` bytes each; 0 if the text is too short for them.
   std::uint64_t count(std::size_t bytes) {
     std::uint64_t out = 0;
     get(out);
@@ -243,7 +242,7 @@ class Reader {
   bool fits_ = true;
 };
 
-// All that a file holds of a state but its frame, in the order of the file.
+// Visits all numbers of a state in a file except the frame, in the order of the file.
 template <class State, class Do>
 void for_each_number(State& state, const Do& take) {
   auto& r = state.report;

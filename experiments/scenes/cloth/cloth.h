@@ -1,12 +1,11 @@
 // A square cloth that falls on a fixed sphere: springs along the edges, bending across them,
-// contact with friction; no contact of the cloth with itself, so that folds pass through each other
-// and a scene that moves has triangles of one object that intersect. docs/cloth.md derives it.
+// contact with friction. The cloth has no contact with itself, so its folds pass through each
+// other: the scene has intersecting triangles within one moving object. docs/cloth.md derives it.
 //
 // A step is implicit Euler, as the minimum of a convex function of the new positions (Gast et al.
 // 2015, "Optimization integrator for large time steps", made convex as in Eyre 1998). So it has one
-// solution at every stiffness, and the total energy of a report exceeds that of the report before
-// it by no more than `slack`, but for rounding. The same settings give the same bits on the same
-// machine.
+// solution at every stiffness, and the total energy grows from one report to the next by at most
+// `slack`, up to rounding. The same settings give the same bits on the same machine.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +25,7 @@ namespace farcull {
 
 // The numbers that describe a cloth and its simulation.
 
-/// All numbers finite and in SI units.
+/// All numbers are finite and in SI units.
 struct ClothSettings {
   std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000: 2 m^2 for the nearest m
   double stiffness = 1e4;           // of the spring along an edge, N/m; > 0
@@ -52,7 +51,7 @@ struct ClothSettings {
 
 }  // namespace farcull
 
-// The minimum of a step of the cloth: Newton's method, and interior points where that creeps; the
+// Minimizes a step of the cloth: by Newton's method, and by interior points if that gets slow. The
 // matrix of both is factored by dense fronts.
 namespace farcull::cloth {
 
@@ -63,15 +62,14 @@ namespace farcull::cloth {
 
 inline constexpr double kStandardGravity = 9.81;  // m/s^2, of a weight as a unit of force
 
-/// A spring along an edge. But for the smooth start below, its force is stiffness * (l - length)
-/// while that is at least -buckling_load * l, and -buckling_load * l where it is shorter: it
-/// buckles.
+/// A spring along an edge. Except near the smooth start below, its force is stiffness * (l -
+/// length), but not less than -buckling_load * l: a shorter spring buckles.
 struct Spring {
   std::array<std::uint32_t, 2> vertices;
   double length = 0;  // at rest, m
 };
 
-/// A spring without length across an edge, between a point of the edge and one of the segment
+/// A spring of rest length 0 across an edge, between a point of the edge and a point of the segment
 /// between the opposite corners; at rest these coincide. Energy: stiffness / 2 * |w|^2, with w the
 /// sum of weight * vertex; the weights sum to 0.
 struct Hinge {
@@ -89,7 +87,7 @@ struct Model {
   double crimp = 0;          // of all smooth springs, J
   std::vector<Spring> springs;
   std::vector<Hinge> hinges;
-  Eigen::VectorXd rest;  // where it starts, m
+  Eigen::VectorXd rest;  // the initial positions, m
 };
 
 /// Throws Error naming "cloth" if a setting is out of range.
@@ -124,7 +122,7 @@ struct Step {
 /// Precondition: sizes are those of the model. The model must outlive the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
 
-/// N. `result` gets the size of x.
+/// In N; resizes `result` to the size of x.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// A spring of stiffness c on a length e, with a smooth start: the force f > 0 with
@@ -139,7 +137,7 @@ double slack_length(const Model& model, std::size_t spring);
 /// Stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
-/// The part of the gradient that is not of springs or contact, thrust and friction included.
+/// The gradient without springs and contact, but with thrust and friction.
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
@@ -148,20 +146,20 @@ using Block = Eigen::Matrix3d;
 /// either order; the blocks of a vertex with itself are whole.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// The Hessian of one spring with respect to either end; of the mixed derivatives it is the
-/// negative. Positive semidefinite.
+/// The Hessian of one spring by either of its ends; the mixed derivatives are its negative.
+/// Positive semidefinite.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
 /// Contributions of contact and of friction to the block of a vertex. Positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 
-/// A grid of side x side vertices cut in half again and again by lines two vertices wide. Vertices
-/// that are at most two rows and two columns apart are on one side of a line, or one is on it.
+/// A grid of side x side vertices, cut in half again and again by lines two vertices wide. So two
+/// vertices at most two rows and two columns apart are on one side of a line, or one is on it.
 struct Dissection {
   struct Part {
     std::uint32_t begin = 0;  // its places are begin to end - 1
     std::uint32_t end = 0;
-    std::uint32_t parent = 0;  // index of the part that cuts it off; of the last: its own
+    std::uint32_t parent = 0;  // index of the part that cuts it off; the last part: its own index
   };
   std::vector<std::uint32_t> places;  // per vertex, row by row
   std::vector<Part> parts;            // by their places; parents come after what they cut off
@@ -210,8 +208,8 @@ double reach(const ConePoint& u, const ConePoint& du);
 
 class Interior {
  public:
-  /// Inside, from the positions. `complementarity`: of each spring and contact at first, J.
-  /// The step must outlive it.
+  /// Starts inside the cones, from the positions. `complementarity`: the first value of each spring
+  /// and contact, J. The step must outlive this object.
   Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
 
   /// Mean of the complementarities, J.
@@ -225,8 +223,8 @@ class Interior {
   Block contact_block(std::size_t vertex) const;
   Vec3 contact_force(std::size_t vertex) const;
 
-  /// Goes along the direction as far as it may, the positions with it, and returns the part of it
-  /// that was gone, at most 1. Precondition: linearize() came before, at x.
+  /// Moves along the direction, and the positions with it, as far as the cones allow. Returns the
+  /// part of the direction that was gone, at most 1. Precondition: linearize() came before, at x.
   double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
 
  private:
@@ -271,21 +269,21 @@ struct Minimum {
   std::string reason = {};   // why it did not converge
 };
 
-/// Keeps from step to step the pattern of the matrix, which is that of the model, and whether the
-/// last step needed interior points. The model must outlive it.
+/// Keeps the pattern of the model's matrix between steps, and whether the last step needed interior
+/// points. The model must outlive it.
 class Solver {
  public:
   explicit Solver(const Model& model);
 
-  /// Minimizes from x0: by Newton's method with a search along each direction; if that gets stuck,
-  /// by interior points and Newton's method from where they end.
+  /// Minimizes from x0 by Newton's method with a search along each direction; if that gets stuck,
+  /// by interior points, then by Newton's method from their result.
   Minimum minimize(const Step& step);
 
-  /// Whether the last step needed interior points: all that a step leaves to the next one.
+  /// Whether the last step needed interior points: the only state between steps.
   bool was_stiff() const { return was_stiff_; }
   void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
 
-  /// N: the setting, and what the rounding of the positions themselves leaves.
+  /// In N: the setting plus the effect of rounding the positions.
   double tolerance(const Eigen::VectorXd& x) const;
 
   /// The Hessian at x: the lower triangle, in the order of places().
@@ -335,7 +333,7 @@ struct ClothReport {
   double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
 
-/// All that the steps to come depend on, and the report of the last one.
+/// Everything that later steps depend on, and the report of the last step.
 struct ClothState {
   ClothReport report = {};
   Eigen::VectorXd positions, velocities;  // m and m/s, three numbers for each vertex of the cloth
@@ -350,8 +348,8 @@ class Cloth {
   Cloth(Cloth&&) noexcept;
   Cloth& operator=(Cloth&&) noexcept;
 
-  /// Two objects, "cloth" (self) and "sphere", in this order; the vertices of the cloth come first,
-  /// (m + 1)^2 of them row by row. It always satisfies validate(). The same object throughout:
+  /// Two objects, "cloth" (self) and "sphere", in this order. The vertices of the cloth come first,
+  /// (m + 1)^2 of them row by row. The scene always satisfies validate(). It stays the same object:
   /// step() moves its vertices.
   const Scene& scene() const;
 
@@ -362,11 +360,11 @@ class Cloth {
   /// The energies now. frame, residual, iterations and so on are those of the last step.
   const ClothReport& report() const;
 
-  /// After restore(state()) of a cloth with the same settings, the steps to come give the same bits
-  /// as those of that cloth.
+  /// After restore(state()) of a cloth with the same settings, later steps give the same bits as
+  /// that cloth's.
   ClothState state() const;
-  /// The energies of the report are computed anew. Velocities that are not finite make the next
-  /// step fail as said above. Throws std::logic_error if there are not three positions and
+  /// Recomputes the energies of the report. Velocities that are not finite make the next step fail
+  /// as described for step(). Throws std::logic_error if there are not three positions and
   /// velocities for each vertex.
   void restore(const ClothState& state);
 
@@ -378,26 +376,25 @@ class Cloth {
 /// The folder named by the environment variable FARCULL_CLOTH; empty where it is not set.
 std::string cloth_folder();
 
-/// The states of one cloth, one file a frame: its doubles as they are in memory, under a heading
-/// that says which settings and which arithmetic they are of, with a checksum. A file appears whole
-/// or not at all.
+/// The states of one cloth, one file per frame: doubles as they are in memory, under a heading that
+/// names the settings and the arithmetic, with a checksum. A file appears whole or not at all.
 class KeptCloth {
  public:
-  /// Makes FOLDER and in it the folder of these settings. Throws Error where they cannot be made.
+  /// Creates FOLDER and in it the folder of these settings. Throws Error if that fails.
   KeptCloth(const std::string& folder, const ClothSettings& settings);
 
   /// The file of a frame.
   std::string path(long frame) const;
 
-  /// The largest frame from 1 to `frame` that has a file; 0 where none has: the start is not kept.
+  /// The largest frame from 1 to `frame` that has a file; 0 if none has (frame 0 is not kept).
   long last(long frame) const;
 
   /// The state in the file of a frame, bit for bit as write() got it. Throws Error naming the file
-  /// and the remedy where it cannot be read, is truncated or damaged, is of another frame, of other
-  /// settings or of other arithmetic.
+  /// and the remedy if it cannot be read, is truncated or damaged, or is of another frame, other
+  /// settings or other arithmetic.
   ClothState read(long frame) const;
 
-  /// Throws Error naming the file where the system refuses it.
+  /// Throws Error naming the file if the system refuses it.
   void write(const ClothState& state) const;
 
  private:

@@ -61,7 +61,7 @@ void add_triangles(Model& model) {
       const std::uint32_t b = id(i + 1, j);
       const std::uint32_t c = id(i + 1, j + 1);
       const std::uint32_t d = id(i, j + 1);
-      // Diagonals alternate, so that no direction of the weave is stiffer than its mirror image.
+      // Diagonals alternate, so that the weave is equally stiff in mirrored directions.
       if ((i + j) % 2 == 0) {
         model.triangles.insert(model.triangles.end(), {{a, b, c}, {a, c, d}});
       } else {
@@ -71,8 +71,8 @@ void add_triangles(Model& model) {
   }
 }
 
-// Flat, above the sphere and a little beside its middle, with an unevenness far below a cell, so
-// that where it folds is not left to rounding.
+// Places the cloth flat above the sphere, a little off its centre, with an unevenness far below a
+// cell: it decides where the cloth folds, which rounding would decide otherwise.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -89,20 +89,20 @@ void place(Model& model) {
   }
 }
 
-// With the opposite corners c and d of edge a-b in the plane: the weights of the points where the
-// line through c and d and the edge meet. In the grid that is the middle of a diagonal or one end
-// of another edge.
+// Adds the hinge of edge a-b, with the opposite corners c and d in its plane. The weights give the
+// point where the line through c and d meets the edge: in the grid the middle of a diagonal, or one
+// end of another edge.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
   // At curvature kappa across it, w is kappa cell^2 / 2 for an edge along the grid, one for each
   // cell, so rigidity = stiffness cell^2 / 4. A twist kappa gives the same w for a diagonal, one
-  // for each cell; a plate has 2 rigidity kappa^2 / 2 per area in it, so its stiffness is twice.
+  // for each cell; a plate then has 2 rigidity kappa^2 / 2 per area, so the stiffness is doubled.
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
   if (!diagonal) {
-    // Two triangles that mirror each other: c and d lie across one end.
+    // Two triangles that mirror each other: the line through c and d meets the edge at one end.
     const bool at_a = a % side == c % side || a / side == c / side;
     hinge = {{a, b, c, d}, {at_a ? -1.0 : 0.0, at_a ? 0.0 : -1.0, 0.5, 0.5}, stiffness};
   }
@@ -128,7 +128,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Energy of the convex spring less the thrust T l^2/2; 0 at rest.
+// Energy of the convex spring minus the thrust T l^2/2; 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;
@@ -263,7 +263,7 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
     const auto [a, b] = model.springs[i].vertices;
     const Vec3 d = at(x, b) - at(x, a);
     const double l = d.norm();
-    if (l == 0) continue;  // no direction, and hardly a force
+    if (l == 0) continue;  // no direction, and a negligible force
     const Vec3 force = smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
     result.segment<3>(3 * b) += force;
     result.segment<3>(3 * a) -= force;

@@ -11,8 +11,8 @@
 
 namespace farcull::cloth {
 
-// The factors: numbers the grid by nested dissection, then factors part by part with dense matrices
-// of Eigen.
+// Factorization: numbers the grid by nested dissection, then factors part by part with dense
+// matrices of Eigen.
 
 namespace {
 
@@ -33,7 +33,7 @@ struct Dissector {
     return part;
   }
 
-  // Columns i0 to i1 - 1 of rows j0 to j1 - 1; the index of the last part.
+  // Numbers columns i0 to i1 - 1 of rows j0 to j1 - 1; returns the index of the last part.
   std::uint32_t cut(std::uint32_t i0, std::uint32_t i1, std::uint32_t j0, std::uint32_t j1) {
     const std::uint32_t width = i1 - i0;
     const std::uint32_t height = j1 - j0;
@@ -178,7 +178,7 @@ void Factor::solve_in_place(Eigen::VectorXd& x) const {
 namespace {
 
 constexpr double kWidth = 1e-2;          // of a spring's length: how far inside the cone it begins
-constexpr double kToTheBoundary = 0.95;  // no further than this part of the way
+constexpr double kToTheBoundary = 0.95;  // fraction of the way to the boundary
 
 }  // namespace
 
@@ -188,7 +188,7 @@ double determinant(const ConePoint& u) {
 }
 
 double reach(const ConePoint& u, const ConePoint& du) {
-  // The first zero above 0 of (u + a du)'s determinant, c + 2 b a + q a^2, c > 0, and of its t.
+  // The first zero above 0 of t and of the determinant, c + 2 b a + q a^2 with c > 0, of u + a du.
   const double q = determinant(du);
   const double b = u.t * du.t - u.d.dot(du.d);
   const double c = determinant(u);
@@ -260,7 +260,7 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.mixed = eta * 2 * wt * wd;
     spring.whole = eta * (2 * wd * wd.transpose() + Block::Identity());
     spring.across = step_.stretch + tt;
-    // dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c), whence du_t.
+    // dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c) give du_t.
     const double inverse = target / (size_u * size_u);
     spring.right =
         inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
@@ -335,15 +335,15 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
 
 namespace {
 
-constexpr int kTrials = 60;  // along one direction; a double has no more halvings
-// These change how long a step takes and not where it ends.
-constexpr int kPatience = 40;      // iterations of Newton's method before interior points,
-constexpr double kCreeps = 0.125;  // or three steps shorter than this; one, if the last step of
-constexpr int kCreepsAtMost = 3;   // the cloth needed interior points
-constexpr double kStart = 1;       // complementarity at first, over weight * length
-constexpr double kEnd = 2;         // at the end, over crimp: Newton's method is quick from there
+constexpr int kTrials = 60;  // along one direction; a double allows no more halvings
+// These change the time of a step, not its result.
+constexpr int kPatience = 40;      // Newton's iterations before interior points take over
+constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's is short
+constexpr int kCreepsAtMost = 3;   // short steps before them; 1 if the last step needed them
+constexpr double kStart = 1;       // initial complementarity, over weight * length
+constexpr double kEnd = 2;         // final one, over crimp: from there Newton's method is quick
 
-// The lower triangle, with the values that no x changes.
+// The lower triangle of the matrix, with the values that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::uint32_t>& places) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
@@ -432,14 +432,14 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
 double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  // A coordinate is stored with an error of up to u |x|, at either end of a spring, which answers
-  // with a force of (k + T) times the error; a vertex has at most 8 springs, and 3 coordinates.
+  // A coordinate is stored with an error of up to u |x|, at either end of a spring, which changes
+  // its force by (k + T) times the error; a vertex has at most 8 springs, and 3 coordinates.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;
 }
 
-// With the matrix as it is assembled; false where it has no factor.
+// Solves with the assembled matrix; false if it has no factor.
 bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   if (!factor_.factorize(matrix_)) return false;
   Eigen::VectorXd permuted(right.size());
@@ -452,8 +452,8 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   return true;
 }
 
-// Each iteration goes along Newton's direction to where the slope, which begins below 0 and never
-// falls, as the function is convex, is a tenth of what it was or less: the value falls on the way.
+// Each iteration searches along Newton's direction until |slope| is a tenth of the first one or
+// less. The slope begins below 0 and never falls, as the function is convex, so the value falls.
 // At most `iterations`, and no more after `creeps` short steps. False if it failed for good.
 bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
@@ -505,14 +505,14 @@ bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best)
   }
 }
 
-// Moves best.x close to the minimum; where it fails, best.x stays.
+// Moves best.x close to the minimum; on failure best.x is unchanged.
 void Solver::interior(const Step& step, Minimum& best) {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   Eigen::VectorXd x = best.x;
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // the smaller, the better the last direction did
+  double aim = 0.1;  // smaller after a longer step along the last direction
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;

@@ -92,7 +92,7 @@ std::string python_text(const std::string& text) {
   return out + "\"";
 }
 
-// The command, and where its program comes from.
+// The command that converts the file, and the source of its program.
 std::string command(const Converter& by, const std::string& path) {
   const std::filesystem::path whole(path);
   const std::string to = (whole.parent_path() / (mesh_stem(path) + by.extension)).string();
@@ -106,8 +106,8 @@ std::string command(const Converter& by, const std::string& path) {
   return fmt::format(fmt::runtime(by.command), quoted(path), quoted(to), farcull::quoted(script));
 }
 
-// 3DS begins with the chunk of the whole file: its number and its length. The number of the next
-// chunk follows: the version, or the editor's data.
+// 3DS begins with the chunk of the whole file: its number and its length. The next chunk's number
+// follows: the version, or the editor's data.
 bool is_3ds(std::string_view bytes) {
   if (bytes.size() < 16 || !bytes.starts_with("MM")) return false;
   const std::string_view chunk = bytes.substr(6, 2);
@@ -169,8 +169,8 @@ std::optional<Error> foreign_contents(std::string_view bytes, const std::string&
 
 namespace {
 
-// A file is read as a whole, so that counts can be held against what is there; more than this is
-// refused at once.
+// Larger files are refused. A file is read as a whole, so that the counts in it can be compared
+// with its length.
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 struct Reader {
@@ -191,7 +191,7 @@ std::optional<MeshFormat> find_format(const std::string& path) {
   return found == kReaders.end() ? std::nullopt : std::optional(found->format);
 }
 
-// Contents that are no mesh of this format may be in a format that is not read: the error says so.
+// If parsing fails, the contents may be in a known format that is not read: the error says so.
 Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& name) {
   try {
     if (bytes.empty()) throw Error(name, "the file is empty", "give a mesh with at least one face");
@@ -231,7 +231,7 @@ std::pair<Place, bool> place_in(const std::string& name) {
   return {found, count == 1};
 }
 
-// The absolute path without links; `path` itself where there is no such file. By the C library,
+// The absolute path without links; `path` itself if there is no such file. Calls the C library,
 // since std::filesystem would hold several more paths at once.
 std::string real_path(const std::string& path) {
 #ifdef _WIN32
@@ -290,7 +290,7 @@ Mesh load_mesh(const std::string& path) {
 }
 
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name) {
-  // The header of a binary STL file may begin like anything.
+  // The header of a binary STL file may begin with any bytes, those of gzip included.
   const bool compressed = is_gzip(bytes) && !(format == MeshFormat::kStl && is_binary_stl(bytes));
   if (!compressed) return parse_known(bytes, format, name);
   return parse_known(gunzip(bytes, name, {.max_bytes = kMaxMeshBytes}), format, name);

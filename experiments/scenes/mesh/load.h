@@ -40,14 +40,14 @@ struct MeshPart {
 
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
-/// The format that the extension of a path names, in any case; the one before ".gz" where it ends
-/// so. Throws Error naming the path for any other extension: foreign_mesh(path) where there is one.
+/// The format of a path by its extension, in any case, or by the one before ".gz". Throws Error
+/// naming the path for any other extension: foreign_mesh(path) if there is one.
 MeshFormat mesh_format(const std::string& path);
 /// True iff mesh_format(path) would not throw.
 bool has_mesh_extension(const std::string& path);
-/// The Error for a path or a file of a format that is not read and that has a known converter: it
-/// names the format and the command. Looks into the file where the extension is not known. Empty
-/// where nothing is known about it.
+/// The Error for a path or a file in a format that is not read but has a known converter: it names
+/// the format and the command. Looks into the file if the extension is unknown. Empty for an
+/// unknown format.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place, as triangulate()
@@ -88,7 +88,7 @@ class MeshCache {
   void set_frame(long frame) { frame_ = frame; }
 
   /// The mesh of the path; valid until the same path is asked for in another frame. Throws Error as
-  /// load_mesh, and for a numbered name without frames that is no file. The meshes of two frames
+  /// load_mesh, and without frames for a numbered name that is no file. The meshes of two frames
   /// may differ in their triangles.
   const Mesh& get(const std::string& path);
 
@@ -106,7 +106,7 @@ class MeshCache {
   std::map<std::string, Moving> moving_;  // by the name
 };
 
-/// How many bytes of a file foreign_contents() looks at.
+/// Number of bytes of a file that foreign_contents() examines.
 constexpr std::size_t kTellingBytes = 1024;
 
 /// The Error for a path whose extension names a format that is not read: it names the format and
@@ -115,18 +115,18 @@ std::optional<Error> foreign_name(const std::string& path);
 /// The same for a file whose first bytes show such a format, whatever its name.
 std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path);
 
-/// The extension in lower case, with its dot. That of a compressed file counts with the one before
-/// it: of "a.OBJ.gz" it is ".obj.gz".
+/// The extension in lower case, with its dot; for a compressed file the last two: ".obj.gz" for
+/// "a.OBJ.gz".
 std::string lower_extension(const std::string& path);
-/// The name of a file without its folder and its extension, as lower_extension() has it.
+/// The name of a file without its folder and without lower_extension().
 std::string mesh_stem(const std::string& path);
 
-// The inside of the mesh readers: what each of them calls to put a mesh together, and the readers
-// by format. Polygons become triangles by exact signs, since exact tests answer about the triangles
-// afterwards: a triangle outside its polygon would collide with what the polygon does not touch.
+// Internals of the mesh readers: the functions that assemble a mesh, and one reader per format.
+// Polygons are triangulated with exact signs, since the triangles get exact tests: a triangle
+// outside its polygon would collide with objects that the polygon does not touch.
 
-/// Collects vertices and polygons, checks them and triangulates. `line` in its functions is 0 where
-/// there are no lines.
+/// Collects vertices and polygons, checks them and triangulates. `line` is 0 for formats without
+/// lines.
 class MeshBuilder {
  public:
   explicit MeshBuilder(std::string name);
@@ -157,14 +157,14 @@ Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// Whether the length of the bytes is what a binary STL file with their header has.
+/// Whether the bytes are as long as the header of a binary STL file says.
 bool is_binary_stl(std::string_view bytes);
 
 /// The sign of the area of the triangle a, b, c in the plane of the coordinates u and v: 1 if it
 /// turns left at b (u to the right, v up), -1 if it turns right, 0 if the three are collinear
 /// there. Exact for finite doubles of any size.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
-/// The same where rounded arithmetic is certain of the sign; 0 where turn() has to add without
+/// The same if rounded arithmetic is certain of the sign. Returns 0 where turn() has to add without
 /// rounding: three points close to a line, or products of differences that overflow or underflow.
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 using Turn = int (*)(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
@@ -176,12 +176,12 @@ enum class Triangulation {
 };
 
 /// Triangles of a polygon, as positions in `corners`: always size - 2 of them (none if too_large),
-/// in the orientation of the polygon; some may be degenerate where corners are collinear. The
-/// polygon is cut in its projection along the axis nearest to its normal, up to a factor of 2
-/// between components; the projection only drops a coordinate. A simple planar polygon is cut into
-/// triangles as `whole` says; so is one that is not planar, if its projection is simple, and one
-/// that touches itself along a seam, where that can be done. A polygon whose corners are collinear
-/// is whole. `by` is for tests of what another sign does. Precondition: 3 corners or more, finite.
+/// in the orientation of the polygon; some may be degenerate if corners are collinear. The polygon
+/// is cut in its projection along the axis nearest to its normal, up to a factor of 2 between
+/// components; the projection only drops a coordinate. The result is `whole` for a simple planar
+/// polygon, for a nonplanar one with a simple projection, for collinear corners, and, if possible,
+/// for a polygon that touches itself along a seam. `by` lets tests try another sign. Precondition:
+/// 3 corners or more, finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 

@@ -1,11 +1,11 @@
 // Wavefront OBJ and OFF, read and written; STL, read.
 //
 // OBJ: polygons, groups and objects. Materials, normals, texture coordinates, points and lines are
-// passed over; free-form surfaces are refused, since passing over them would lose geometry.
+// skipped; free-form surfaces are refused, since skipping them would lose geometry.
 //
 // OFF, as written by Geomview and its followers: a header, the counts, one vertex and one face per
-// line. Position comes first on a vertex line, so normals, colours and texture coordinates that the
-// header declares (NOFF, COFF, STOFF and their combinations) can be passed over; so can the colour
+// line. A vertex line begins with the position, so normals, colours and texture coordinates that
+// the header declares (NOFF, COFF, STOFF and their combinations) are skipped, and so is the colour
 // at the end of a face line.
 //
 // STL, ASCII and binary. A binary file may begin with "solid" too, so its length decides first,
@@ -110,7 +110,7 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Every element takes at least `bytes_each` bytes of text, the last one perhaps without its
+// Reads a count. Each element takes at least `bytes_each` bytes of text; the last one may lack its
 // newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
@@ -177,7 +177,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
     const std::int64_t size = in.integer("the number of vertices of a face");
     if (size < 0) in.fail(fmt::format("a face of {} vertices", size), "correct the face");
     corners.clear();
-    // Corner by corner, so that a false size ends with the line, not with the memory.
+    // Reads corner by corner, so that a wrong size fails at the end of the line.
     for (std::int64_t k = 0; k < size; ++k) {
       const std::int64_t index = in.integer("a vertex index of the face");
       if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices) {
@@ -224,7 +224,7 @@ std::string obj_object(const MeshPart& part, const std::string& name, std::uint6
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84;  // 80 of anything, then the number of triangles
+constexpr std::size_t kHeaderBytes = 84;  // 80 arbitrary bytes, then the number of triangles
 constexpr std::size_t kTriangleBytes =
     50;  // normal and corners as 12 floats, then 2 bytes of anything
 

@@ -131,8 +131,8 @@ Header read_header(TextReader& in) {
   }
 }
 
-// Values of the body of a file. Both kinds answer the same calls: begin and end of an element, a
-// value by its type, the fewest bytes a value can take, the bytes that are left.
+// The values of the body of a file. AsciiBody and BinaryBody have the same functions: begin and end
+// of an element, a value by its type, the fewest bytes a value can take, the bytes that are left.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextReader& in) : in_(in) {}
@@ -223,7 +223,7 @@ class BinaryBody {
   std::string name_;
 };
 
-// The length of a list, held against the bytes that are left before anyone counts on it.
+// The length of a list, checked against the bytes that are left before it is used.
 template <class Body>
 std::uint64_t list_length(Body& body, const Property& list) {
   const std::int64_t length = body.integer(*list.count, "the length of a list");
@@ -268,7 +268,7 @@ bool is_index_list(const Property& property) {
   return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-// Faces wait here until the vertices are known, since the elements may come in any order.
+// Stores faces until the vertices are known, since the elements may come in any order.
 struct Faces {
   std::vector<std::uint32_t> corners;  // of all faces, one after the other
   std::vector<std::uint32_t> sizes;

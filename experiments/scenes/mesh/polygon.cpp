@@ -1,5 +1,5 @@
-// Ear clipping (Meisters: Polygons have ears, 1975) with exact signs: a rounded sign with a bound
-// on its error first, and where that leaves a doubt, a sum without rounding.
+// Ear clipping (Meisters: Polygons have ears, 1975) with exact signs: first a rounded sign with a
+// bound on its error, and a sum without rounding if the bound leaves a doubt.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 // square of the least double. 2^32 products are below 2^(2148 + 2048 + 32).
 class ExactSum {
  public:
-  // Adds a b, or with `minus` subtracts it.
+  // Adds a b; subtracts it if `minus`.
   void add(double a, double b, bool minus = false) {
     const Parts x(a), y(b);
     Words& sum = sums_[x.negative ^ y.negative ^ static_cast<unsigned>(minus)];
@@ -38,8 +38,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // Greater for a greater absolute value, but for those that agree in their first bits: the number
-  // of the highest word that is not 0, and that word.
+  // Orders absolute values by their leading bits: the number of the highest word that is not 0, and
+  // that word.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -54,7 +54,7 @@ class ExactSum {
   }
 
  private:
-  using Words = std::array<std::uint64_t, 68>;  // the least first
+  using Words = std::array<std::uint64_t, 68>;  // least significant first
 
   // +-(high 2^32 + low) 2^(shift - 1074)
   struct Parts {
@@ -84,10 +84,10 @@ class ExactSum {
     }
   }
 
-  std::array<Words, 2> sums_{};  // of what is added and of what is subtracted
+  std::array<Words, 2> sums_{};  // of the added and of the subtracted products
 };
 
-// The plane of two coordinates, from which the polygon is seen counterclockwise.
+// The plane of two coordinates in which the polygon is counterclockwise.
 struct Plane {
   int u = 1, v = 2;
   bool has_area = true;
@@ -104,12 +104,12 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// The plane along the axis of the largest component of the normal, or of one that is half as large
-// or more. With n corners a product of two differences has three roundings and is in at most 2 n
+// The plane along the axis of the largest component of the normal, or of one at least half as
+// large. With n corners a product of two differences has three roundings and is in at most 2 n
 // sums: a relative error of each product of at most (2 n + 3) kUnit to first order, and less than
 // (4 n + 8) kUnit of the computed products with all higher orders (n < 2^32). Each of the 2 n
-// products errs by kTiny / 2 more if it underflows. Where the largest component is above that bound
-// for each of the three, it has its sign, and no other one is twice as large.
+// products errs by kTiny / 2 more if it underflows. If the largest component exceeds that bound for
+// each of the three, it has its sign, and no other one is twice as large.
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // from the first corner
@@ -148,7 +148,7 @@ bool collinear(std::span<const Vec3> points) {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// The rest of a polygon while its ears are cut off: a ring linked through next and previous.
+// The rest of a polygon after cutting off ears: a ring linked through next and previous.
 struct Ring {
   Ring(std::span<const Vec3> points, const Plane& plane, Turn given)
       : at(points),
@@ -171,8 +171,8 @@ struct Ring {
   void classify(std::uint32_t i) { reflex[i] = turn_at(i) < 0; }
   bool same(const Vec3& a, const Vec3& b) const { return a[u] == b[u] && a[v] == b[v]; }
 
-  // A convex corner whose triangle holds no reflex corner (only those can reach into it). Corners
-  // at the position of one of the three do not count: they are the seam of a polygon with a hole.
+  // Whether corner i is convex and its triangle holds no reflex corner (only those can reach into
+  // it). Corners at the position of one of the three do not count: they are the seam of a hole.
   bool is_ear(std::uint32_t i, std::uint64_t& steps) const {
     if (turn_at(i) <= 0) return false;
     const Vec3& a = at[previous[i]];
@@ -194,8 +194,8 @@ struct Ring {
     classify(next[i]);
   }
 
-  // Whether the polygon, all of whose corners turn left or not at all, goes round once: then it
-  // rises, lexicographically, to one highest corner and falls again.
+  // Whether a polygon without right turns goes round once: then it rises, lexicographically, to one
+  // highest corner and falls again.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
@@ -213,8 +213,8 @@ struct Ring {
     return falls + (before == 1 && first == -1) <= 1;
   }
 
-  // Whether the inner parts of two triangles meet, which turn left or are degenerate: no line
-  // through an edge of one has the other one beyond it.
+  // Whether the interiors of two triangles meet; both turn left or are degenerate. They do not if a
+  // line through an edge of one has the other one on its outer side.
   bool overlap(const Triangle& s, const Triangle& t) const {
     for (const auto& [x, y] : {std::pair(&s, &t), std::pair(&t, &s)}) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -227,7 +227,7 @@ struct Ring {
     return true;
   }
 
-  // Whether all of these triangles turn left or are degenerate, and none overlaps another.
+  // Whether all of these triangles turn left or are degenerate, and no two overlap.
   bool whole(std::span<const Triangle> triangles) const {
     struct Extent {
       double lo, hi;
@@ -257,13 +257,13 @@ struct Ring {
   std::vector<char> reflex;
 };
 
-// The corners times a power of two that brings the largest coordinate to [2^499, 2^500), where
+// The corners times a power of two that brings the largest coordinate to [2^499, 2^500). There
 // certain_turn() neither overflows nor underflows: a product of two differences is below 2^1002,
-// and rounds to a multiple of the least double only if it is 2^-2074 of the largest or less. The
-// corners as they are if they are large enough, or if the scaling would round one of them, which it
-// can only if a bit of one coordinate is 2^-1573 of another coordinate or less. Else every sum of
-// products of two coordinates is exactly the sum before times the square of the power of two, so
-// every sign and every comparison stays.
+// and rounds to a multiple of the least double only if it is 2^-2074 of the largest or less.
+// Returns the corners unchanged if they are large enough, or if the scaling would round one of
+// them, which requires that a bit of one coordinate is 2^-1573 of another coordinate or less.
+// Otherwise every sum of products of two coordinates is scaled exactly, by the square of the power
+// of two, so every sign and every comparison stays.
 std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& store) {
   double largest = 0;
   for (const Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -284,9 +284,9 @@ std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& s
 
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   // Each product has a relative error of at most 3 kUnit to first order, and kTiny / 2 if it
-  // underflows; the difference keeps the sign of what is subtracted. 4 kUnit of the computed
-  // products have room for the higher orders and for the roundings of the bound. Where anything
-  // overflows the bound is infinite or no number, and nothing is greater.
+  // underflows; rounding the difference keeps its sign. 4 kUnit of the computed products cover the
+  // higher orders and the roundings of the bound. If anything overflows, the bound is infinite or
+  // NaN, and the comparison is false.
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double area = left - right;
@@ -341,8 +341,8 @@ Triangulation triangulate(std::span<const Vec3> polygon, std::vector<Triangle>& 
     }
     i = ring.next[i];
   }
-  // The rest is convex or a triangle, or has no ear since it is degenerate or crosses itself: a
-  // fan.
+  // The rest is convex, a triangle, or has no ear because it is degenerate or crosses itself: cut
+  // it as a fan.
   for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k])
     triangles.push_back({i, k, ring.next[k]});
   bool whole = false;

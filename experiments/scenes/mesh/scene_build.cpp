@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
-// Rodrigues' formula. The diagonal is written k^2 + c (1 - k^2) by its other two squares, so that a
-// rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix.
+// Rodrigues' formula. The diagonal is k^2 + c (1 - k^2), with 1 - k^2 written as the other two
+// squares, so that a rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   Vec3 k = rotation.axis /
            rotation.axis.cwiseAbs().maxCoeff();  // so that squares neither overflow nor vanish
@@ -42,8 +42,8 @@ std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
           Vec3(xz - k.y() * s, yz + k.x() * s, zz + c * (xx + yy))};
 }
 
-// The part of each triangle that is connected through shared vertices, numbered by first triangle;
-// and how many.
+// Numbers the parts that are connected through shared vertices, by their first triangles. Sets the
+// part of each triangle and returns the number of parts.
 std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -140,7 +140,7 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
     part.assign(mesh.triangles.size(), 0);
   }
 
-  // Counting sort of the triangles by part, which keeps their order within each.
+  // Counting sort of the triangles by part, stable within each part.
   std::vector<std::uint32_t> size(parts, 0);
   for (const std::uint32_t p : part) ++size[p];
   const auto used = std::count_if(size.begin(), size.end(), [](std::uint32_t n) { return n > 0; });
@@ -234,8 +234,8 @@ double diagonal(const Box& box) {
   return std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
 }
 
-// Triangles by formula; nothing here depends on the platform but square roots, sines and cosines.
-// A mesh is refined by dividing its longest edge again and again; a heap orders the edges.
+// Meshes by formula; only square roots, sines and cosines depend on the platform. A mesh is refined
+// by dividing its longest edge again and again; a heap orders the edges.
 
 namespace shapes {
 
@@ -358,7 +358,7 @@ struct Edge {
   double squared = 0;  // length
   std::uint32_t a = 0, b = 0;
 
-  // Whether it comes after another.
+  // Whether it comes after another edge in the order of division.
   bool operator<(const Edge& other) const {
     if (squared != other.squared) return squared < other.squared;
     return a != other.a ? a > other.a : b > other.b;

@@ -1,5 +1,5 @@
-// Puts meshes into a scene: where an object stands and how a mesh becomes objects. Scene files and
-// built-in scenes share it, so the same numbers give the same doubles. And shapes of generated
+// Puts meshes into a scene: places them and splits them into objects. Scene files and built-in
+// scenes share this code, so the same numbers give the same doubles. Also shapes of generated
 // scenes.
 #pragma once
 
@@ -21,7 +21,8 @@
 namespace farcull {
 
 /// Scale, then rotate, then translate, each step in double and about the origin. A step that is
-/// absent or does nothing (angle 0, translation 0 along an axis) is left out, so an identity leaves
+/// absent or does nothing (angle 0, translation 0 along an axis) is skipped, so an identity changes
+/// no bit, not even of -0.0.
 /// every bit as it is, -0.0 included.
 struct Placement {
   struct Rotation {
@@ -33,7 +34,7 @@ struct Placement {
   std::optional<Vec3> translate;
 };
 
-/// Every point placed. Precondition: finite numbers and an axis that is not 0.
+/// Applies the placement to every point. Precondition: finite numbers and an axis that is not 0.
 std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement);
 
 enum class Split {
@@ -46,18 +47,17 @@ enum class Split {
 /// A scene under construction.
 class SceneBuilder {
  public:
-  /// `where` stands in errors: the scene file, or the name of the scene.
+  /// Errors name `where`: the scene file, or the name of the scene.
   SceneBuilder(std::string scene_name, std::string where);
 
   /// Appends a mesh as one object or several. Within an object triangles keep the order of the
   /// file. A part is called NAME/GROUP or NAME/1, NAME/2, ...; a mesh with a single part keeps
-  /// NAME. `self`: each part is tested against itself as well. A name that the scene has already
-  /// gets the first suffix "#2", "#3", ... that is free. Folded faces are named in Scene::folded.
-  /// Throws Error if a placed coordinate is not
-  /// finite or the scene would have more than 2^32 - 1 triangles or vertices.
+  /// NAME. `self`: each part is tested against itself as well. A name that is in use gets the first
+  /// free suffix "#2", "#3", .... Folded faces are named in Scene::folded. Throws Error if a placed
+  /// coordinate is not finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split = Split::kNone,
            const Placement& placement = {}, bool self = false);
-  /// Takes out what was added since the last part, as a scene of its own, validated. Names stay in
+  /// Takes out everything added since the last part, as a validated scene of its own. Names stay in
   /// use.
   Scene take_part();
   /// The scene, validated; the builder is spent.
@@ -77,9 +77,9 @@ class PartMaker {
  public:
   explicit PartMaker(std::span<const Vec3> vertices)
       : vertices_(vertices), number_(vertices.size(), kNone) {}
-  /// Adds a triangle to the part at hand, whose vertices come in order of first mention.
+  /// Adds a triangle to the current part, whose vertices come in order of first mention.
   void add(std::array<std::uint32_t, 3> corners);
-  /// The part, and the next one begins.
+  /// Returns the part and begins the next one.
   MeshPart take();
 
  private:
@@ -90,8 +90,8 @@ class PartMaker {
   MeshPart part_;
 };
 
-/// Appends an object with vertices of its own, as they are and unchecked; triangles name positions
-/// in `vertices`.
+/// Appends an object with vertices of its own, unchanged and unchecked. Triangles are positions in
+/// `vertices`.
 void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
@@ -107,20 +107,20 @@ double diagonal(const Box& box);
 
 // Shapes of generated scenes, the draws that place them, and finer meshes of the same surface.
 
-/// Divides the longest edge, all its triangles with it, again and again (Rivara 1984), until there
-/// are `triangles` or a few more: one division adds as many as the edge has, two on a closed
-/// surface. New vertices are midpoints, so the surface stays up to their rounding, and closed stays
-/// closed; a triangle that names a vertex twice is left as it is. Edges of equal length are taken
-/// in the order of their vertices: the same on every run. A part keeps the source face and the
-/// group of its triangle. Nothing happens to a mesh that has as many already. Precondition: mesh
-/// has a triangle.
+/// Refines a mesh to `triangles` triangles or a few more: divides the longest edge with all its
+/// triangles, again and again (Rivara 1984). One division adds as many triangles as the edge has,
+/// two on a closed surface. New vertices are midpoints, so the surface is unchanged up to their
+/// rounding, and a closed one stays closed. A triangle that names a vertex twice is left unchanged.
+/// Edges of equal length are taken in the order of their vertices: the same on every run. The parts
+/// keep the source face and the group of their triangle. Returns a mesh that has enough triangles
+/// unchanged. Precondition: mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
 
 constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
-/// Draws of points, directions and places.
+/// Random points, directions and placements.
 class Random : public RandomNumbers {
  public:
   using RandomNumbers::RandomNumbers;
@@ -143,12 +143,12 @@ class Random : public RandomNumbers {
       if (p.squaredNorm() > 0.01) return p / p.norm();
     }
   }
-  /// About as many in each octave of [2^-octaves, 1).
+  /// Uniform over the octaves of [2^-octaves, 1).
   double over_octaves(std::uint32_t octaves) {
     const auto octave = static_cast<int>(below(octaves));
     return std::ldexp(between(0.5, 1), -octave);
   }
-  /// Some orientation at `at`.
+  /// A random orientation at `at`.
   Placement anywhere(const Vec3& at) {
     const Vec3 axis = direction();
     return {.scale = {}, .rotate = Placement::Rotation{axis, between(-3, 3)}, .translate = at};
@@ -161,8 +161,8 @@ using Corners = std::array<Vec3, 3>;
 Mesh finished(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// A surface of columns * rows cells, two triangles each: vertex (i, j) is at place(i, j). closed:
-/// the last column joins the first, and so does the last row; else there is a vertex more both
-/// ways.
+/// the last column joins the first, and the last row the first row; else there is one vertex more
+/// in both directions.
 template <class Place>
 Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place& place) {
   std::vector<Vec3> vertices;
@@ -184,8 +184,8 @@ Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place
 /// Triangles that share no vertices.
 Mesh soup(const std::vector<Corners>& list);
 
-/// An icosahedron, each triangle divided into 4^level, on the unit sphere. Square roots only, so
-/// the same everywhere.
+/// An icosahedron, each triangle divided into 4^level, on the unit sphere. Uses square roots only,
+/// so it is the same on every platform.
 Mesh sphere(int level);
 
 /// Vertex i * (cells + 1) + j is (i/cells, j/cells, 0), i and j from 0 to cells; each cell is two
@@ -205,7 +205,7 @@ Mesh blob(int level, Random& random);
 
 Corners shifted(Corners corners, const Vec3& by);
 
-/// A vector of this length across another one, in a direction that is drawn.
+/// A vector of this length perpendicular to another one, in a random direction.
 Vec3 across(const Vec3& along, double length, Random& random);
 
 /// A point well inside.

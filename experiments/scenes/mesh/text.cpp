@@ -1,5 +1,5 @@
-// Reads files and tokens; numbers are converted by std::from_chars, which rounds correctly. zlib is
-// fed with pieces, and nothing is allocated because of a length that the data claim.
+// Reads files and tokens. std::from_chars converts numbers, with correct rounding. zlib is fed
+// piece by piece, and no length that the data claim is allocated.
 #include "experiments/scenes/mesh/text.h"
 
 #include <fmt/format.h>
@@ -27,8 +27,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' |
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The length of the UTF-8 sequence at `at`; 0 if the bytes are not UTF-8, as overlong forms and
-// surrogates.
+// The length of the UTF-8 sequence at `at`; 0 if the bytes are no valid UTF-8, such as overlong
+// forms and surrogates.
 std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0u;
@@ -49,7 +49,7 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
 }
 
 // Whether a well-formed decimal number that no double holds is too small rather than too large.
-// Doubles reach from 5e-324 to 2e308, so for what lies outside the sign of the decimal exponent
+// Doubles reach from 5e-324 to 2e308, so outside this range the sign of the decimal exponent
 // decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
@@ -185,7 +185,7 @@ void TextReader::skip_blanks() {
 }
 
 bool TextReader::next_line() {
-  // A continued line ends where its last part ends, so it is left token by token.
+  // A continued line ends with its last part, so all its tokens are read.
   if (started_ && rules_.continuation) {
     while (!token().empty()) {
     }
@@ -279,7 +279,7 @@ namespace {
 
 constexpr const char* kWhole = "get the whole file, or compress the mesh again with gzip";
 
-// A stream of zlib that reads gzip alone, freed with the object.
+// A zlib stream that reads gzip only; frees the stream with the object.
 class Inflater {
  public:
   Inflater() {
@@ -321,7 +321,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
   std::string_view rest = bytes;
   while (is_gzip(rest)) {
     for (int code = Z_OK; code != Z_STREAM_END;) {
-      // zlib's lengths are of 32 bits.
+      // zlib's lengths have 32 bits.
       const std::string_view input = rest.substr(0, std::size_t{1} << 30);
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
       stream.avail_in = static_cast<uInt>(input.size());
@@ -333,7 +333,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
       rest.remove_prefix(input.size() - stream.avail_in);
       check_size(text.size() + made, bytes.size(), name, limits);
       text.append(piece.data(), made);
-      // Nothing could be read or written: all has been read, and the member has not ended.
+      // No progress: all input has been read, but the member has not ended.
       if (code == Z_BUF_ERROR) {
         throw Error(
             name,
@@ -369,7 +369,7 @@ std::string gzip(std::string_view bytes) {
   std::string_view rest = bytes;
   while (code == Z_OK) {
     if (stream.avail_in == 0 && !rest.empty()) {
-      // zlib's lengths are of 32 bits.
+      // zlib's lengths have 32 bits.
       const std::size_t length = std::min<std::size_t>(rest.size(), 1u << 30);
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));
       stream.avail_in = static_cast<uInt>(length);

@@ -1,5 +1,5 @@
-// Files as bytes, for all readers: read as one buffer, compressed by gzip (RFC 1952), and as text:
-// tokens line by line with line numbers, and numbers that are rounded once, to double.
+// Files as bytes and as text, for all readers: reads a file into one buffer, decompresses gzip (RFC
+// 1952), splits text into tokens with line numbers, and rounds numbers once, to double.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace farcull {
 
-/// All bytes of a regular file. Throws Error naming the path where it is missing, is a directory or
-/// a device, cannot be read, or holds more than max_bytes.
+/// All bytes of a regular file. Throws Error naming the path if it is missing, is a directory or a
+/// device, cannot be read, or holds more than max_bytes.
 std::string read_file(const std::string& path, std::uint64_t max_bytes);
 
 /// A token for a message: in quotes, printable ASCII, cut after 40 characters.
@@ -27,9 +27,9 @@ std::string clean_name(std::string_view bytes);
 
 enum class Number { kOk, kMalformed, kNotFinite };
 
-/// A whole token as a decimal number, correctly rounded; a leading '+' is taken. What underflows
-/// becomes the nearest double (0 included). NaN, infinity and overflow are kNotFinite. value is set
-/// only with kOk.
+/// Reads a whole token as a decimal number, correctly rounded; a leading '+' is accepted. A number
+/// that underflows becomes the nearest double (0 included). NaN, infinity and overflow are
+/// kNotFinite. value is set only with kOk.
 Number parse_number(std::string_view token, double& value);
 
 /// A cursor over the lines and tokens of a text that outlives it. Tokens are separated by blanks
@@ -80,7 +80,7 @@ class TextReader {
 /// Whether the bytes begin as gzip data do: 1f 8b, and 8 for the method "deflate".
 bool is_gzip(std::string_view bytes);
 
-/// A little text can be compressed a thousand times, so a small file could fill the memory. Beyond
+/// Guards against small files that fill the memory: text can be compressed a thousand times. Beyond
 /// `free_bytes`, contents of more than `most_ratio` times the compressed size are refused.
 struct GzipLimits {
   std::uint64_t max_bytes = std::uint64_t{4} << 30;
@@ -88,14 +88,14 @@ struct GzipLimits {
   std::uint64_t most_ratio = 100;
 };
 
-/// The contents of gzip data: of one member, or of several one after the other, as `cat a.gz b.gz`
-/// and pigz write them; zeros after the last one are passed over. Checksums and lengths are
-/// compared. Throws Error naming `name` where the data are cut, damaged, followed by something
-/// else, or beyond the limits; std::bad_alloc. Precondition: is_gzip(bytes).
+/// The contents of gzip data with one member, or with several in a row, as `cat a.gz b.gz` and pigz
+/// write them. Zeros after the last member are skipped. Checksums and lengths are checked. Throws
+/// Error naming `name` if the data are cut, damaged, followed by something else, or beyond the
+/// limits; std::bad_alloc. Precondition: is_gzip(bytes).
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
 
-/// The bytes as gzip data of one member. The same bytes give the same data with the same zlib: no
-/// time and no name are in them. Throws std::bad_alloc.
+/// The bytes as gzip data of one member, without a time or a name: with the same zlib, the same
+/// bytes give the same data. Throws std::bad_alloc.
 std::string gzip(std::string_view bytes);
 
 }  // namespace farcull
