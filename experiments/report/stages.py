@@ -36,7 +36,7 @@ def run(program, scene, form):
     name, *flags = scene.split("+")
     words = ["--method", "exact"] if form == "exact" else ["--method", "far", "--boxes", form, "--device", "native",
                                                            "--resolution", str(SIDE)]
-    out = subprocess.run([program, "run", name, *words, *(f"--{flag}" for flag in flags), "--json", "-"],
+    out = subprocess.run([program, "run", name, *words, *(f"--{flag}" for flag in flags), "--no-verify", "--json", "-"],
                          capture_output=True, text=True)
     if out.returncode not in (0, 1):
         sys.exit(f"stages: {scene}, {form}: {out.stderr.strip()}")
