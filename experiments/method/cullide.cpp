@@ -181,13 +181,22 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   plan.trace.back().ms = watch.ms();
 }
 
+// Whether exact tests may take the place of drawing.
+bool may_test_instead(const RunOptions& options) {
+  return boxes_of(options) == BoxLevel::enough && promises(options) &&
+         (options.device.empty() || is_cpu(options.device));
+}
+bool tests_cost_less(const RunOptions& options, std::size_t pairs, std::size_t triangles) {
+  return may_test_instead(options) && pairs > 0 && pairs < kPairsWorthDrawing * triangles;
+}
+
 // Boxes of triangles: all pairs whose boxes overlap. False: they do not decide here.
 bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   const Stopwatch watch;
   Stage stage{.kind = StageKind::boxes, .unit = Unit::triangles};
   stage.in = stage.out = scene.triangles.size();
-  const std::optional<std::vector<TrianglePair>> pairs =
+  std::optional<std::vector<TrianglePair>> pairs =
       pairs_of_boxes(scene, options.ignored, options.neighbours, threads);
   if (!pairs) {
     stage.kind = StageKind::blocks;
@@ -196,13 +205,23 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
     plan.trace.push_back(stage);
     return false;
   }
+  stage.ran = true;
+  stage.reason = Reason::boxes_meet;
+  stage.n = pairs->size();
+  work.regions.triangles = members_of(*pairs, scene.triangles.size());
+  // Who asks objects alone is told, below, if one of them is cut.
+  if (!(options.objects_alone && has_self(scene)) &&
+      tests_cost_less(options, pairs->size(), work.regions.triangles.size())) {
+    work.pairs = {.drawn = {}, .other = *std::move(pairs)};
+    stage.out = work.regions.triangles.size();
+    stage.ms = watch.ms();
+    plan.trace.push_back(stage);
+    return true;
+  }
   // Each object is one owner, until it is known what is drawn of those that collide with
   // themselves.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
   work.regions = regions_of(scene, work.pairs->drawn);
-  stage.ran = true;
-  stage.reason = Reason::boxes_meet;
-  stage.n = pairs->size();
   stage.out = work.regions.triangles.size();
   stage.ms = watch.ms();
   plan.trace.push_back(stage);
@@ -227,20 +246,19 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
 Stage nothing_to_draw(const RunOptions& options, const DrawPlan& work) {
   Stage stage{.kind = StageKind::draw, .unit = Unit::triangles};
   const Regions& regions = work.regions;
-  const bool may_test_instead = boxes_of(options) == BoxLevel::enough && promises(options) &&
-                                (options.device.empty() || is_cpu(options.device));
   if (regions.triangles.empty()) {
     stage.reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
                        ? Reason::nothing_to_look_at
                    : work.pairs             ? Reason::no_box_pairs
                    : regions.places.empty() ? Reason::no_boxes_overlap
                                             : Reason::no_triangle_meets;
-  } else if (may_test_instead && !work.pairs) {
+  } else if (may_test_instead(options) && !work.pairs) {
     stage.reason = Reason::many_in_front;
-  } else if (may_test_instead &&
-             work.pairs->drawn.size() < kPairsWorthDrawing * regions.triangles.size()) {
+  } else if (work.pairs) {
+    const std::size_t drawn = work.pairs->drawn.size();
+    if (drawn > 0 && !tests_cost_less(options, drawn, regions.triangles.size())) return stage;
     stage.reason = Reason::few_pairs;
-    stage.n = work.pairs->drawn.size();
+    stage.n = drawn > 0 ? drawn : work.pairs->other.size();
   }
   return stage;
 }

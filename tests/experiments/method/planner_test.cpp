@@ -117,7 +117,9 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
                                {{Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}}});
   scene.triangles[1][0] = scene.triangles[0][0];
   const RunOptions far{.method = Method::far};
-  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::nothing_to_look_at);
+  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::few_pairs);
+  const RunOptions all{.method = Method::far, .boxes = BoxLevel::triangles};
+  EXPECT_EQ(stage_named(plan(scene, all), "draw").reason, Reason::nothing_to_look_at);
   EXPECT_EQ(run(scene, far).collisions.pairs.size(), 1u);
   const auto at = [](double x) {
     return std::array{Vec3(x, x, x), Vec3(x + 1, x, x), Vec3(x, x + 1, x)};
@@ -196,8 +198,7 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
 // An object of one patch has nothing to draw: the answer is that of a box join, without a device.
 TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
   int colliding = 0;
-  RunOptions options;
-  options.method = Method::far;
+  const RunOptions options{.method = Method::far, .boxes = BoxLevel::triangles};
   for (int seed = 0; seed < 20; ++seed) {
     Scene scene = lab::random_scene(seed);
     scene.objects.resize(1);
