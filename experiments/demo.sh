@@ -16,7 +16,7 @@ cd "$farcull_root"
 farcull_setup
 bash experiments/meshes.sh &
 fetching=$!
-# Where the whole program is not there yet, the first table does not wait for it.
+# If the whole program is not built yet, the first table does not wait for it.
 program=build/farcull
 if ! farcull_is_built && [[ ! -e $program ]]; then program=build/farcull_compare; fi
 farcull_build "${program##*/}"

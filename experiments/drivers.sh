@@ -105,7 +105,7 @@ measure() {
   status=0
   under "$1" timeout 3600 "$program" experiment radius --quick --resume --device software --out "$folder/results" \
     >"$folder/study.txt" 2>"$folder/study.said" || status=$?
-  # 2: some points have no answer, and are named. Then the rows that there are count.
+  # Status 2: some points have no answer, and the study names them. The other rows count.
   if ((status > 2)); then
     echo "drivers: $1: the study ended with status $status; $folder/study.said says why" >&2
     return 2
@@ -114,7 +114,7 @@ measure() {
 }
 
 assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9)
-# The probe of A10 asks whether the driver has threads, not what it draws. One that does nothing passes it.
+# The probe of A10 asks whether the driver has threads, not what it draws. So noop passes it.
 drawn_probes="p.value ->> 'assumption' <> 'A10'"
 probes_table() {
   local driver json

@@ -91,7 +91,7 @@ step() {
   say "$text (part $name, at most $limit s)"
   start=$SECONDS
   # A signal interrupts `wait`, but no command in the foreground. Children in the background ignore Ctrl-C
-  # unless they are told otherwise; timeout passes on what it gets.
+  # unless they are told otherwise; timeout passes on the signals that it gets.
   env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
   child=$!
   wait "$child" || status=$?
@@ -186,7 +186,7 @@ if [[ ! -e $out/results/results.sqlite ]]; then
 elif ! "${FARCULL_PYTHON:-/usr/bin/python3}" -c 'import matplotlib, pandas' 2>/dev/null; then
   missing+=("report (of the studies): left out, python3-matplotlib and python3-pandas are not here; elsewhere: farcull report DIR/results")
 else
-  # It is not part of the budget, since it shows what the budget was spent on. It takes a minute.
+  # The report is not part of the budget, since it shows what the budget was spent on. It takes a minute.
   budget=$((budget + 600))
   step report 1 "the report of the studies" build/farcull report "$out/results" --device "$device"
 fi

@@ -25,11 +25,11 @@ farcull_packages+=(libccd-dev libgts-dev)
 if ! command -v npm >/dev/null; then farcull_packages+=(nodejs npm); fi
 if ((${#quick[@]} == 0)); then farcull_packages+=(libvtk9-dev libopen3d-dev); fi
 farcull_setup
-# What was installed since the last time is found only if CMake looks again.
+# CMake finds libraries that were installed since the last time only if it looks again.
 [[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
 
-# Without them the contestant is named as missing.
+# Without these packages of npm the contestant three-mesh-bvh is named as missing.
 mkdir -p build/contestants
 if [[ ! -e build/contestants/node_modules/three-mesh-bvh ]]; then
   (cd build/contestants && npm install --no-audit --no-fund three@0.187.0 three-mesh-bvh@0.9.17) ||

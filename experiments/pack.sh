@@ -6,8 +6,8 @@
 #   bash experiments/pack.sh [DIR]               default build/farcull-packed
 #   bash experiments/pack.sh --built [DIR]       takes build/farcull and build/meshes as they are
 # Copy DIR there, and run: bash DIR/hardware.sh [OPTIONS OF experiments/hardware.sh]
-# The test suite is not in it, and no Python: without python3-matplotlib and python3-pandas there, what is measured
-# is in its archive, and here `farcull report` makes the report of it.
+# The folder has neither the test suite nor Python. If python3-matplotlib and python3-pandas are missing there, the
+# archive has the measurements without a report, and `farcull report` makes the report of them here.
 # Exit status: 0; 2 the folder could not be made, or is larger than 60 MiB.
 set -euo pipefail
 
@@ -43,8 +43,8 @@ cp -r experiments/report "$packed/share/farcull/"
 strip -o "$packed/build/program" build/farcull
 echo "of $(build/farcull --version)" >"$packed/packed"
 
-# The C and C++ runtimes belong to the system: its driver may need newer ones than ours. They are taken from
-# here only where the system's are too old for the program.
+# The C and C++ runtimes are those of the system there: its driver may need newer ones than ours. Our copies
+# are used only if the system's are too old for the program.
 while read -r library; do
   case ${library##*/} in
     libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | libstdc++.so* | libgcc_s.so* | ld-linux*)
@@ -53,7 +53,7 @@ while read -r library; do
     *) cp -L "$library" "$packed/build/libraries/" ;;
   esac
 done < <(ldd build/farcull | grep -oE '/[^ ]+')
-# epoxy opens these by name. Where the system has them, its own are used.
+# epoxy opens these libraries by name. Our copies are used only if the system lacks them.
 mkdir "$packed/build/dispatch"
 for library in libEGL.so.1 libOpenGL.so.0 libGLdispatch.so.0; do
   found=$(ldconfig -p | sed -n "s|.*$library .*x86-64.* => ||p" | head -n 1)

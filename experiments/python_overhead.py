@@ -4,9 +4,9 @@
     PYTHONPATH=build/python /usr/bin/python3 experiments/python_overhead.py build/farcull_python_overhead
 
 A second argument is the scene (default two-bunnies), a third the number of rounds. In each round every kind of call
-is made once, in an order that is drawn, so that what else the machine does meets all of them. Printed are the median
-of C++ and, for each type of index, the median over the rounds of the time divided by that of C++ in the same round,
-and the quartiles of this.
+is made once, in a random order, so that other load on the machine meets all of them. It prints the median of C++ and,
+for each type of index, the median and the quartiles over the rounds of the time divided by that of C++ in the same
+round.
 """
 
 import random

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# far-pairs on fields of 10^4 to 10^7 triangles of constant density. It prints time, memory beyond the input, candidates for each true
-# pair, and the exponent of time over triangles: the slope of a least-squares line through the logarithms, 1 for linear growth. The
-# arguments are the numbers of triangles.
+# Measures far-pairs on fields of 10^4 to 10^7 triangles of constant density. Prints time, memory beyond the input, candidates for
+# each true pair, and the exponent of time over triangles: the slope of a least-squares line through the logarithms, 1 for linear
+# growth. The arguments are the numbers of triangles.
 #   SCENE=crumpled bash experiments/scaling.sh 10000 100000 1000000     another scene that takes a number
 set -euo pipefail
 

@@ -1,7 +1,7 @@
-// How offsets fit solids and rectangles to the corners of a primitive, in doubles. One text for scalars, where a primitive may
-// have any number of corners, and for lanes, where each lane is a triangle of its own. FAR_NEAREST rounds to float; dvec3,
-// min, max, abs and sqrt are those of GLSL, and offsets/rounding.h has the constants. Include it as offsets/offsets.cpp and
-// offsets/lanes.cpp do.
+// Fits the offsets' solids and rectangles to the corners of a primitive, in doubles. This file compiles for scalars, where a
+// primitive may have any number of corners, and for lanes, each of which holds one triangle. FAR_NEAREST rounds to float;
+// dvec3, min, max, abs and sqrt are those of GLSL, and offsets/rounding.h has the constants. Include this file as
+// offsets/offsets.cpp and offsets/lanes.cpp do.
 
 // ---- vectors ----
 
@@ -30,7 +30,7 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 // subnormal floats.
 FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
-// Floats beyond z -+ radius, the rounding of these very lines included.
+// A float below z - radius and one above z + radius, whatever the rounding errors of these functions.
 FAR_KERNEL double fit_below(double z, double radius) {
   return fit_down(z - radius - kFitDepth * (abs(z) + radius));
 }
@@ -221,8 +221,8 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
     solid[4 * i + 6] = v.z;
     solid[4 * i + 7] = 0.0;
   }
-  // The subtraction rounds too: 2^-53 of |d| per axis, within the second term. Components below 2^-511 square to less than a
-  // normal double: the third.
+  // The subtraction rounds too, by 2^-53 of |d| per axis: the second term covers that. The third covers components below
+  // 2^-511, whose squares are less than a normal double.
   const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
   solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));
   solid[11] = fit_above(hi.z, radius);

@@ -1,4 +1,4 @@
-// The kernels of obb.glsl and minkowski.glsl, and the text of fit.inl, on the lanes of this
+// Compiles the kernels of obb.glsl and minkowski.glsl, and fit.inl, for the lanes of this
 // processor.
 #include <array>
 

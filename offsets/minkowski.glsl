@@ -1,5 +1,5 @@
-// Entry and exit of the line through a pixel centre with a triangle fattened by a ball, widened outward. One text for GLSL
-// and C++; offsets/slab.glsl stands before it.
+// Entry and exit of the line through a pixel centre with a triangle fattened by a ball, widened outward. This file compiles
+// as GLSL and as C++, after offsets/slab.glsl.
 //
 // The solid: hull(v0, v1, v2) + ball(r), cut by zlo <= z <= zhi; a degenerate triangle makes it a capsule or a ball.
 //   s0 = (m, zlo), s1 = (v0 - m, r), s2 = (v1 - m, zhi), s3 = (v2 - m, -); r <= 2^20

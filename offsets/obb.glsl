@@ -1,5 +1,5 @@
-// Entry and exit of the line through a pixel centre with an oriented box, widened outward. One text for GLSL and
-// C++; offsets/slab.glsl stands before it.
+// Entry and exit of the line through a pixel centre with an oriented box, widened outward. This file compiles as
+// GLSL and as C++, after offsets/slab.glsl.
 //
 // The solid: three slabs |a.x (x - m.x) + a.y (y - m.y) + a.z (z - m.z)| <= h, cut by zlo <= z <= zhi.
 //   s0 = (m, zlo), s1 = (a0, h0), s2 = (a1, h1), s3 = (a2, h2), s4 = (zhi, -, -, -)

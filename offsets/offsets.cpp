@@ -16,7 +16,7 @@
 
 namespace farcull {
 
-// ---- the text of fit.inl on scalars ----
+// ---- fit.inl on scalars ----
 
 namespace fit {
 
@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = std::tuple_size_v<decltype(Patch::corners)>;
 
-// The points as the text takes them.
+// The points as fit.inl takes them.
 struct Points {
   explicit Points(std::span<const Vec3> from) : count(static_cast<int>(from.size())) {
     if (from.empty() || from.size() > kMostPoints) throw std::logic_error("fit: too many points");
@@ -172,8 +172,8 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// Now and then the worst device chooses better normals than this machine. This machine's floats are
-// among those that GLSL allows, so they bound it too.
+// The normals that the worst device chooses may give a wider interval than those of this machine.
+// GLSL allows this machine's floats too, so the narrower of the two bounds is taken at each end.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

@@ -26,7 +26,7 @@ constexpr double kFitDepth = 0x1p-50;
 constexpr double kFitBox = 0x1p-48;
 /// Error of the difference of a corner and the centre, relative to its length.
 constexpr double kFitCorner = 0x1p-50;
-/// The same if squares underflow (px).
+/// Error of that difference if squares underflow (px).
 constexpr double kFitUnderflow = 0x1p-500;
 /// Error of the radius that grows by the largest displacement of a corner.
 constexpr double kFitRadius = 0x1p-48;

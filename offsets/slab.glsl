@@ -1,11 +1,11 @@
-// A line through a pixel centre along z, cut with slabs and halfspaces; every bound is widened outward. One text for GLSL and
-// C++, before the text of an offset.
+// Cuts a line through a pixel centre along z with slabs and halfspaces; every bound is widened outward. This file compiles as
+// GLSL and as C++, before the file of an offset.
 //
 // A pixel may be a lane of a vector (core/native/glsl_lanes-inl.h). So a FAR_BOOL may differ from lane to lane and chooses by
 // FAR_SELECT, where both sides are computed; `if` asks only what is the same for all pixels of a solid, by FAR_UNIFORM.
 //
-// With u = 2^-23 per operation in any rounding mode, 2.5 u for a division (GLSL 4.50, 4.7.1; |divisor| >= 2^-20 here, the
-// quotient < 2^126), and results below 2^-126 flushed. The constants are derived in docs/budget.md, "The oriented box".
+// An operation errs by u = 2^-23 in any rounding mode, a division by 2.5 u (GLSL 4.50, 4.7.1; |divisor| >= 2^-20 here, the
+// quotient < 2^126); results below 2^-126 may be flushed. The constants are derived in docs/budget.md, "The oriented box".
 
 #ifndef FAR_WIDEN  // 0 in the test that shows what happens without the widening
 #define FAR_WIDEN 1.0f

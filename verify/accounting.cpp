@@ -1,18 +1,18 @@
-// Every pair of triangles that counts is met exactly once, alone or in a product, by joining a tree
-// of boxes with itself. The upper levels of the tree divide objects, the lower ones the triangles
-// of one object; so two subtrees that have no node in common below their parent hold different
-// objects, unless one object holds both, where they are joined iff it is `self`. Two nodes whose
-// boxes are far enough apart settle |a| * |b| pairs at once. Boxes are minima and maxima of the
-// coordinates. Two of them are compared by one difference in double against the clearance. Its
-// rounding is monotone: "apart" is proved, and nodes that are apart hold only triangles that are.
-// The order in which the tree divides changes the speed, never the answer.
+// A tree of boxes is joined with itself, which meets every pair of triangles that counts exactly
+// once, alone or in a product. The upper levels of the tree divide objects, the lower ones the
+// triangles of one object. So two disjoint subtrees hold different objects, or triangles of one
+// object; the latter are joined iff the object is `self`. Two nodes whose boxes are far enough
+// apart settle |a| * |b| pairs at once. Boxes are minima and maxima of the coordinates. One
+// difference in double is compared with the clearance. Rounding is monotone, so "apart" is proved,
+// and nodes that are apart hold only triangles that are apart. The order in which the tree divides
+// changes the speed, never the answer.
 //
-// Why not a sweep along one axis: it tests every pair that overlaps on that axis, 1.4e8 on two
-// bunnies and all 1.1e10 for bundles of long parallel needles (37 s; the tree 0.07 s on both). The
-// tree is as short to state, and because it counts what it passes over, the classes add up only if
-// no pair was lost. A pair that the tree lost and another that it met twice would add up: so the
-// pairs whose boxes overlap are enumerated a second time, by the certificate's BoxPairs, and
-// compared.
+// A sweep along one axis would test every pair that overlaps on that axis: 1.4e8 on two bunnies,
+// and all 1.1e10 for bundles of long parallel needles (37 s; the tree takes 0.07 s on both). The
+// tree is as short to state, and it counts the pairs that it passes over, so the classes add up
+// only if no pair was lost. They would also add up if the tree lost one pair and met another twice.
+// So the certificate's BoxPairs enumerates the pairs whose boxes overlap a second time, and the two
+// sets are compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@
 
 namespace farcull {
 
-// ---- sets of pairs: the sum is over hashes of the pairs, which SplitMix64's finalizer makes ----
+// ---- sets of pairs: the sum is over hashes of the pairs, made by SplitMix64's finalizer ----
 
 void PairSet::add(const TrianglePair& pair) {
   ++count;
@@ -56,7 +56,7 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
 
 namespace {
 
-// Triangles of a leaf; a trade between nodes and tests of single boxes.
+// Triangles of a leaf: more of them make fewer nodes, but more tests of single boxes.
 constexpr std::uint32_t kLeafSize = 4;
 // Pairs decided at a time, so that no list of overlaps is ever stored.
 constexpr std::size_t kChunk = 1 << 18;
@@ -79,8 +79,8 @@ void include(Bounds& bounds, const Bounds& other) {
   }
 }
 
-/// False iff a difference of coordinates along an axis exceeds the clearance. With clearance 0 that
-/// is a comparison: a difference of unequal doubles is not 0.
+/// False iff a difference of coordinates along an axis exceeds the clearance. Exact with clearance
+/// 0, since the difference of unequal doubles is never 0.
 bool meet(const Bounds& a, const Bounds& b, double clearance) {
   for (int axis = 0; axis < 3; ++axis) {
     if (b.lo[axis] - a.hi[axis] > clearance || a.lo[axis] - b.hi[axis] > clearance) return false;
@@ -105,7 +105,7 @@ struct Node {
   std::uint32_t count = 0;
   std::uint32_t left = kNone;  // kNone: a leaf
   std::uint32_t right = kNone;
-  bool within = false;  // pairs of its own triangles may count
+  bool within = false;  // pairs of two triangles of this node may count
 };
 
 /// Moves the half of the items with the smaller centres to the front, along the axis on which the
@@ -154,8 +154,8 @@ class Tree {
     if (!objects.empty()) root_ = build_objects(objects);
   }
 
-  /// visit(a, b) for each pair that counts whose bounds meet, in no particular order of a and b;
-  /// returns the number of those that do not.
+  /// Calls visit(a, b), with a and b in any order, for each pair that counts and whose bounds meet;
+  /// returns the number of pairs that count and whose bounds do not meet.
   template <typename Visit>
   std::uint64_t join(Visit& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
@@ -260,7 +260,8 @@ class Tree {
   std::uint32_t root_ = kNone;
 };
 
-/// Pairs of objects that are ignored. Written anew, as the culling code uses core/scene/scene.
+/// Pairs of objects that are ignored. Does not use core/scene/scene for this, since the culling
+/// code does.
 class Ignored {
  public:
   Ignored(const Scene& scene, std::span<const ObjectPair> pairs)
@@ -282,7 +283,7 @@ class Ignored {
 
  private:
   std::set<ObjectPair> pairs_;
-  std::uint64_t triangles_ = 0;  // pairs of them
+  std::uint64_t triangles_ = 0;  // pairs of triangles of ignored objects
 };
 
 std::vector<std::uint32_t> owners_of(const Scene& scene) {
@@ -296,7 +297,7 @@ std::vector<std::uint32_t> owners_of(const Scene& scene) {
   return owner;
 }
 
-/// The kept pairs with a lookup: those of triangle a lie in [starts[a], starts[a + 1]).
+/// The kept pairs with a lookup: the pairs (a, b) of triangle a lie in [starts[a], starts[a + 1]).
 class Kept {
  public:
   Kept(const Scene& scene, const std::vector<std::uint32_t>& owner, const Ignored& ignored,
@@ -329,8 +330,8 @@ class Kept {
   std::vector<std::size_t> starts_;
 };
 
-/// Products of the sizes of different objects, and n (n - 1) / 2 for an object that is self; below
-/// 2^63 for 32-bit n.
+/// The number of pairs that count: the products of the sizes of different objects, and n (n - 1) /
+/// 2 for each object that is `self`. It is below 2^63 for 32-bit n.
 std::uint64_t pairs_that_count(const Scene& scene) {
   std::uint64_t before = 0;
   std::uint64_t pairs = 0;
@@ -428,8 +429,8 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   const std::vector<Bounds> bounds = bounds_of_triangles(scene);
   const std::uint64_t disjoint = Tree(scene, bounds, clearance).join(visit);
   unkept.decide();
-  // A kept pair with disjoint boxes is a mistake upstream, but it counts as kept: it leaves the
-  // class that comes later.
+  // A kept pair with disjoint boxes is a mistake of the culling. It counts as kept, so it is
+  // subtracted from certified_by_boxes.
   const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(
       kept.begin(), kept.end(),
       [&](const TrianglePair& pair) { return !meet(bounds[pair.a], bounds[pair.b], clearance); }));
@@ -437,7 +438,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   if (result.pairs_kept != kept.size()) {
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
   }
-  // The tree counts pairs of whole nodes; ignored pairs are in these counts.
+  // The tree counts pairs of whole nodes, ignored pairs included.
   const std::uint64_t ignored_disjoint = result.ignored - ignored_overlapping;
   result.certified_by_boxes = disjoint - kept_disjoint - ignored_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");

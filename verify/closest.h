@@ -17,8 +17,8 @@
 
 namespace farcull {
 
-/// The square of a distance, a rational number >= 0, nothing rounded. Values are shared and never
-/// change.
+/// The exact square of a distance, a rational number >= 0. Copies share one value, which never
+/// changes.
 class SquaredDistance {
  public:
   SquaredDistance();  // 0
@@ -50,26 +50,27 @@ struct Feature {
 };
 /// "vertex 2", "edge 0" or "face".
 std::string to_string(const Feature& feature);
-/// As certificates number them: 0 to 2 the corners, 3 to 5 the edges, 6 the face.
+/// The number of a feature in certificates: 0 to 2 the corners, 3 to 5 the edges, 6 the face.
 constexpr std::uint8_t number_of(const Feature& feature) {
   return static_cast<std::uint8_t>(3 * static_cast<int>(feature.kind) + feature.index);
 }
 
-/// Two closest points of two triangles. Where several pairs of points are as near, as of parallel
-/// edges or of triangles that overlap, it is the pair on the first features: the least feature of a
-/// on which a closest point lies, and of these points' partners the least feature of b. Each of the
-/// two counts with its boundary. This is one pair of points (verify/closest_points.cpp).
+/// Two closest points of two triangles. If several pairs of points are equally near, as for
+/// parallel edges or triangles that overlap, the features choose among them: first the least
+/// feature of a on which a closest point lies, then the least feature of b on which a partner of
+/// such a point lies. Features include their boundary. Only one pair of points remains
+/// (verify/closest_points.cpp).
 struct Closest {
   SquaredDistance squared;
   double distance = 0;              // squared.root()
   std::array<Vec3, 2> points;       // the point of a and of b, each coordinate rounded once to the
                                     // nearest double; never -0.0
-  std::array<Feature, 2> features;  // that the exact points lie on
+  std::array<Feature, 2> features;  // the exact points lie on these
 };
 
-/// Closest points of the closed triangles. Where they share a point: distance 0, and a common point
-/// twice. The answer depends on the corners and their order alone. With a and b exchanged the
-/// distance is the same; so are the points, unless others are as near.
+/// Closest points of the closed triangles. If the triangles share a point, the distance is 0 and
+/// both points are one common point. The answer depends on the corners and their order alone. With
+/// a and b exchanged the distance stays the same, and so do the points unless others are as near.
 Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The square of the distance alone.
@@ -80,8 +81,8 @@ struct NearestPair {
   TrianglePair pair;
   Closest closest;
 };
-/// Nearest of the pairs of a scene; empty where there is no pair. Throws std::logic_error if a pair
-/// names a triangle that the scene does not have.
+/// The nearest of these pairs of triangles; empty if `pairs` is empty. Throws std::logic_error if a
+/// pair names a triangle that the scene does not have.
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

@@ -1,9 +1,9 @@
-// Two closest points of two features, by the condition that their difference is perpendicular to
-// both: in integers, nothing rounded. For verify/closest_points.cpp, which derives how the answer
-// for triangles follows.
+// Finds two closest points of two features (corner, edge or face of a triangle): the points whose
+// difference is perpendicular to both features. In integers, so nothing is rounded. For
+// verify/closest_points.cpp alone, which derives the answer for triangles from this.
 //
-// Corners are integers of one scale. A point of a feature is a corner plus multiples of edges from
-// it, the multiples fractions with one denominator for both points (Found::below).
+// Corners are integers of one scale. A point of a feature is a corner plus multiples of the edges
+// from that corner. The multiples of both points are fractions with one denominator (Found::below).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -55,11 +55,11 @@ struct Found {
   // Per triangle, a and b. Edge: the multiple of the edge. Face: the multiples of the edges from
   // corner 0 to corners 1 and 2. Vertex: not used.
   std::array<std::array<Integer, 2>, 2> multiples;
-  bool inside = false;  // neither point lies on an edge or a corner that is less than its feature
+  bool inside = false;  // neither point lies on the boundary of its feature
 };
 
-// Each of these looks for such a pair, and answers whether there is just one in the closed
-// features. Where it is false the contents of `f` do not count.
+// Each of these functions looks for such a pair of points. It returns true if the closed features
+// have exactly one such pair, which it writes to `f`; if it returns false, `f` has no meaning.
 
 template <class Integer>
 bool vertex_vertex(const Vector<Integer>& p, const Vector<Integer>& q, Found<Integer>& f) {
@@ -89,8 +89,9 @@ bool vertex_edge(const Vector<Integer>& p, const Vector<Integer>& q, const Vecto
   return true;
 }
 
-/// From the corner p to the face of t. With n = e x f and p - t0 = l e + m f + h n, it is
-/// (p - t0) x f = l n + ..., and the rest is perpendicular to n; m follows in the same way.
+/// From the corner p to the face of t. Let e and f be the edges from corner 0, n = e x f, and p -
+/// t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f, and n x f is perpendicular to n, so the
+/// scalar product with n gives l; m follows in the same way.
 template <class Integer>
 bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Integer>& f) {
   const Vector<Integer> to_1 = minus(t[1], t[0]);
@@ -114,7 +115,7 @@ bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Inte
   return true;
 }
 
-/// From the edge p to p_end to the edge q to q_end. Parallel ones have no single pair.
+/// From the edge p to p_end to the edge q to q_end. Parallel edges have no single pair.
 template <class Integer>
 bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vector<Integer>& q,
                const Vector<Integer>& q_end, Found<Integer>& f) {
@@ -139,7 +140,8 @@ bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vec
   return true;
 }
 
-/// True if the edge from p to p_end passes through the face of t, not along it: the distance is 0.
+/// True if the edge from p to p_end crosses the plane of t in one point, within the face: the
+/// distance is 0.
 template <class Integer>
 bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Corners<Integer>& t,
                Found<Integer>& f) {
@@ -169,7 +171,8 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   return true;
 }
 
-/// That of a feature of a and one of b. A face and a face have no single pair.
+/// Looks for the pair of points of a feature of a and a feature of b. Two faces never have a single
+/// pair.
 template <class Integer>
 bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>& b,
           const Feature& of_b, Found<Integer>& f) {
@@ -208,16 +211,15 @@ Vector<Integer> point_of(const Corners<Integer>& t, const Feature& feature, cons
   return out;
 }
 
-// The features that two closest points probably lie on, in doubles (Ericson, Real-Time Collision
-// Detection, 2005, sections 5.1.5 and 5.1.9). Nothing is proved here: verify/closest_points.cpp
-// does that.
+// Guesses in doubles on which features two closest points lie (Ericson, Real-Time Collision
+// Detection, 2005, sections 5.1.5 and 5.1.9). verify/closest_points.cpp proves the guess.
 
 struct Guess {
   double squared = std::numeric_limits<double>::infinity();
   Feature of_a, of_b;
 };
 
-/// Edge i at parameter s: the edge, or the corner at its end.
+/// The feature at parameter s of edge i: the edge, or the corner at an end.
 inline Feature on_edge(int i, double s) {
   if (s <= 0) return {FeatureKind::vertex, static_cast<std::uint8_t>(i)};
   if (s >= 1) return {FeatureKind::vertex, static_cast<std::uint8_t>(edge_end(i))};
@@ -226,8 +228,8 @@ inline Feature on_edge(int i, double s) {
 
 inline double in_unit(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
-/// Edge i of a and edge j of b, given as corners and differences between them. Nearly parallel
-/// edges are closest at an end, or nearly so.
+/// Updates the guess with edge i of a (from a[i] along u) and edge j of b (from b[j] along v). If
+/// the edges are nearly parallel, an end is closest or nearly so.
 inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
                         const std::array<Vec3, 3>& b, const Vec3& v, int j, Guess& guess) {
   const Vec3 w = a[i] - b[j];
@@ -243,7 +245,8 @@ inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
   if (squared < guess.squared) guess = {squared, on_edge(i, s), on_edge(j, t)};
 }
 
-/// Corner p over the face of t. True where that is nearer than the guess.
+/// True if corner p lies over the face of t and is nearer to it than the guess; then stores the
+/// square of the distance in the guess.
 inline bool guess_face(const Vec3& p, const std::array<Vec3, 3>& t, Guess& guess) {
   const Vec3 e = t[1] - t[0], f = t[2] - t[0], w = p - t[0];
   const Vec3 n = e.cross(f);

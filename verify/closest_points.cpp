@@ -20,42 +20,45 @@
 
 namespace farcull {
 
-// Doubles guess the features, integers prove them; where that fails all features are tried.
+// Doubles guess the features, integers prove the guess; if it is wrong, all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
-// power of two that makes them integers; whatever follows adds, subtracts and multiplies those.
+// power of two that makes them integers; all that follows adds, subtracts and multiplies integers.
 //
 // Which answer. Triangles are convex, so the difference w = q - p is the same for all pairs (p, q)
-// of closest points, and p runs through P: the part that a has in common with b moved by -w. Here
-// features have their boundary: an edge its ends, a face its edges. The answer is the first pair of
-// a feature F of a and a feature G of b, by F and then by G, such that some p on F and q on G are
-// closest points. These are the only such points on F and G:
+// of closest points, and the set of all p is P: the common part of a and of b moved by -w. Here
+// features include their boundary: an edge its ends, a face its edges. The answer is the first pair
+// of a feature F of a and a feature G of b, by F and then by G, such that some p on F and q on G
+// are closest points. F and G have only one such pair of points:
 //  - F is a corner: p is that corner.
 //  - F is an edge: no corner of a is in P, or F would be that corner. Suppose that P contains more
-//    than one point of F: a segment that does not reach the ends of F. It ends where b does. At
-//    such an end is a corner of b, and G is a corner: one point. Or an edge of b crosses F there,
-//    and no corner of b is on F: G is an edge that is not parallel to F: one point.
-//  - F is the face: no point of a's edges is in P, so P is as large as b moved, or as the part of b
-//    in the plane of a. G is a corner of b; or b passes through the plane, and G is the first of
-//    its edges that do: one point.
+//    than one point of F. These points are a segment that does not reach the ends of F, so it ends
+//    where b (moved by -w) ends. If a corner of b is at such an end, G is a corner: one point. Else
+//    an edge of b crosses F there, and no corner of b is on F. Then G is an edge that is not
+//    parallel to F: one point.
+//  - F is the face: no point of a's edges is in P, so P is all of b, moved, or all of b's part in
+//    the plane of a. Then G is a corner of b; or b passes through the plane, and G is the first
+//    edge of b that does: one point.
 // Each point is inside its feature: on no corner or edge that comes earlier. The squared distance
-// of a point of the line or plane of F and one of G is a polynomial of degree 2. It has a least
-// value inside F and G at one pair of points only, so it has no other least one at all, and the
-// equations that find() of verify/closest_features.h solves have this one solution. For any other
-// features find() gives points of theirs or nothing, never something nearer. So the answer is the
-// first of the least that find() gives for all pairs of features in order.
+// from a point of the line or plane of F to a point of that of G is a polynomial of degree 2.
+// Inside F and G it takes its least value at only one pair of points, so it takes it nowhere else,
+// and the equations that find() of verify/closest_features.h solves have this one solution. For any
+// other features find() gives points of these features or nothing, never points that are nearer. So
+// the answer is the first of the nearest points that find() gives for all pairs of features in
+// order.
 //
 // Proof of a guess. Let p be a point of a, q one of b, and w = q - p not 0. They are closest points
 // iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. If this
 // holds, the triangles lie on both sides of the slab between the planes through p and q that are
-// perpendicular to w, so no points are nearer. If it does not, p moves nearer to q on the way to x,
-// or q to p on the way to y. All closest points of a lie in the hull of the corners x at which that
-// product is 0, those of b likewise. So a guess is the answer if these are just the corners of F
-// and of G, if p and q are inside F and G, and if F or G is a corner or both are edges that are not
-// parallel. Else the features of these corners are tried in order, until some are as near.
+// perpendicular to w, so no points are nearer. If it does not hold, p comes nearer to q on the way
+// to some x, or q nearer to p on the way to some y. All closest points of a lie in the hull of the
+// corners x whose product is 0, and those of b in the hull of such y. So a guess is the answer if
+// these corners are just those of F and of G, if p and q are inside F and G, and if F or G is a
+// corner or both are edges that are not parallel. Else the features of these corners are tried in
+// order, until two of them are as near.
 //
-// Doubles only choose what to try, and leave out features that are provably not closest. So no
-// rounding reaches the answer but the last one.
+// Doubles only choose what to try, and leave out features that are provably not closest. So only
+// the last rounding changes the answer.
 
 namespace {
 
@@ -77,7 +80,7 @@ constexpr std::array<Feature, 7> kFeatures = {{{FeatureKind::vertex, 0},
                                                {FeatureKind::edge, 2},
                                                {FeatureKind::face, 0}}};
 
-/// The exponent of the lowest bit of x, not 0.
+/// The exponent of the lowest bit of x that is 1. Precondition: x is not 0.
 int lowest_bit(double x) {
   int exponent = 0;
   const auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
@@ -132,8 +135,8 @@ struct Answer {
   Found<Integer> found;
 };
 
-/// Bit i is set if d.(x - p) is 0 for corner i, x, of t; p is a corner of t that belongs to the
-/// feature. Returns 8 if the product is above 0 for some corner. back: d is turned round.
+/// Bit i is set if d.(x - p) is 0, where x is corner i of t and p a corner of the feature of t.
+/// Returns 8 if the product is above 0 for some corner. back: with -d in place of d.
 unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
   constexpr unsigned kBeyond = 8;
   const unsigned own = corners_of(feature);
@@ -153,7 +156,8 @@ bool as_near(const Found<Integer>& f, const Found<Integer>& g) {
   return f.num * g.den == g.num * f.den;
 }
 
-/// The first pair of features of these corners that has points as near as `least`.
+/// Finds the first pair of features that has points as near as `least`. The features may have only
+/// the corners in_a of a and in_b of b. False: there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
                    Answer& answer) {
   for (const Feature& f : kFeatures) {
@@ -183,19 +187,19 @@ Boxes boxes_of(const std::array<Vec3, 3>& t) {
   return out;
 }
 
-/// Farther along an axis than `most`: rounding a difference does not bring it below a double that
-/// it is above.
+/// True only if the boxes are farther apart along an axis than `most`: rounding is monotone, so a
+/// rounded difference above a double proves the exact difference above it.
 bool farther(const Box& a, const Box& b, double most) {
   return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
 }
 
-/// At least the distance.
+/// An upper bound of the distance.
 double upper_bound(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   if (filter_planes(a, b) == Triage::yes) return 0;
   return filters::distance_bounds<FilterBounds>(a, b).upper;
 }
 
-/// The first least one of all pairs of features.
+/// Tries all pairs of features in order; returns the first with the least distance.
 Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   const double most = upper_bound(a, b);
   const Boxes a_boxes = boxes_of(a), b_boxes = boxes_of(b);
@@ -291,20 +295,23 @@ SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<
   return squared(pair, solve(pair, a, b).found);
 }
 
-// The nearest of many pairs. Bounds in doubles leave the pairs that can be the nearest one; their
-// squared distances are compared exactly.
+// Finds the nearest of many pairs. Bounds in doubles leave the pairs that can be the nearest one;
+// the squared distances of these are compared exactly.
 //
-// Mostly these are the triangles around one corner or edge, which have the same two closest points.
-// Let F and G be the features of closest points of a pair that was solved, and w their difference.
-// Another pair whose triangles have the corners of F and of G has points as near. It has no nearer
-// ones if w . (x - p) < 0 for its other corners x on the side of p, and w . (y - q) > 0 for those
-// on the side of q (above), where p and q may be any corners of F and G, since w is
-// perpendicular to both. This is decided in doubles where rounding leaves no doubt. The computed w
-// is the difference of two rounded points: off by u (|p| + |q|) and by u |w| more per axis, u =
-// 2^-53. With x - p, off by u of itself, products and sums, the computed product is off by less
-// than 5.1 u |w|.|x - p| + 1.1 u (|p| + |q|).|x - p|; kTie and kTiePoints are larger, also than
-// the roundings of these bounds. A subnormal coordinate is off by 2^-1075 instead, which
-// kTieSubnormal covers, and kTieAbsolute the underflow of products.
+// Mostly these pairs are of triangles around one corner or edge, and have the same two closest
+// points. Let F and G be the features of closest points of a pair that was solved, and w the
+// difference of these points. If the triangles of another pair have the corners of F and of G, the
+// pair has points as near. It has no nearer points if w . (x - p) < 0 for the other corners x of
+// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G ("Proof
+// of a guess"). Here p and q may be any corners of F and G, since w is perpendicular to both
+// features.
+//
+// Doubles decide this if rounding leaves no doubt. The computed w is the difference of two rounded
+// points: off by u (|p| + |q|) and by u |w| more per axis, u = 2^-53. x - p is off by u of itself.
+// With products and sums the computed product is off by less than 5.1 u |w|.|x - p| +
+// 1.1 u (|p| + |q|).|x - p|; kTie and kTiePoints are larger, and cover the roundings of these
+// bounds, too. A subnormal coordinate is off by 2^-1075 instead, which kTieSubnormal covers.
+// kTieAbsolute covers the underflow of products.
 
 namespace {
 
@@ -361,7 +368,7 @@ class SamePoints {
   std::array<Side, 2> sides_;
 };
 
-/// Pairs by number, with what is known of their distances.
+/// A pair that may be the nearest one: its index, and bounds of its distance.
 struct Candidate {
   std::size_t at;
   DistanceBounds bounds;
@@ -372,8 +379,9 @@ DistanceBounds bounds_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   return filters::distance_bounds<FilterBounds>(a, b);
 }
 
-/// Those that can be the first of the nearest ones, in order; not the first pair of all, which is
-/// at most `least` apart, and not those that are `same`, since the first pair comes before them.
+/// The pairs, in order, that can be the first of the nearest pairs. Leaves out pairs[0], which is
+/// at most `least` apart, and pairs with the same closest points (`same`), which come after
+/// pairs[0].
 std::vector<Candidate> candidates_of(const Scene& scene, std::span<const TrianglePair> pairs,
                                      double least, const SamePoints& same) {
   std::vector<Candidate> out;
@@ -385,7 +393,7 @@ std::vector<Candidate> candidates_of(const Scene& scene, std::span<const Triangl
     if (bounds.lower > least) continue;
     least = std::min(least, bounds.upper);
     out.push_back({i, bounds});
-    if (least == 0 && bounds.upper == 0) break;  // what follows is not the first at distance 0
+    if (least == 0 && bounds.upper == 0) break;  // no later pair is the first at distance 0
     if (out.size() > 2 * kept + 1000) {
       std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
       kept = out.size();
@@ -411,12 +419,13 @@ NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) 
   double at_most = not_below(closest);
   SamePoints same(first_a, first_b, closest);
   std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
-  // The most promising first; those that touch in order, since the first of them ends the search.
+  // By lower bound, so that near pairs come early. The sort is stable, so pairs with lower bound 0
+  // stay in order, and the first that touches ends the search.
   std::stable_sort(left.begin(), left.end(), [](const Candidate& x, const Candidate& y) {
     return x.bounds.lower < y.bounds.lower;
   });
   for (const auto& [at, bounds] : left) {
-    if (bounds.lower > at_most) break;  // and so are those that follow
+    if (bounds.lower > at_most) break;  // all later ones are as far
     if (at_most == 0 && at > best) continue;
     const auto [a, b] = corners(at);
     if (at_most > 0 && same.are_those_of(a, b)) {

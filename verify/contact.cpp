@@ -1,7 +1,7 @@
-// Guigue, Devillers: Fast and robust triangle-triangle overlap test using orientation predicates
-// (2003), with strict signs: relative interiors where that test asks for closed triangles. Epick
-// decides the sign of a determinant of input points exactly, as verify/exact.cpp says; nothing else
-// is asked of CGAL here, and nothing is constructed.
+// The test of Guigue, Devillers: Fast and robust triangle-triangle overlap test using orientation
+// predicates (2003), but with strict signs, so that it tests relative interiors and not closed
+// triangles. CGAL is used only for signs of determinants of input points, which Epick decides
+// exactly (verify/exact.cpp says why). No point is constructed.
 #include "verify/contact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -38,14 +38,14 @@ Sides sides(const Points& plane, const Points& t) {
   return {orientation(a, b, c, t[0]), orientation(a, b, c, t[1]), orientation(a, b, c, t[2])};
 }
 
-/// True iff some are strictly on each side, that is, iff the relative interior meets the plane and
-/// does not lie in it.
+/// True iff corners are strictly on both sides: the relative interior meets the plane and does not
+/// lie in it.
 bool crosses(const Sides& s) {
   return std::min({s[0], s[1], s[2]}) < 0 && std::max({s[0], s[1], s[2]}) > 0;
 }
 
-/// A corner strictly on its side alone; the others are on the other side or, one of them, on the
-/// plane. Precondition: crosses(s).
+/// A corner that is alone strictly on its side of the plane. Of the other two corners at most one
+/// is on the plane, the rest on the other side. Precondition: crosses(s).
 int lone(const Sides& s) {
   for (int i = 0; i < 3; ++i) {
     if (s[i] != 0 && s[(i + 1) % 3] != s[i] && s[(i + 2) % 3] != s[i]) return i;
@@ -53,17 +53,18 @@ int lone(const Sides& s) {
   throw std::logic_error("contact_of: no corner is alone on its side of a plane that is crossed");
 }
 
-/// Two triangles, each crossing the plane of the other. Let p1 and p2 be lone corners, q and r the
-/// others, so ordered that p1 lies on the positive side of (p2, q2, r2) and p2 on that of (p1, q1,
-/// r1). The line L that is common to the planes meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s,
-/// t, and the relative interiors in the open segments uv and st, neither of them empty. Take L as
-/// the x axis, the planes as z = 0 and y = 0 (affine maps that keep orientations), p1 = (a, y1, 0),
-/// p2 = (b, 0, z2), k = y1 z2. As q1 lies on the ray from p1 through u, not before it, and so on:
+/// Decides whether the relative interiors of two triangles meet, each of which crosses the plane of
+/// the other. Let p1 and p2 be lone corners and q and r the other corners, ordered so that p1 lies
+/// on the positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). The common line L of the
+/// planes meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t, and the relative interiors in the
+/// open segments uv and st, which are not empty. Take L as the x axis and the planes as z = 0 and
+/// y = 0 (affine maps that keep orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1 z2. Since
+/// q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
 ///   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
 ///   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
 ///   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
-/// For k > 0: u < v and t < s, so the open segments meet iff u < s and t < v, which is iff the
-/// first two are negative. For k < 0 all four inequalities turn round, with the same result.
+/// For k > 0: u < v and t < s, so the open segments meet iff u < s and t < v: iff the first two
+/// orientations are negative. For k < 0 all four inequalities are reversed, with the same result.
 bool interiors_meet(const Points& a, int i, bool a_positive, const Points& b, int j,
                     bool b_positive) {
   const Point& p1 = a[i];
@@ -77,7 +78,8 @@ bool interiors_meet(const Points& a, int i, bool a_positive, const Points& b, in
   return orientation(p1, *q1, p2, *q2) < 0 && orientation(p1, *r1, *r2, p2) < 0;
 }
 
-/// The ends of a segment that is given as a triangle: the lexicographically first and last corner.
+/// The ends of a degenerate triangle that is a segment: its lexicographically first and last
+/// corner.
 std::pair<int, int> ends(const Corners& t) {
   const auto less = [](const Vec3& p, const Vec3& q) {
     return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
@@ -86,9 +88,9 @@ std::pair<int, int> ends(const Corners& t) {
   return {static_cast<int>(first - t.begin()), static_cast<int>(last - t.begin())};
 }
 
-/// Decides whether the triangle and the open segment pq, whose ends are strictly on different sides
-/// of its plane, meet in the triangle's interior: whether the line passes all three edges on one
-/// side.
+/// True iff the open segment pq meets the triangle's interior: iff the line pq passes all three
+/// edges on one side. Precondition: p and q are strictly on different sides of the triangle's
+/// plane.
 bool pierces(const Points& triangle, const Point& p, const Point& q) {
   const auto& [a, b, c] = triangle;
   const int side = orientation(p, q, a, b);
@@ -128,7 +130,7 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
     }
     if (pair.a == pair.b) throw std::logic_error("count_contacts: a pair of one triangle");
   }
-  constexpr std::size_t kLeast = 1024;  // pairs that pay for a thread
+  constexpr std::size_t kLeast = 1024;  // pairs per thread, enough to pay for it
   const std::size_t chunks = chunks_for(pairs.size(), kLeast, std::max(threads, 1u));
   std::vector<std::uint64_t> penetrating(chunks, 0);
   for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {

@@ -1,17 +1,17 @@
-// How two triangles that intersect do so: they penetrate, or they merely touch.
+// Decides whether two triangles that intersect penetrate or merely touch.
 //
 // The lectures on CULLIDE and S-CULLIDE distinguish *penetrating* contacts, where the surfaces pass
-// through each other, from *touching* ones, which S-CULLIDE ignores. Here as an exact definition:
-// two triangles penetrate iff their relative interiors meet and they do not lie in one plane. Two
-// others that intersect touch. What this means: A and B penetrate iff 0 is an interior point of A -
-// B, so a pair penetrates iff no translation below some length separates it, and touches iff
-// arbitrarily short ones do (away from a plane between the two, or off their common plane).
+// through each other, from *touching* ones, which S-CULLIDE ignores. The exact definition here: two
+// triangles penetrate iff their relative interiors meet and they do not lie in one plane. All other
+// triangles that intersect touch. In other words, A and B penetrate iff 0 is an interior point of
+// A - B: iff no translation shorter than some length separates them. They touch iff arbitrarily
+// short translations separate them (away from a plane between them, or off their common plane).
 //
 // Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
 // degenerate triangle is the segment or the point that it is. The relative interior of a triangle
-// is the triangle without its edges, that of a segment is the segment without its ends, and that of
-// a point the point. Two segments that meet, and a point and anything that it meets, lie in one
-// plane: they touch. Every decision is the sign of a determinant, evaluated exactly.
+// is the triangle without its edges; of a segment, the segment without its ends; of a point, the
+// point. Two segments that meet lie in one plane, so they touch; so do a point and whatever it
+// meets. Every decision is the sign of a determinant, evaluated exactly.
 #pragma once
 
 #include <array>
@@ -49,14 +49,15 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
 
 // ---- kinds of contact ----
 //
-// How two triangles meet, as one of seven kinds, and where: the points that they have in common.
+// Classifies how two triangles meet, as one of seven kinds, and finds the points that they have in
+// common.
 //
 // Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
 // triangle is the closed convex hull of its corners, so a degenerate one is the segment or the
-// point that it is. For every two triangles A and B exactly one kind is true, the first that fits
-// (docs/methods.md, "Kinds of contact"; the labels of docs/suite.md are the same). Its corners are
-// the three of a triangle, the two ends of a segment, or the point; the only edge of a segment is
-// the segment itself. Neighbours are triangles as any others: what they share is a contact too.
+// point that it is. Every two triangles A and B have exactly one kind, the first that fits
+// (docs/methods.md, "Kinds of contact"; the labels of docs/suite.md are the same). A segment has
+// two corners (its ends) and one edge (itself); a point has one corner (itself). Neighbours are
+// treated as any other triangles: the part that they share is a contact too.
 
 enum class ContactKind : std::uint8_t {
   apart,         // no point in common: pairs that a clearance lets collide
@@ -76,7 +77,7 @@ inline constexpr std::array kContactKinds = {ContactKind::apart,        ContactK
 
 /// "touch-vertex" and so on, as in the labels of a suite.
 std::string_view name_of(ContactKind kind);
-/// The inverse; empty where no kind is called so.
+/// The inverse of name_of(); empty if no kind has this name.
 std::optional<ContactKind> parse_contact_kind(std::string_view name);
 
 /// The kind, and the points in common. These are a convex set.
@@ -89,12 +90,12 @@ struct ContactShape {
   bool operator==(const ContactShape&) const = default;
 };
 
-/// Exact. Symmetric; the order of corners does not matter. Triangles that penetrate are
-/// answered from signs of determinants, all others as by contact_shape().
+/// The exact kind. Symmetric; the order of corners does not matter. Signs of determinants decide
+/// about triangles that penetrate, contact_shape() about all others.
 ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Exact but for the rounding of `ends`, in integers alone. Symmetric; the order of corners
-/// does not matter.
+/// The exact kind and common points (only `ends` are rounded), in integers alone. Symmetric; the
+/// order of corners does not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.
@@ -102,7 +103,7 @@ ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 std::vector<ContactKind> contact_kinds(const Scene& scene, std::span<const TrianglePair> pairs,
                                        unsigned threads = std::thread::hardware_concurrency());
 
-/// The same with the common points.
+/// The kind and the common points of each pair, as contact_kinds().
 std::vector<ContactShape> contact_shapes(const Scene& scene, std::span<const TrianglePair> pairs,
                                          unsigned threads = std::thread::hardware_concurrency());
 

@@ -1,7 +1,7 @@
-// The common points of two triangles: the half-spaces that bound one cut the other (Sutherland,
-// Hodgman: Reentrant polygon clipping, 1974). All of it in integers, points as numerators with a
-// common denominator, so that nothing is rounded. The corners of what is left say how the triangles
-// meet.
+// Finds the common points of two triangles: one is cut by the half-spaces that bound the other
+// (Sutherland, Hodgman: Reentrant polygon clipping, 1974). All numbers are integers, and a point
+// has one denominator for its three coordinates, so nothing is rounded. The corners of the part
+// that is left say how the triangles meet.
 #include "verify/contact.h"
 
 #include <gmpxx.h>
@@ -52,7 +52,7 @@ Parts parts(double x) {
   int exponent = 0;
   const auto digits = static_cast<long>(std::ldexp(std::frexp(x, &exponent), 53));
   const int zeros = std::countr_zero(static_cast<unsigned long>(digits));
-  return {digits >> zeros, exponent - 53L + zeros};  // exact: the digits that go are 0
+  return {digits >> zeros, exponent - 53L + zeros};  // exact: the dropped digits are 0
 }
 
 /// The largest power of two of which all coordinates are multiples; 0 where all of them are 0.
@@ -81,7 +81,7 @@ Integers scaled(const Vec3& p, long exponent) {
 
 // ---- points ----
 
-/// x / w, in units of a power of two; w > 0. Not in lowest terms.
+/// The point x / w, in units of a power of two. w > 0. Not in lowest terms.
 struct Point {
   Integers x;
   mpz_class w = 1;
@@ -103,7 +103,7 @@ Integers direction(const Point& p, const Point& q) {
   return out;
 }
 
-/// (s p.w p + t q.w q) / (s p.w + t q.w): between the two. Preconditions: s, t > 0.
+/// (s p.w p + t q.w q) / (s p.w + t q.w), a point between p and q. Precondition: s, t > 0.
 Point between(const Point& p, const mpz_class& s, const Point& q, const mpz_class& t) {
   Point out;
   for (std::size_t k = 0; k < 3; ++k) out.x[k] = s * p.x[k] + t * q.x[k];
@@ -111,7 +111,7 @@ Point between(const Point& p, const mpz_class& s, const Point& q, const mpz_clas
   return out;
 }
 
-/// The corners of the set of points, sorted: three, two or one.
+/// The corners of the convex hull of t, sorted: three, two or one.
 std::vector<Vec3> corners_of(const Corners& t) {
   std::vector<Vec3> out(t.begin(), t.end());
   std::sort(out.begin(), out.end(), [](const Vec3& p, const Vec3& q) {
@@ -130,7 +130,7 @@ std::vector<Vec3> corners_of(const Corners& t) {
   return out;
 }
 
-/// The points p with normal . p = offset, or those where normal . p is not less.
+/// The plane of the points p with normal . p = offset, or the half-space normal . p >= offset.
 struct Bound {
   Integers normal;
   mpz_class offset;
@@ -190,8 +190,9 @@ class Hull {
       bounds_.emplace_back(cross(n, edge), corners_[i], false);
     }
   }
-  /// Two planes through the segment's line, and one at each end. d x e is not 0 for a unit vector e
-  /// along another axis than one in which d is not 0, and d x (d x e) is perpendicular to both.
+  /// Bounds a segment by two planes through its line, and one at each end. Its direction d is not 0
+  /// along some axis; e is the unit vector along the next axis. So d x e is not 0, and d x (d x e)
+  /// is perpendicular to d and to d x e.
   void bound_segment() {
     const Integers d = minus(corners_[1], corners_[0]);
     std::size_t axis = 0;
@@ -210,7 +211,7 @@ class Hull {
 // ---- the intersection ----
 
 /// The part of a convex polygon where sign * value >= 0. The polygon is the list of its corners in
-/// turn; two corners are a segment, one a point; a corner may stand there more than once.
+/// turn: two corners are a segment, one is a point. A corner may be listed more than once.
 std::vector<Point> cut(const std::vector<Point>& polygon, const Bound& bound, int sign) {
   std::vector<mpz_class> values;
   for (const Point& p : polygon) values.emplace_back(sign * bound.value(p));
@@ -252,7 +253,8 @@ int dimension_of(const std::vector<Point>& points) {
   return line ? 1 : 2;
 }
 
-/// In one plane. Precondition: they have two points in common, so two segments lie on one line.
+/// True iff a and b lie in one plane. Precondition: they have two points in common, so two segments
+/// lie on one line.
 bool coplanar(const Hull& a, const Hull& b) {
   if (a.is_triangle()) return a.plane_holds(b);
   return !b.is_triangle() || b.plane_holds(a);
@@ -267,10 +269,10 @@ ContactKind kind_of(const Hull& a, const Hull& b, const std::vector<Point>& comm
     return a.on_edge(p) && b.on_edge(p) ? ContactKind::touch_edge : ContactKind::crossing;
   }
   if (coplanar(a, b)) return ContactKind::coplanar;
-  // Two triangles in two planes with a segment in common, on the line L of both planes. An edge
-  // that meets L in one point ends the triangle's part of L there, so that point is inside no
-  // segment of both. So if an inner point is on an edge, the edge lies on L, and all of the segment
-  // is on it.
+  // The triangles lie in two planes and have a segment in common, on the common line L of the
+  // planes. If an edge meets L in one point, the triangle's part of L ends there, so that point is
+  // not inside the common segment. So if an inner point of the segment is on an edge, the edge lies
+  // on L, and the whole segment is on it.
   const Point inner = between(common.front(), 1, common.back(), 1);
   return a.on_edge(inner) || b.on_edge(inner) ? ContactKind::touch_face : ContactKind::crossing;
 }
@@ -280,7 +282,7 @@ Vec3 rounded_point(const Point& p, long exponent) {
   return {nearest(0), nearest(1), nearest(2)};
 }
 
-/// answer(corners of a, corners of b) for each pair, on threads.
+/// Calls answer(corners of a, corners of b) for each pair, on several threads; returns the results.
 template <class Answer>
 auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned threads,
              const Answer& answer) {
@@ -288,7 +290,7 @@ auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned t
     if (std::max(pair.a, pair.b) >= scene.triangles.size())
       throw std::logic_error("contact kinds: a pair names a triangle that the scene lacks");
   }
-  constexpr std::size_t kLeast = 64;  // pairs that pay for a thread
+  constexpr std::size_t kLeast = 64;  // pairs per thread, enough to pay for it
   std::vector<decltype(answer(Corners(), Corners()))> out(pairs.size());
   for_chunks(pairs.size(), chunks_for(pairs.size(), kLeast, std::max(threads, 1u)),
              [&](std::size_t, std::size_t begin, std::size_t end) {

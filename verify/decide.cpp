@@ -1,5 +1,5 @@
-// decide(): the candidates in blocks, which the threads take in turn. A filter in doubles answers
-// for most pairs, several at once on lanes; exact arithmetic answers for the rest.
+// decide(): threads take blocks of candidates in turn. A filter in doubles decides most pairs,
+// several at once on lanes; exact arithmetic decides the rest.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -15,8 +15,8 @@
 
 namespace farcull {
 
-// Counts the answers. Each class is counted by its own answers, never as the rest of the others: a
-// candidate that nobody decided must not count as decided.
+// Counts the answers. Each class is counted by its own answers, never as the total minus the other
+// classes: a candidate that nobody decided must not count as decided.
 
 std::vector<TrianglePair> Collisions::all() const {
   std::vector<TrianglePair> both;
@@ -53,8 +53,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Corners of two triangles at equal positions: bit 3 i + j for corner i of a and j of b. Equal
-/// indices need no look at the positions.
+/// Bit 3 i + j is set if corner i of a and corner j of b have equal positions. If the indices are
+/// equal, the positions are not compared.
 unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corners& a,
                        const std::array<std::uint32_t, 3>& b_index, const Corners& b) {
   unsigned equal = 0;
@@ -69,7 +69,7 @@ unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corner
   return equal;
 }
 
-/// Neighbours decided without exact arithmetic, where that can be.
+/// The answer about neighbours without exact arithmetic; `unknown` if that cannot decide.
 Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   const auto lowest = [](unsigned bits) { return std::countr_zero(bits); };
   const int i = lowest(equal) / 3;
@@ -81,7 +81,7 @@ Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   }
   const int k = lowest(rest) / 3;
   const int l = lowest(rest) % 3;
-  // Else more than an edge is shared, or a corner stands twice in a triangle.
+  // More than an edge is shared, or a triangle has two equal corners.
   if ((rest & (rest - 1)) != 0 || i == k || j == l) return Triage::unknown;
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
 }
@@ -99,7 +99,7 @@ inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {
   return {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
 }
 
-/// The answer about a pair of which the filter of planes knows nothing.
+/// The answer about a pair for which the filter of planes is `unknown`.
 PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool one_object,
                              const ExactQuestion& question) {
   const Corners a = corners_of(scene, pair.a);
@@ -115,8 +115,8 @@ PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool 
                                                            : PairAnswer::apart;
 }
 
-/// Says whether both triangles of a pair are of one object; fast where the first members mostly
-/// ascend.
+/// Says whether both triangles of a pair are of one object. Fast if successive pairs mostly have
+/// pair.a in one object.
 class SameObject {
  public:
   explicit SameObject(const Scene& scene) : objects_(scene.objects) {}
@@ -126,7 +126,7 @@ class SameObject {
       const auto after = std::upper_bound(
           objects_.begin(), objects_.end(), pair.a,
           [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-      // The last one that starts at or before a; empty ones that start there come earlier.
+      // The last object that starts at or before a. Empty objects that start there come earlier.
       first_ = std::prev(after)->first_triangle;
       end_ = std::uint64_t{first_} + std::prev(after)->triangle_count;
     }
@@ -139,13 +139,14 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
+// The corners of pair.b are prefetched so many pairs ahead. Those of pair.a are mostly in the
+// cache, since successive pairs mostly have the same a.
 constexpr std::size_t kAhead = 8;
-// Enough work for each turn to pay for the shared counter, little enough to balance.
+// Pairs of a block: enough work to pay for the shared counter, little enough to balance threads.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with
 
-/// Decides up to kBlock pairs at a time, in memory of its own.
+/// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.
 ///
 /// The filter of planes never answers about neighbours. It answers only if it has proved that all
 /// corners of a triangle are off the plane of the other one, and a shared corner is in both planes.
@@ -175,8 +176,8 @@ class BlockDecider {
   }
 
  private:
-  /// Puts the pairs that are no neighbours by an index into others_; returns how many. No branches,
-  /// which would often be mispredicted.
+  /// Marks pairs that share a vertex index as neighbours_unasked, puts all others into others_, and
+  /// returns the number of the others. No branches, which would often be mispredicted.
   std::size_t set_aside(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -227,9 +228,9 @@ class BlockDecider {
   const Scene& scene_;
   const ExactQuestion& question_;
   SameObject same_object_;
-  bool many_neighbours_ = false;  // in the block before
+  bool many_neighbours_ = false;  // in the previous block
   std::array<TrianglePair, kBlock> others_;
-  std::array<std::uint16_t, kBlock> where_;  // their places in the block
+  std::array<std::uint16_t, kBlock> where_;  // places of others_ in the block
   std::array<Triage, kBlock> triage_;
 };
 
@@ -242,7 +243,7 @@ void require_pairs(const Scene& scene, std::span<const TrianglePair> candidates)
   }
 }
 
-// The answers, in the order of the candidates.
+// Decides all candidates; returns the answers in the order of the candidates.
 std::vector<PairAnswer> answers_about(const Scene& scene, std::span<const TrianglePair> candidates,
                                       const ExactQuestion& question) {
   std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
@@ -279,8 +280,9 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   require_clearance("decide_first", question.clearance);
   require_pairs(scene, candidates);
   if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
-  // Twice as many candidates each time: if few of them collide, threads have enough to do. The
-  // number of threads decides nothing, so that `decided` and `complete` are the same for any.
+  // Each step takes twice as many candidates as the one before, so that threads have enough work if
+  // few collide. The steps do not depend on the number of threads, so neither do `decided` and
+  // `complete`.
   std::size_t step = kFirstStep;
   FirstCollisions out;
   Collisions& all = out.collisions;
@@ -319,7 +321,7 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  const bool complete = std::exchange(complete_, false);  // until all are decided
+  const bool complete = std::exchange(complete_, false);  // false while this call decides
   decided_ = candidates.size();
   if (patience_.waits()) {
     moved_.forget();
@@ -352,7 +354,7 @@ std::vector<PairAnswer> FrameDecider::answers_with_kept(const Scene& scene,
   const std::vector<std::uint8_t> moved = moved_.triangles(scene);
   std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
   std::vector<TrianglePair> left;
-  std::vector<std::uint32_t> where;  // of these in the candidates
+  std::vector<std::uint32_t> where;  // indices of `left` in the candidates
   std::size_t before = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const TrianglePair& pair = candidates[k];

@@ -1,8 +1,9 @@
 // Each object has a tree of boxes over its triangles. The trees of every two objects that are asked
 // about are joined. Two nodes settle all their pairs at once if their boxes are farther apart than
-// the threshold of these objects, or if all come after an answer of 0: only a pair before it could
-// matter. What is left is decided pair by pair: by two parallel planes in doubles, then in
-// integers, as the checker of certificates does it (verify/certificate/integer_distance.h).
+// the threshold of these objects, or if all the pairs come after an answer of distance 0 (only an
+// earlier pair could be wrong then). The pairs that are left are decided one by one: by two
+// parallel planes in doubles, then in integers, as the checker of certificates decides
+// (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
 #include <algorithm>
@@ -27,11 +28,11 @@
 
 namespace farcull {
 
-// Meaning of answers. `objects`: an answer says that nothing is nearer; no answer says that nothing
-// is within the distance asked for. `nearest`: objects without an answer are not among each other's
-// k nearest, so no pair of their triangles is nearer than the last neighbour of either, nor as near
-// if the other object comes before that neighbour. `all`: every pair within the distance is an
-// answer.
+// What answers claim. `objects`: an answer claims that no pair of these objects is nearer; a
+// missing answer claims that no pair is within the distance asked for. `nearest`: if an answer is
+// missing, neither object is among the k nearest of the other. So no pair of their triangles is
+// nearer than the kth neighbour of either object, nor as near if the other object comes before that
+// neighbour. `all`: every pair within the distance is an answer.
 
 namespace {
 
@@ -43,7 +44,7 @@ mpq_class power_of_two(int exponent) {
   return exponent >= 0 ? mpq_class(out) : mpq_class(1, out);
 }
 
-// 2^1024 where the double is infinity.
+// The value of a double as a rational; 2^1024 for infinity.
 mpq_class rational(double x) { return std::isfinite(x) ? mpq_class(x) : power_of_two(1024); }
 
 bool has(const Object& object, std::uint32_t triangle) {
@@ -60,7 +61,7 @@ bool is_rounded_root(double distance, const Fraction& square) {
   mpq_class squared(square.over, square.under);
   squared.canonicalize();
   const bool even = (std::bit_cast<std::uint64_t>(distance) & 1) == 0;
-  // How the root compares with the middle of the double and the next one.
+  // Compares the root with the middle between `distance` and `next`, by squares.
   const auto beside = [&](double next) {
     const mpq_class middle = (rational(distance) + rational(next)) / 2;
     return cmp(squared, middle * middle);
@@ -192,7 +193,7 @@ using separation::Bounds;
 
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kExamples = 10;
-// Pairs decided at a time, so that no list of all is ever stored.
+// Pairs decided at a time, so that a list of all pairs is never stored.
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -240,7 +241,8 @@ class Trees {
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
 
-  // The half with the smaller centres comes first, along the longest side of the box.
+  // Moves the half of the triangles with the smaller centres to the front, along the longest side
+  // of the box.
   void divide(std::uint32_t first, std::uint32_t half, std::uint32_t count, const Bounds& box) {
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
@@ -258,14 +260,14 @@ class Trees {
   std::vector<Node> nodes_;
 };
 
-/// Decides the pairs that boxes leave, a chunk at a time, and counts them.
+/// Decides the pairs that boxes do not decide, a chunk at a time, and counts them.
 class Undecided {
  public:
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// Begins the pairs of two objects, or of one, with this threshold. answer: the only answer about
-  /// them, if there is one; empty with `all`.
+  /// Begins with the pairs of two objects (self: of one object), which have this threshold. answer:
+  /// the answer about these objects, if there is one; empty with `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
     now_ = {threshold, self, answer};
     stored_ = false;
@@ -308,11 +310,11 @@ class Undecided {
       return Class::planes;
     if (pair.asked->self && share_position(s, t)) return Class::neighbours;
     if (!length) return Class::nearer;
-    // No pair before the answer may be as near, and none behind it nearer.
+    // Pairs before the answer must be farther than the answer, pairs after it at least as far.
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return Class::exact;
-    // No direction shows that the pair is far enough: its nearest points have to show that it is
+    // No direction shows that the pair is far enough, so its nearest points have to show that it is
     // not.
     const auto order = integer_distance(s, t).squared <=> length->squared;
     if (order > 0 || (order == 0 && or_as_far)) {
@@ -350,12 +352,12 @@ class Undecided {
   unsigned threads_;
   DistanceAccounting& result_;
   Asked now_;
-  bool stored_ = false;           // in thresholds_
-  std::deque<Asked> thresholds_;  // of the pairs
+  bool stored_ = false;           // now_ is in thresholds_
+  std::deque<Asked> thresholds_;  // pairs_ point to these
   std::vector<Pair> pairs_;
 };
 
-/// The pairs of triangles of two objects, or of one.
+/// Joins the trees of two objects, or of one object with itself.
 class Join {
  public:
   Join(const Trees& trees, const Threshold& threshold, std::span<const ClaimedDistance> answers,
@@ -388,7 +390,7 @@ class Join {
   }
 
  private:
-  /// True if all pairs of triangles from `least` on come after an answer that is 0.
+  /// True if all pairs of triangles from `least` on come after an answer of distance 0.
   bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
   bool farther(const Bounds& a, const Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&
@@ -456,8 +458,8 @@ class Join {
   const Trees& trees_;
   const Threshold& threshold_;
   std::span<const ClaimedDistance> answers_;  // of these objects, sorted by their pairs
-  std::vector<bool> met_;                     // by the join
-  std::optional<TrianglePair> first_;         // an answer that is 0
+  std::vector<bool> met_;                     // which answers the join has met
+  std::optional<TrianglePair> first_;         // the pair of an answer of distance 0
   Undecided& undecided_;
   DistanceAccounting& result_;
 };

@@ -14,17 +14,17 @@
 
 namespace farcull {
 
-/// Distances below a length, or at most the length.
+/// Which distances: those below a length, or at most the length.
 enum class Bound : std::uint8_t { below, at_most };
 
-/// Pairs of triangles should have been answered if their distance is below `length`, or at most
-/// `length`, as `bound` says.
+/// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,
+/// has to be among the answers.
 struct Threshold {
-  std::optional<Length> length;  // none: infinite, all of them
+  std::optional<Length> length;  // none: infinite, so all pairs
   Bound bound = Bound::below;
 };
-/// Whether the distance is the root, rounded to the nearest double; of two equally near ones, the
-/// even one.
+/// Whether the distance is the root of `squared`, rounded to the nearest double (to the even one of
+/// two equally near doubles).
 bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {
@@ -33,17 +33,18 @@ class DistanceClaims {
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// The distance within which every pair of the objects a <= b had to be answered.
+  /// Within this distance every pair of triangles of the objects a <= b has to be an answer.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
   /// Whether objects a <= b are asked about.
   bool asked(std::uint32_t a, std::uint32_t b) const;
-  /// How many answers cannot be right, by themselves or among all the others.
+  /// How many answers are wrong, in themselves or because of other answers (not one of the k
+  /// nearest).
   std::uint64_t wrong(unsigned threads) const;
 
  private:
-  struct Farthest {  // the last neighbour of an object
+  struct Farthest {  // the kth nearest neighbour of an object
     std::size_t answers = 0;
     Fraction squared;
     std::uint32_t other = 0;
@@ -57,7 +58,7 @@ class DistanceClaims {
   DistanceQuestion question_;
   Threshold within_;
   std::vector<std::optional<Fraction>> squares_;  // of the answers
-  std::vector<Farthest> farthest_;                // of each object; of `nearest`
+  std::vector<Farthest> farthest_;                // of each object; filled for `nearest` alone
   IntegerInside insides_;
 };
 

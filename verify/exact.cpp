@@ -1,19 +1,20 @@
 // The predicates about two triangles by CGAL, and the method `exact` by CGAL's box join. Only this
 // and contact.cpp include CGAL, which compiles slowly.
 //
-// Why Epick decides exactly here, read from the headers of CGAL 5.5.1 (the tests hold it against
-// integer arithmetic):
+// Epick decides exactly here, for these reasons, read from the headers of CGAL 5.5.1 (the tests
+// compare it with integer arithmetic):
 // - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment asks only
 //   orientation_3 and coplanar_orientation_3 about input points (Guigue, Devillers: Fast and robust
 //   triangle-triangle overlap test using orientation predicates, 2003). Both have preconditions on
 //   degeneracy, hence the sorting into shapes first.
-// - The others (segment/segment constructs supporting lines) are one Filtered_predicate each: it
-//   runs the whole function, constructions and all, over intervals and, where that leaves a doubt,
-//   over rationals. Nothing is rounded in between.
-// - Overflow: static filters stand aside where a difference of coordinates exceeds 1e102 (1e153 for
-//   collinearity) and where products could underflow; intervals round outward to infinity, and
-//   0 * infinity widens. CGAL's intersection() is never called: with inexact constructions it
-//   misses intersections (CGAL issue 6384).
+// - Each other do_intersect (segment/segment constructs supporting lines) is one
+//   Filtered_predicate. It runs the whole function, with its constructions, over intervals and, if
+//   that leaves a doubt, over rationals. Nothing is rounded in between.
+// - Overflow: static filters do not decide if a difference of coordinates exceeds 1e102 (1e153 for
+//   collinearity) or if products could underflow. Intervals round outward to infinity, and
+//   0 * infinity widens them.
+// CGAL's intersection() is never called: with inexact constructions it misses intersections (CGAL
+// issue 6384).
 #include "verify/exact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -48,7 +49,7 @@ Hull hull(const std::array<Vec3, 3>& corners) {
     case Shape::triangle:
       return Kernel::Triangle_3(point(a), point(b), point(c));
     case Shape::segment: {
-      // Along a line, order by coordinates is order by position: the extremes are the ends.
+      // Collinear points are in lexicographic order along their line, so the extremes are the ends.
       const auto [lo, hi] = std::minmax({a, b, c}, lexicographically_less);
       return Kernel::Segment_3(point(lo), point(hi));
     }
@@ -69,7 +70,7 @@ Hull hull(const Vec3& p, const Vec3& q) {
   return Kernel::Segment_3(point(p), point(q));
 }
 
-/// The parts of a degenerate triangle at a corner: the segments from it to the other corners. A
+/// Divides a degenerate triangle into the segments from a corner to the other two corners. A
 /// triangle that is not degenerate is its own only part.
 std::vector<Corners> parts_at(const Corners& t, int corner) {
   if (shape(t) == Shape::triangle) return {t};
@@ -77,7 +78,7 @@ std::vector<Corners> parts_at(const Corners& t, int corner) {
   return {{v, v, t[(corner + 1) % 3]}, {v, v, t[(corner + 2) % 3]}};
 }
 
-/// The rim of such a part: what a ray from the corner leaves it by.
+/// The rim of such a part: where a ray from the corner v leaves the part.
 Hull rim_at(const Corners& part, const Vec3& v) {
   std::array<Vec3, 2> others;
   int count = 0;
@@ -88,9 +89,10 @@ Hull rim_at(const Corners& part, const Vec3& v) {
   return hull(others[0], others[count - 1]);
 }
 
-/// Neighbours with one shared position v. Both are unions of parts that are convex, contain v and
-/// do not have v on their rims, unless a part is v itself. A common point of two parts beyond v can
-/// be moved away from v until it leaves one of them, which is at a rim.
+/// Decides about neighbours with one shared position v. Both triangles are unions of parts that are
+/// convex, contain v and do not have v on their rims, unless a part is v itself. If two parts have
+/// a common point other than v, the point can be moved away from v until it leaves one of them.
+/// There it is on the rim of that part, so a rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {
@@ -104,17 +106,17 @@ bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   return false;
 }
 
-/// Neighbours that share the edge from p to q; r and s are the other corners of theirs, anywhere
-/// (also at p or q).
+/// Decides about neighbours that share the edge from p to q. r and s are their third corners, which
+/// may lie anywhere (also at p or q).
 bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const bool flat_a = CGAL::collinear(point(p), point(q), point(r));
   const bool flat_b = CGAL::collinear(point(p), point(q), point(s));
-  if (flat_a != flat_b) return false;  // the one that is no segment meets the line in its edge
+  if (flat_a != flat_b) return false;  // a proper triangle meets the line of p and q in its edge
   if (!flat_a) {
     return CGAL::coplanar(point(p), point(q), point(r), point(s)) &&
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
-  // Segments on one line, ordered as their coordinates are: beyond the same end?
+  // Both are segments on the line of p and q. Do they reach beyond the same end of the edge?
   const auto ends = std::minmax(p, q, lexicographically_less);
   const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };
   const auto above = [&](const Vec3& x) { return lexicographically_less(ends.second, x); };
@@ -135,7 +137,7 @@ struct JoinBox {
   ID id() const { return triangle; }
 };
 
-// The join scans below this number of boxes.
+// Below this number of boxes, CGAL's join scans.
 constexpr std::ptrdiff_t kCutoff = 2000;
 
 /// Calls visit(const JoinBox*, const JoinBox*) once for each two boxes that overlap and whose
@@ -167,10 +169,11 @@ void join(const Scene& scene, std::vector<JoinBox>& boxes, Visit visit) {
       kCutoff, CGAL::Box_intersection_d::CLOSED);
 }
 
-/// Grown boxes overlap wherever the difference of two coordinates, in double, does not exceed the
-/// clearance D. half is at least D/2 + ulp(D)/2, so that boxes which are disjoint when grown are
-/// apart by more than 2 half >= D + ulp(D), which no rounding takes back to D. What leaves the
-/// range of double stops at its ends, beyond which there is nothing to lose.
+/// Grows a box so that two grown boxes overlap if along no axis the gap of the original boxes,
+/// computed in double, exceeds the clearance D. half is at least D/2 + ulp(D)/2. So if grown boxes
+/// are disjoint, the original boxes are apart by more than 2 half >= D + ulp(D), which rounding
+/// cannot bring down to D. Coordinates that leave the range of double are set to its ends; no
+/// coordinate lies beyond them.
 Box grown(Box box, double half) {
   constexpr double kMax = std::numeric_limits<double>::max();
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -181,8 +184,7 @@ Box grown(Box box, double half) {
   return box;
 }
 
-/// Differences round monotonously, so that one above the clearance proves the same of the exact
-/// one.
+/// Rounding is monotone: if a rounded difference is above the clearance, so is the exact one.
 bool farther_along_an_axis(const Box& a, const Box& b, double clearance) {
   for (int k = 0; k < 3; ++k) {
     if (b.lo[k] - a.hi[k] > clearance || a.lo[k] - b.hi[k] > clearance) return true;

@@ -34,8 +34,8 @@ namespace farcull {
 
 // ---- the answers of decide() about each candidate, and their count ----
 
-/// The answer about one candidate. It begins undecided. neighbours_unasked: neighbours, where
-/// ExactQuestion::neighbours is false.
+/// The answer about one candidate, at first `undecided`. neighbours_unasked: the candidate is a
+/// pair of neighbours, and ExactQuestion::neighbours is false.
 enum class PairAnswer : std::uint8_t {
   undecided,
   apart,
@@ -52,79 +52,78 @@ struct Collisions {
   std::uint64_t apart = 0;                    // candidates that do not collide, no neighbours
   std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
 
-  /// pairs and neighbour_pairs together; sorted where both are.
+  /// pairs and neighbour_pairs together; sorted if both lists are sorted.
   std::vector<TrianglePair> all() const;
 };
 
-/// Each class counted where an answer is in it; the colliding candidates in the order given. Throws
-/// std::logic_error where an answer is undecided, or where there is not one for each candidate.
+/// Counts the answers in each class and lists the colliding candidates in the order given. Throws
+/// std::logic_error if an answer is undecided, or if there is not one answer for each candidate.
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers);
 
 // ---- the predicates ----
 
-/// The convex hull of three corners. segment: the corners are collinear but not all equal.
+/// What the convex hull of three corners is. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
-/// Exact, by CGAL's collinearity predicate.
+/// The exact shape, by CGAL's collinearity predicate.
 Shape shape(const std::array<Vec3, 3>& corners);
 
 /// True iff the closed convex hulls share a point. Symmetric; the order of corners does not matter.
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// True iff the distance of the closed convex hulls is at most `clearance` (world units, finite,
-/// >= 0), squared distances compared exactly; with 0 the same as intersects().
+/// >= 0). Compares squared distances exactly; with clearance 0 the same as intersects().
 bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// True iff a corner of a and a corner of b are equal as doubles.
 bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the intersection is more than the shared part (see above). For triangles that share no
-/// position the same as intersects().
+/// True iff the intersection is more than the shared part (see the top of this file). For triangles
+/// that share no position the same as intersects().
 bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// How many triangles of the scene are segments or points.
 std::uint64_t degenerate_triangles(const Scene& scene);
 
-/// How to decide.
+/// Options of decide().
 struct ExactQuestion {
   double clearance = 0;                                    // world units, finite, >= 0
   unsigned threads = std::thread::hardware_concurrency();  // 0 counts as 1; changes no answer
   bool neighbours = true;  // false: neighbours are counted, not decided
 };
 
-/// The candidates that collide, in the order given (duplicates and all). Candidates may be of any
-/// two different triangles, of one object as well, whatever its `self`. Every candidate begins
-/// undecided, and each class is counted where a candidate was decided to be in it. Throws
-/// std::logic_error if a candidate names a triangle that the scene does not have or one triangle
-/// twice, if one was left undecided, or if the clearance is negative or not finite.
+/// The candidates that collide, in the order given, duplicates included. A candidate may be any two
+/// different triangles, also of one object that is not `self`. Every candidate begins undecided,
+/// and each class counts the candidates that were decided to be in it. Throws std::logic_error if a
+/// candidate names a triangle that the scene does not have or one triangle twice, if a candidate
+/// was left undecided, or if the clearance is negative or not finite.
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 
 struct FirstCollisions {
-  Collisions collisions;      // the counts are of the candidates that were decided
-  std::uint64_t decided = 0;  // the first so many candidates
+  Collisions collisions;      // counts the candidates that were decided
+  std::uint64_t decided = 0;  // so many candidates, from the first one on, were decided
   bool complete = true;       // all were decided, and not more than the limit collide
 };
 
-/// The first `limit` candidates that collide, neighbours among them. Decides candidates block by
-/// block and stops when it has that many; the others stay undecided. Preconditions: the candidates
-/// are sorted, limit > 0. Throws as decide().
+/// The first `limit` candidates that collide, colliding neighbours included. Decides candidates
+/// block by block and stops when `limit` of them collide; the others stay undecided. Preconditions:
+/// the candidates are sorted, limit > 0. Throws as decide().
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes the last pairs, until `limit` are left, neighbours among them; returns whether there
-/// were more. Precondition: both lists are sorted. The counts stay.
+/// Removes the last of `pairs` and `neighbour_pairs` until `limit` pairs are left in all; returns
+/// whether there were more. The counts stay. Precondition: both lists are sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);
 
-/// decide() for one frame of a scene after the other. The answer about a pair depends on the
-/// corners of its triangles alone, so the answers about pairs of which neither triangle moved are
-/// those of the last frame.
+/// decide() for one frame of a scene after the other. The answer about a pair depends only on the
+/// corners of its triangles, so if neither triangle moved, the answer of the last frame holds.
 class FrameDecider {
  public:
-  /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses those of
-  /// the last call if that call ended normally, the question is the same but for threads, and the
-  /// scene has the same triangles and objects.
+  /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses the
+  /// answers of the last call if that call ended normally, the question is the same (threads may
+  /// differ), and the scene has the same triangles and objects.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                     const ExactQuestion& question = {});
   /// Pairs that the last call decided anew.
@@ -141,27 +140,28 @@ class FrameDecider {
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;
-  std::vector<PairAnswer> answers_;  // about them
+  std::vector<PairAnswer> answers_;  // about pairs_
   std::size_t decided_ = 0;
 };
 
-/// The pairs that count: triangles of different objects, and of one object where it is `self`.
+/// The answers about the pairs that count: two triangles of different objects, or of one object
+/// marked `self`.
 struct ExactResult {
   std::vector<TrianglePair> pairs;            // all that collide, sorted, each once
   std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide, sorted, each once
   std::uint64_t neighbours = 0;               // pairs that count and are neighbours
   std::uint64_t box_pairs = 0;  // pairs that count whose closed boxes overlap; with a clearance,
-                                // those not farther apart along an axis, by differences in double
-  std::uint64_t ignored = 0;    // such pairs that do not count, since their objects are ignored
+                                // are no farther apart along any axis, by differences in double
+  std::uint64_t ignored = 0;    // pairs whose boxes overlap likewise, but whose objects are ignored
   double join_ms = 0;           // boxes and box join, wall clock
   double predicates_ms = 0;     // exact decisions on the overlapping pairs, wall clock
 };
 
 /// The method `exact`: closed boxes by CGAL::box_intersection_d (Zomorodian, Edelsbrunner: Fast
-/// software for box intersections, 2002) with cutoff 2000, then decide(). Where exactly two objects
-/// have triangles and neither is `self` the join is bipartite, else the join of all with all,
-/// filtered by owner. Memory O(triangles + colliding pairs): candidates are not kept.
-/// ignored: pairs of objects, as in_order() gives them, that do not count.
+/// software for box intersections, 2002) with cutoff 2000, then decide(). If exactly two objects
+/// have triangles and neither is `self`, the boxes of one are joined with those of the other; else
+/// all boxes are joined with all and filtered by owner. Memory O(triangles + colliding pairs):
+/// candidates are not kept. ignored: pairs of objects that do not count, as in_order() gives them.
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});
 

@@ -1,4 +1,4 @@
-// A point is a fraction of integers; every question about it is the sign of an integer.
+// The coordinates of a point are fractions of integers, so each answer is the sign of an integer.
 #include "verify/exact_point.h"
 
 #include <gmpxx.h>

@@ -1,6 +1,6 @@
-// A point of a triangle as an exact number, for deciding the lemmas: which pixels contain its
-// image, and whether two samples bound its depth. Integers only (GMP); never the budget, never an
-// offset.
+// A point of a triangle with exact coordinates, for tests of the lemmas: decides which pixels
+// contain its image, and whether two samples bound its depth. Uses integers only (GMP), and neither
+// the budget nor an offset.
 #pragma once
 
 #include <array>
@@ -31,10 +31,10 @@ std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int hei
 bool bounded(const ExactPoint& point, float entry, float exit);
 
 /// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly
-/// and cut off to a double. Not positive where it is bounded. Precondition: finite samples.
+/// and cut off to a double. Not positive if bounded(). Precondition: finite samples.
 double beyond(const ExactPoint& point, float entry, float exit);
-/// The same for depths of a depth buffer, where D is z(point) * scale + 1/2: the larger of entry -
-/// D and D - exit, exactly.
+/// beyond() for depths of a depth buffer: the larger of entry - D and D - exit, with
+/// D = z(point) * scale + 1/2.
 double beyond_stored(const ExactPoint& point, float entry, float exit, float scale);
 
 }  // namespace farcull

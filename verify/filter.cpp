@@ -1,11 +1,12 @@
-// The filters with the proved bounds. Those of many pairs run on lanes of doubles: each lane is a
-// pair of its own, and every operation rounds once, so that the answers are those of the scalars.
-// The verification has its own few operations on lanes, since it shares no code with the canvas
+// The filters with the proved bounds. filter_pairs() runs on lanes of doubles: each lane is another
+// pair, and every operation rounds once, so the answers are the same as those of the scalars. The
+// verification has its own few operations on lanes, since it shares no code with the canvas
 // (core/native) that it checks.
 //
-// Pairs are gathered in batches, coordinate by coordinate. All meet the planes of both triangles;
-// the few whose planes cross are gathered again, their corners in the order in which they are
-// compared along the line, so that the lanes stay full.
+// Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
+// triangles. The few pairs of which each triangle crosses the plane of the other are gathered
+// again, so that the lanes stay full; their corners are in the order for the comparison along the
+// line.
 #include "verify/filter.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ HWY_INLINE Truth operator!(Truth a) { return Truth(hn::Not(a.mask)); }
 HWY_INLINE bool of_all(Truth a) { return hn::AllTrue(Tag(), a.mask); }
 /// Bit i: the answer of lane i.
 HWY_INLINE unsigned bits_of(Truth a) {
-  std::uint8_t bits[8] = {};  // StoreMaskBits() writes one, and may write 8
+  std::uint8_t bits[8] = {};  // StoreMaskBits() needs one byte, and may write 8
   hn::StoreMaskBits(Tag(), a.mask, bits);
   return bits[0] & ((1u << kWide) - 1);
 }
@@ -55,8 +56,8 @@ HWY_INLINE Real operator-(Real a, Real b) { return Real(hn::Sub(a.v, b.v)); }
 HWY_INLINE Real operator*(Real a, Real b) { return Real(hn::Mul(a.v, b.v)); }
 HWY_INLINE Truth operator<(Real a, Real b) { return Truth(hn::Lt(a.v, b.v)); }
 HWY_INLINE Truth operator>(Real a, Real b) { return Truth(hn::Gt(a.v, b.v)); }
-// b < a ? b : a and a < b ? b : a, as std::min() and std::max() choose, NaNs included: on x86 that
-// is one instruction with the operands exchanged.
+// min is b < a ? b : a, and max is a < b ? b : a, as in std::min() and std::max(), NaNs included.
+// On x86 each is one instruction with the operands exchanged.
 HWY_INLINE Real min(Real a, Real b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
   return Real(hn::Min(b.v, a.v));
@@ -74,8 +75,8 @@ HWY_INLINE Real max(Real a, Real b) {
 HWY_INLINE Real abs(Real a) { return Real(hn::Abs(a.v)); }
 HWY_INLINE Real sqrt(Real a) { return Real(hn::Sqrt(a.v)); }
 
-/// A corner of kWide pairs in memory: each coordinate of all of them, aligned, the coordinates
-/// `stride` apart.
+/// One corner of each of kWide pairs in memory: first x of all of them, then y, then z, each
+/// aligned and `stride` numbers after the one before.
 template <int stride>
 struct PointOf {
   const PlainReal* at = nullptr;
@@ -91,7 +92,8 @@ using Point = PointOf<kBatch>;
 #include "verify/filter_planes.inl"
 #undef FAR_FILTER
 
-// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
+// The corners of pair.b are prefetched so many pairs ahead. Those of pair.a are mostly in the
+// cache, since successive pairs mostly have the same a.
 constexpr std::size_t kAhead = 8;
 
 /// Coordinates of pairs: row 3 k + axis is of corner k of a, row 9 + 3 k + axis of corner k of b.
@@ -126,13 +128,14 @@ HWY_INLINE int fill_lanes(Batch& batch, int count) {
   return end;
 }
 
-/// Pairs whose planes cross, until they fill a batch.
+/// Collects pairs whose triangles cross each other's planes, and compares them along the line of
+/// the planes once they fill a batch.
 class Crossings {
  public:
   Crossings(double clearance, std::span<Triage> answers)
       : clearance_(clearance), answers_(answers) {}
 
-  /// Pair `i` of a batch, the answer about which belongs at `where`.
+  /// Adds pair `i` of a batch. Its answer goes to answers[where].
   HWY_INLINE void add(const Batch& batch, int i, const CornerOrder& order, std::size_t where) {
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -144,7 +147,7 @@ class Crossings {
     if (count_ == kBatch) compare();
   }
 
-  /// Answers for all that were added.
+  /// Writes the answers of all pairs that were added.
   void compare() {
     if (count_ == 0) return;
     const int end = fill_lanes(batch_, count_);

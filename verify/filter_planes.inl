@@ -1,10 +1,10 @@
-// Two triangles against each other's planes, and along the line where the planes cross. One text
-// for scalars and for lanes, where each lane is a pair of its own: filter_scalars.h, which derives
-// the bounds, and filter.cpp include it in a namespace that says
+// Compares two triangles with each other's planes, and along the line where the planes cross. This
+// file is compiled for scalars (in filter_scalars.h, which derives the bounds) and for lanes (in
+// filter.cpp, where each lane is another pair). Both include it in a namespace that defines
 //   Real, Truth   a number and an answer, of every lane; PlainReal is a number for all lanes
 //   Point         a corner, with x(), y() and z()
 //   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.
-// Where all lanes are decided it stops; nothing else branches.
+// The only branches are early returns once all lanes are decided.
 
 struct Triple {
   Real x, y, z;
@@ -17,12 +17,12 @@ FAR_FILTER Triple magnitudes(const Triple& p) { return {abs(p.x), abs(p.y), abs(
 FAR_FILTER Real dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 FAR_FILTER Real sum(const Triple& p) { return p.x + p.y + p.z; }
 
-/// The largest magnitudes per axis of two.
+/// The larger magnitude of p and q, per axis.
 FAR_FILTER Triple largest(const Triple& p, const Triple& q) {
   return {max(abs(p.x), abs(q.x)), max(abs(p.y), abs(q.y)), max(abs(p.z), abs(q.z))};
 }
 
-/// e x f, and the same of magnitudes with sums for differences.
+/// n = e x f; m is computed likewise from magnitudes, with sums in place of differences.
 struct Normal {
   Triple n, m;
 };
@@ -34,7 +34,8 @@ FAR_FILTER Normal normal_of(const Triple& e, const Triple& f) {
   return {{yz - zy, zx - xz, xy - yx}, {abs(yz) + abs(zy), abs(zx) + abs(xz), abs(xy) + abs(yx)}};
 }
 
-/// For points within w (magnitudes, from the origin of the normal).
+/// Error bound of dot(normal.n, x) for points x with |x| <= w per axis, from the origin of the
+/// normal.
 template <class Bounds>
 FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
   return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
@@ -42,19 +43,19 @@ FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
 
 // ---- sides of planes ----
 
-/// Determinants of the corners of s and the plane through the corners of t; each has the sign it
-/// shows where it is beyond +-bound.
+/// Determinants of each corner of s with the plane through the corners of t. The sign of a value is
+/// proved if its magnitude is above `bound`.
 struct Sides {
   Real value[3];
   Real bound;
-  Real needed;  // by which the value is larger at the clearance from the plane, or more
+  Real needed;  // at least the value of a point at the clearance from the plane
 
   FAR_FILTER Real least() const { return min(min(value[0], value[1]), value[2]); }
   FAR_FILTER Real most() const { return max(max(value[0], value[1]), value[2]); }
   FAR_FILTER Truth on_one_side() const {
     return least() > bound + needed || most() < -(bound + needed);
   }
-  /// Corners are on both sides, none of them in doubt.
+  /// True if corners are on both sides, and no corner is in doubt.
   FAR_FILTER Truth on_both_sides() const {
     const Real nearest = min(min(abs(value[0]), abs(value[1])), abs(value[2]));
     return nearest > bound && least() < Real(0.0) && most() > Real(0.0);
@@ -80,11 +81,11 @@ FAR_FILTER Sides sides(const Point* s, const Point* t, PlainReal clearance) {
           clearance > 0 ? at_clearance(normal, clearance) : Real(0.0)};
 }
 
-/// What the planes alone tell.
+/// The answers that the planes alone give.
 struct AgainstPlanes {
   Truth apart;     // a triangle is on one side of the other's plane, beyond the clearance
   Truth crossing;  // each is on both sides of the other's plane; never together with apart
-  Sides a, b;      // of the corners of either; a only where not every lane is apart
+  Sides a, b;      // of the corners of a and of b; `a` is not valid if every lane is apart
 };
 
 template <class Bounds>
@@ -100,12 +101,13 @@ FAR_FILTER AgainstPlanes against_planes(const Point* a, const Point* b, PlainRea
 
 // ---- along the line of two planes ----
 
-/// What the line of crossing planes tells.
+/// The answers that the line of crossing planes gives.
 struct OnLine {
   Truth apart, meeting;  // neither: a doubt
 };
 
-/// The corners as corner_order() puts them.
+/// Compares the segments of two triangles on this line. The corners are in the order of
+/// corner_order().
 template <class Bounds>
 FAR_FILTER OnLine compare_on_line(const Point& a0, const Point& a1, const Point& a2,
                                   const Point& b0, const Point& b1, const Point& b2) {

@@ -14,14 +14,15 @@
 
 namespace farcull {
 
-// The order in which two triangles whose planes cross are compared along the line of the planes.
+// Two triangles whose planes cross are compared along the line of the planes, in this order of
+// their corners.
 
-/// Corners of a and of b, by number. Where the planes cross, each triangle covers a segment of
-/// their line, from the edge to one of the other corners to the edge to the other. Seen from the
-/// corner that is alone, with the other two in the order that puts the other triangle's corner on
-/// the positive side, the ends are in a known order along the line, and two determinants compare
-/// them (Guigue, Devillers: Fast and robust triangle-triangle overlap test using orientation
-/// predicates, 2003).
+/// Corners of a and of b, by number. One corner of each triangle lies alone on its side of the
+/// other's plane. The two edges from this corner cross the line of the planes; the triangle covers
+/// the segment of the line between them. The three corners are ordered so that the other triangle's
+/// lone corner is on the positive side of their plane. So the ends of the segment are in a known
+/// order along the line, and two determinants compare the segments (Guigue, Devillers: Fast and
+/// robust triangle-triangle overlap test using orientation predicates, 2003).
 struct CornerOrder {
   std::array<std::uint8_t, 3> a, b;  // the corner that is alone comes first
 };
@@ -29,7 +30,7 @@ struct CornerOrder {
 /// a_above: bit i is set if corner i of a is on the positive side of the plane of b; b_above
 /// likewise. Precondition: one or two bits of each are set.
 constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
-  // Indexed by the bits of the corners above: the corner that is alone on its side.
+  // The corner that is alone on its side, indexed by the bits of the corners above.
   constexpr std::array<std::uint8_t, 8> kAlone = {0, 0, 1, 2, 2, 1, 0, 0};
   const auto from = [](std::uint8_t alone) {
     return std::array<std::uint8_t, 3>{alone, static_cast<std::uint8_t>((alone + 1) % 3),
@@ -41,7 +42,7 @@ constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
   return order;
 }
 
-/// corner_order() for lookup: a_above in bits 0 to 2, b_above in bits 3 to 5.
+/// Table of corner_order(), indexed by a_above (bits 0 to 2) and b_above (bits 3 to 5).
 inline constexpr std::array<CornerOrder, 64> kCornerOrders = [] {
   std::array<CornerOrder, 64> orders{};
   for (unsigned bits = 0; bits < 64; ++bits) orders[bits] = corner_order(bits & 7, bits >> 3);
@@ -54,9 +55,10 @@ namespace farcull::filters {
 
 // ---- against planes ----
 //
-// The bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3; Shewchuk,
-// Adaptive Precision Floating-Point Arithmetic, 1997, for the same determinant). u = 2^-53; without
-// underflow and overflow every operation multiplies its exact result by some 1 + d, |d| <= u.
+// The bounds follow Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3;
+// Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, bounds the same determinant.
+// u = 2^-53; without underflow and overflow every operation multiplies its exact result by some
+// 1 + d, |d| <= u.
 //
 // Side of a plane. With e = p - o, f = q - o, w = x - o, the determinant is the sum over k of
 // n_k w_k, n = e x f: six terms e_i f_j w_k. A term meets at most 8 roundings: one in each of its
@@ -66,23 +68,24 @@ namespace farcull::filters {
 // roundings a term, hence P <= (1 - u)^-8 times the computed one, and larger |w_k| only enlarge it.
 // The bound itself takes two more roundings. ((1 + u)^8 - 1) (1 - u)^-10 < 8 u + 150 u^2 < 9 u.
 //
-// Product of two normals n.m: a normal's terms meet 4 roundings each, the products and sums 3 more:
-// 11, and the bound 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below 12 u.
+// Product of two normals n.m. The terms of either normal meet 4 roundings each, the product and
+// sums 3 more: 11 in all. The bound meets 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below
+// 12 u.
 //
-// Projection of w = x - o onto a direction d that is given (however it was found, its doubles are
-// what is meant): one difference, one product, two sums: 4, and the bound 6 more: below 5 u. The 9
-// u of sides serve.
+// Projection of w = x - o onto a given direction d (its doubles count as exact, however they were
+// found). One difference, one product and two sums make 4 roundings, and the bound meets 6 more:
+// below 5 u. The 9 u for sides of planes cover this.
 //
-// Underflow. Differences and sums of doubles are exact where they are subnormal. A product is off
-// by at most 2^-1075 more. In D: two in each n_k, times w_k, and one in each n_k w_k, which makes
-// at most 2^-1073 (|w|_1 + 2) with all later roundings; in n.m, 2^-1073 (|n|_1 + |m|_1 + 2), also
-// with |n|_1 as computed from magnitudes; in a projection 2^-1073. The same happens to the
-// permanent, times 12 u. `absolute` is 2^70 times that and more, since 2^-1000 and its products
-// with what is at least 1 are normal numbers, on which every processor is fast.
+// Underflow. Differences and sums of doubles are exact if they are subnormal. A product is off by
+// at most 2^-1075 more. D has two such products in each n_k, times w_k, and one in each n_k w_k:
+// with all later roundings at most 2^-1073 (|w|_1 + 2). n.m is off by 2^-1073 (|n|_1 + |m|_1 + 2),
+// also with |n|_1 as computed from magnitudes, and a projection by 2^-1073. The permanent is off
+// likewise, times 12 u. `absolute` is more than 2^70 times all of this: 2^-1000 and its products
+// with numbers of at least 1 are normal numbers, on which every processor is fast.
 //
-// Overflow. Every operation of D has its like on magnitudes in the permanent, which is at least as
-// large, for rounding is monotone. So where anything overflows the bound is infinite or not a
-// number, and no comparison with it holds.
+// Overflow. For every operation of D the permanent has the same operation on magnitudes, whose
+// result is at least as large, since rounding is monotone. So if anything overflows, the bound is
+// infinite or not a number, and no comparison with it holds.
 
 using PlainReal = double;
 using Real = double;
@@ -104,22 +107,22 @@ inline Triple operator-(const Triple& p, const Triple& q) {
   return {p.x - q.x, p.y - q.y, p.z - q.z};
 }
 
-/// About p / |p|; not finite where p is zero or products underflow or overflow.
+/// Approximately p / |p|; not finite if p is zero or if products underflow or overflow.
 inline Triple unit(const Triple& p) {
   const double length = std::sqrt(dot(p, p));
   return {p.x / length, p.y / length, p.z / length};
 }
 
-/// -1, 1, or 0 for a doubt.
+/// The sign of a value with error at most `bound`: -1 or 1, or 0 if it is in doubt.
 inline int sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
-/// Bit i where the value of corner i is above 0.
+/// Bit i is set if the value of corner i is above 0.
 inline unsigned above(const Sides& sides) {
   return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
 }
 
-/// True where d surely divides: w1, w2 on its positive side, x1, x2 on the negative one. All are
-/// differences of coordinates.
+/// True if the plane with normal d surely divides: w1 and w2 are on its positive side, x1 and x2 on
+/// its negative side. All four are differences of coordinates.
 template <class Bounds>
 bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& x1,
              const Triple& x2) {
@@ -140,12 +143,13 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
   return line.meeting ? Triage::yes : Triage::unknown;
 }
 
-// Seen from v, with N = a1 x a2 and M = b1 x b2: A1 = M . a1 and A2 = M . a2 give the sides of b's
-// plane that a's corners are on, B1 = N . b1 and B2 = N . b2 likewise. If A1 and A2 have the same
-// sign, a meets b's plane in v alone; likewise b. Else each triangle meets the line of both planes
-// in a segment from v, in the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1),
-// since these are sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N
-// and b1 B2 - b2 B1 = N x M, so the directions are the same iff A2 and B2 differ in sign.
+// Corners are relative to v; N = a1 x a2 and M = b1 x b2. The signs of A1 = M . a1 and A2 = M . a2
+// say on which sides of b's plane a's corners lie; B1 = N . b1 and B2 = N . b2 say the same of b's
+// corners. If A1 and A2 have the same sign, a meets b's plane in v alone; likewise B1 and B2. Else
+// each triangle meets the line of both planes in a segment from v. The segments have the directions
+// sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1), since these are sums with weights above 0
+// and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1 = N x M, so the
+// directions are the same iff A2 and B2 differ in sign.
 template <class Bounds>
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2) {
@@ -165,17 +169,17 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
   if (a1_side * a2_side > 0) return Triage::no;
   if (a1_side * a2_side * b1_side * b2_side != 0)
     return a2_side * b2_side < 0 ? Triage::yes : Triage::no;
-  // Nearly in one plane: a plane through v that has one triangle on each side proves as much.
+  // Nearly in one plane: if a plane through v has one triangle on each side, they share only v.
   return divides<Bounds>((unit(e1) + unit(e2)) - (unit(f1) + unit(f2)), e1, e2, f1, f2)
              ? Triage::no
              : Triage::unknown;
 }
 
 // (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of r - p and
-// s - p that are perpendicular to the edge. Where it is negative, the plane through the edge that
-// is perpendicular to the first part has r on one side and s on the other: the triangles share the
-// edge alone. It is at every edge of a mesh that is not folded sharply. Else s off the plane of (p,
-// q, r) proves the same.
+// s - p that are perpendicular to the edge. If this is negative, the plane through the edge that is
+// perpendicular to the first part has r on one side and s on the other: the triangles share the
+// edge alone. In a mesh it is negative at every edge that is not folded sharply. Otherwise, if s is
+// off the plane of (p, q, r), the triangles share the edge alone, too.
 template <class Bounds>
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Triple e = difference(q, p);
@@ -192,30 +196,31 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 // ---- by distance ----
 //
 // Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
-// 5.1.5 and 5.1.9). Either they prove the answer or there is none, however wrong the guess may be:
-// the points show that the triangles come near, or the direction between them that they do not.
+// 5.1.5 and 5.1.9). The points can prove that the triangles are near, and the direction between the
+// points can prove that they are not. If neither is proved, the answer is `unknown`; so a wrong
+// guess never makes a wrong answer.
 //
 // All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by u |x| at
-// most, u = 2^-53. R is the largest |coordinate| of these.
+// most, u = 2^-53. R is the largest |coordinate| of these differences.
 //
-// Near. p = sum of l_i x_i with weights l_i >= 0 that sum to 1 up to 4 u (two are computed, each at
-// most 1, the third is 1 less the others, or 0 where that is negative by rounding), and q likewise.
-// p is within (1 + 4 u) times u R (the differences) + 3 u R (products and sums) + 4 u R (weights,
-// against those divided by their sum) < 9 u R per axis of a point of the triangle, and so q; their
-// difference has one more rounding, of 2 u R: below 20.1 u R per axis and 35 u R in length. The
-// computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
-// all 55 u R; `point` is 64 u.
+// Near. p is the sum of l_i x_i with weights l_i >= 0 that sum to 1 up to 4 u (two are computed,
+// each at most 1; the third is 1 minus the others, or 0 if rounding makes that negative). q
+// likewise. Per axis, p is off from a point of the triangle by less than (1 + 4 u) times u R
+// (differences) + 3 u R (products and sums) + 4 u R (weights, compared with those divided by their
+// sum) < 9 u R, and so is q. The difference of p and q has one more rounding, of 2 u R: it is off
+// by less than 20.1 u R per axis and 35 u R in length. The computed length is below 4 R and off by
+// less than 3 u of itself, and two sums follow: 20 u R. In all 55 u R; `point` is 64 u.
 //
 // Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. A computed d.x is
-// off by less than 5 u |d|.|x| (above), their difference by 2 u |d|.|x| more: 12 u M,
-// M the product of the magnitudes of d with the largest |x| per axis. `gap` is 16 u. The computed
-// length of d, times the clearance, is off by less than 4 u of itself, which the factor 1 + 8 u
-// covers.
+// off by less than 5 u |d|.|x| (see "Projection"), and the difference of two of them by 2 u |d|.|x|
+// more: 12 u M in all, where M is the product of the magnitudes of d with the largest |x| per axis.
+// `gap` is 16 u. The computed length of d, times the clearance, is off by less than 4 u of itself,
+// which the factor 1 + 8 u covers.
 //
-// Underflow: products are off by at most 2^-1075, far below `absolute`, where the length of d is
-// as computed only if its square is at least 2^-900; a shorter one counts as 2^-450 at least where
-// it shall be small. Overflow: as against planes; infinities and what is
-// not a number satisfy no comparison.
+// Underflow: products are off by at most 2^-1075, far below `absolute`. The computed length of d is
+// accurate only if its square is at least 2^-900; the proof of "near" takes a shorter length as
+// 2^-450, and "far" answers `unknown`. Overflow: as for planes; infinities and NaNs satisfy no
+// comparison.
 
 using Corners = std::array<Vec3, 3>;
 
@@ -233,11 +238,10 @@ struct Closest {
   }
 };
 
-inline double clamped(double x) {
-  return x > 0 ? std::min(x, 1.0) : 0;
-}  // 0 for what is not a number
+inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // 0 for NaN
 
-/// Between segments: from p + s u to q + t v, s and t in [0, 1].
+/// Offers the difference from p + s u to q + t v, two points of the segments that are closest but
+/// for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
 inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
                            Closest& closest) {
   const Vec3 u = p_end - p;
@@ -254,7 +258,8 @@ inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, cons
   closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s));
 }
 
-/// From a corner p to the face of t, where it lies over it; `sense` -1 turns the difference round.
+/// Offers the difference from a corner p to the face of t if p lies over the face; with `sense` -1,
+/// the opposite vector.
 inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest) {
   const Vec3 e = t[1] - t[0];
   const Vec3 f = t[2] - t[0];
@@ -268,7 +273,7 @@ inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& c
   closest.offer(sense * ((t[0] * k + t[1] * l + t[2] * m) - p));
 }
 
-/// The largest magnitude per axis.
+/// The largest |coordinate| per axis of all corners.
 inline Vec3 extent_of(const Corners& a, const Corners& b) {
   Vec3 most = Vec3::Zero();
   for (const Corners* t : {&a, &b}) {
@@ -302,7 +307,8 @@ inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
   return out;
 }
 
-/// By how much the projections onto the difference surely leave a gap, times its length.
+/// A lower bound of the gap between the projections onto the difference of the closest points,
+/// times the length of this difference.
 template <class Bounds>
 double gap_along(const Near& near, const Vec3& extent) {
   const auto& [s, t, closest] = near;
@@ -333,10 +339,10 @@ struct DistanceBounds {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// Lower: the distance is at least the gap over |d|. The quotient is one rounding off, the computed
-/// length 3 u, and the factor 1 - 8 u, itself rounded once, covers both. Nothing underflows there:
-/// a gap above 0 is a multiple of the last bit of the doubt, hence above 2^-104 |d|^2 (no |d_k| is
-/// more than twice the extent and a little), and |d| is at least 2^-450.
+/// Lower bound: the distance is at least the gap over |d|. The quotient has one rounding, the
+/// computed length is off by 3 u, and the factor 1 - 8 u, itself rounded once, covers both. The
+/// quotient does not underflow: a gap above 0 is a multiple of the last bit of the doubt, hence
+/// above 2^-104 |d|^2 (no |d_k| is much more than twice the extent), and |d| is at least 2^-450.
 template <class Bounds>
 DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   const Near near = near_points(a, b);

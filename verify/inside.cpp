@@ -1,8 +1,9 @@
-// Parity of crossings along a ray. Of a triangle and the line through the point x in direction d,
-// the sign of d . ((p - x) x (q - x)) tells on which side of the line the edge from p to q passes;
-// where it passes all three edges on one side it crosses the triangle, before or behind x by the
-// sign of the determinant of the three corners relative to x. Signs are found in doubles, with the
-// bound of filter_scalars.h, or in integers where that leaves a doubt.
+// Counts the crossings of a ray with the object, and takes the parity. Let a line pass through the
+// point x in direction d. The sign of d . ((p - x) x (q - x)) tells on which side of the line an
+// edge from p to q passes. If all three edges of a triangle pass on one side, the line crosses the
+// triangle; the sign of the determinant of the three corners relative to x tells whether before or
+// behind x. Signs are found in doubles, with the bound of filter_scalars.h, or in rationals if that
+// leaves a doubt.
 #include "verify/inside.h"
 
 #include <gmpxx.h>
@@ -48,15 +49,15 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
 
 enum class Crossing : std::uint8_t { no, yes, unclear };
 
-/// Does the ray from x cross the triangle? unclear where its line meets an edge, or lies in the
-/// plane. Precondition: x is not on the triangle.
+/// Does the ray from x cross the triangle? unclear: the line of the ray meets an edge, or lies in
+/// the triangle's plane. Precondition: x is not on the triangle.
 Crossing crossing(const Corners& t, const Vec3& x, const Vec3& d) {
   std::array<int, 3> side{};
   for (int i = 0; i < 3; ++i) side[i] = triple_sign(t[i], t[(i + 1) % 3], x, d, false);
   const auto [least, most] = std::minmax({side[0], side[1], side[2]});
   if (least < 0 && most > 0) return Crossing::no;  // passes by
   if (least == 0 || most == 0) return Crossing::unclear;
-  // x + s d is in the plane for s = det / (sum of what has the signs `side`).
+  // x + s d is in the plane for s = det / (sum of the three products with the signs `side`).
   return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? Crossing::yes : Crossing::no;
 }
 
@@ -103,10 +104,10 @@ std::optional<bool> odd(const Scene& scene, const Object& object, const Vec3& x,
 
 bool parity(const Scene& scene, const Object& object, const Vec3& x) {
   if (const auto answer = odd(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
-  // Directions to avoid lie in a plane for each edge of a triangle that is no segment: where x is
-  // in its plane, but not on it, two of its signs are opposite for all other directions. Of 2^52
-  // values per axis each plane holds at most 2^-52 of all directions, so 2^34 edges make a draw
-  // unclear at most once in 2^18 times.
+  // For each edge of a triangle that is no segment, the directions to avoid lie in a plane. This
+  // holds also if x is in the plane of the triangle, but not on it: for all other directions two of
+  // the signs are opposite. With 2^52 values per axis each such plane holds at most 2^-52 of all
+  // directions, so with 2^34 edges at most one draw in 2^18 is unclear.
   RandomNumbers random(1);
   constexpr int kDraws = 16;
   for (int k = 0; k < kDraws; ++k) {

@@ -15,7 +15,7 @@ namespace farcull {
 /// on: the point lies on a triangle of the object. not_closed: the object has no inside.
 enum class Inside : std::uint8_t { no, yes, on, not_closed };
 
-/// True iff the object is closed; one without triangles is.
+/// True iff the object is closed; an object without triangles is closed.
 bool is_closed(const Scene& scene, std::uint32_t object);
 
 /// Says where the point (finite) lies; `on` is also the answer for an object that is not closed.
@@ -24,7 +24,7 @@ bool is_closed(const Scene& scene, std::uint32_t object);
 /// have.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);
 
-/// The same for an object of which is_closed() is known, which takes most of the time.
+/// The same with the result of is_closed(), which takes most of the time.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, bool closed);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Cases that make trouble for the kernels (verify/kernel_check.h).
+// Test cases that are hard for the kernels (verify/kernel_check.h).
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace farcull::interval_cases {
 
-// Triangles and pixels that make trouble for the kernel of FAR pairs (core/pairs/interval.glsl),
-// and the real triangles that a float one stands for.
+// Triangles and pixels that are hard for the kernel of FAR pairs (core/pairs/interval.glsl), and
+// the real triangles that a triangle of floats may stand for.
 
 using rational::Draws;
 using rational::Q;
@@ -23,7 +23,7 @@ using FloatTriangle = std::array<std::array<float, 3>, 3>;
 
 inline float usable(double x) { return std::abs(x) < 0x1p-60 ? 0.f : static_cast<float>(x); }
 
-// Triangles of every kind that has been trouble, near the pixels around `at`.
+// A random triangle of one of the kinds that have been hard.
 inline FloatTriangle random_triangle(Draws& random) {
   const double reach = std::exp2(random.uniform(2, random.below(8) == 0 ? 20 : 12));
   const Vec3 at(random.uniform(0, reach), random.uniform(0, reach), random.uniform(-reach, reach));
@@ -75,8 +75,8 @@ inline FloatTriangle random_triangle(Draws& random) {
   return out;
 }
 
-/// A case whose real triangle is mostly at the limit, in one of the nine pixels around a point of
-/// it.
+/// A case with one of the nine pixels around a point of the triangle. The corners of the real
+/// triangle are mostly as far from the floats as the widening allows.
 inline IntervalCase random_case(Draws& random) {
   IntervalCase out{};
   out.corners = random_triangle(random);
@@ -125,7 +125,7 @@ inline std::vector<Q3> part_in(const std::vector<Q3>& triangle, const Q& i0, con
 
 namespace farcull::minkowski_cases {
 
-// Triangles, lines and solids that make trouble for the exact offset.
+// Triangles, lines and solids that are hard for the exact offset.
 
 using minkowski_line::Weights;
 using rational::Draws;
@@ -228,8 +228,8 @@ inline Weights random_weights(Draws& random) {
   }
 }
 
-/// A triangle, and the centre of a pixel that it lies around: inside its image, outside, or as far
-/// from a point of it as the radius, give or take 2^-5 to 2^-50 of it.
+/// A triangle and the centre of a pixel near it. The centre is inside the triangle's image,
+/// outside, or at the radius, up to 2^-5 to 2^-50 of it, from a point of the image.
 struct Case {
   int kind;
   Triangle triangle;
@@ -262,9 +262,9 @@ inline Case random_case(Draws& random, int kind) {
 
 inline float number(double x) { return static_cast<float>(x); }
 
-/// A solid made of floats directly: corners with zeros, denormals and equal coordinates, edges
-/// along and across the line, lengths on either side of the kernel's 1e-12, radii from none to
-/// 2^20, cuts anywhere.
+/// A solid whose floats are drawn directly, not computed from a triangle. It may have corners with
+/// zeros, denormals and equal coordinates, edges along and across the line, lengths on either side
+/// of the kernel's 1e-12, a radius from 0 to 2^20, and any cuts.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;
@@ -295,7 +295,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
         break;
     }
   }
-  // The line at about the radius from a point of the triangle.
+  // Places the line at about the radius from a point of the triangle.
   const Weights w = random_weights(random);
   double p[2];
   for (int k = 0; k < 2; ++k) {
@@ -311,7 +311,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   const double mid = s[0][2] + random.scaled(-6, 8), thick = std::abs(random.scaled(-6, 12));
   s[0][3] = number(mid - thick);
   s[2][3] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(3) == 0) {  // the triangle and the ball alone decide
+  if (random.below(3) == 0) {  // no cuts: the triangle and the ball alone decide
     s[0][3] = number(-4 * far);
     s[2][3] = number(4 * far);
   }

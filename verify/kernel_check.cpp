@@ -1,6 +1,6 @@
-// Draws cases by seed and index, and counts answers that lose something: the exact interval of a
-// box, points of the solid of an exact offset, or, for FAR pairs, corners of the part of a triangle
-// over the pixel.
+// Draws cases by seed and index, and counts answers that do not contain all they must: the exact
+// interval of a box, points of the solid of an exact offset, or, for FAR pairs, the corners of the
+// part of a triangle over the pixel.
 #include "verify/kernel_check.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void count(bool held, KernelTally& tally) {
   tally.lost += !held;
 }
 
-// A bound that is not a number is infinitely far off, on whichever side it harms.
+// An answer with a bound that is not finite counts as wrong.
 bool usable(const SolidAnswer& a) {
   return !a.hit || (std::isfinite(a.entry) && std::isfinite(a.exit));
 }
@@ -41,8 +41,8 @@ void count_excess(double excess, KernelTally& tally) {
 
 void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally) {
   if (!usable(answer)) return count(false, tally);
-  // An interval in doubles that is a little too large decides nearly always, since the kernel
-  // widens by 2^-20.
+  // The kernel widens by 2^-20, so comparing with an interval in doubles that is a little too large
+  // decides nearly always.
   const auto outer = box_line::outer_interval(c.cx, c.cy, c.solid);
   bool held = !outer || (answer.hit && answer.entry <= outer->lo && answer.exit >= outer->hi);
   if (!held) {
@@ -92,8 +92,8 @@ void check_interval(const IntervalCase& c, const IntervalAnswer& answer, KernelT
               Q(answer.near) <= p[2] && p[2] <= Q(answer.far),
           tally);
   }
-  // No wider than the depths over the pixel grown by what the budget names: three times the margin,
-  // once for each rounding of a border (docs/budget.md, "Interval pairs").
+  // The answer may be no wider than the depths over the grown pixel. The budget grows the pixel by
+  // three times the margin, once for each rounding of a border (docs/budget.md, "Interval pairs").
   if (part.empty() || !answer.hit) return;
   float most = 0;
   for (const auto& corner : c.corners) {
@@ -171,7 +171,7 @@ std::vector<SliceCase> slice_kernel_cases(std::uint64_t seed, std::size_t count)
   const auto slices_per_step = static_cast<std::int32_t>(
       std::min(0x1p16, std::floor(64 * 0x1p16 / (depth * steps_per_px + 2))));
   while (out.size() < count) {
-    // Borders of steps and their neighbours, and depths inside and beyond the window.
+    // Draws borders of steps and their neighbours, and depths inside and beyond the window.
     auto z = static_cast<float>(near + random.uniform(-0.1, 1.1) * depth);
     if (random.coin()) z = std::trunc(z * steps_per_px) / steps_per_px;
     if (random.below(16) == 0) z = static_cast<float>(random.scaled(-10, 20));

@@ -1,5 +1,5 @@
-// Bounds on the rounding of what the verification computes in doubles: of the filters
-// (verify/filter.h), and of points that are compared.
+// Bounds on the rounding errors of the doubles that the verification computes: in the filters
+// (verify/filter.h), and in the comparison of closest points (verify/closest_points.cpp).
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@ namespace farcull {
 
 enum class Triage : std::uint8_t { no, yes, unknown };
 
-/// The proved bounds, derived in filter_scalars.h. The filters take them
-/// as a type: tests show with smaller ones that they are needed.
+/// The proved bounds, derived in filter_scalars.h. The filters take them as a type, so that tests
+/// can show that smaller bounds give wrong answers.
 struct FilterBounds {
   static constexpr double side =
       9 * 0x1p-53;  // of a determinant, in its permanent; of a projection
@@ -22,23 +22,23 @@ struct FilterBounds {
       0x1p-1000;  // underflow, per unit of what is multiplied last, plus one
 };
 
-/// Error of the length of a normal that is used as an upper bound, relative to the sum of its
-/// magnitudes; and the rounding of that bound.
+/// For an upper bound of the length of a normal: the error of the length, relative to the sum of
+/// the normal's magnitudes, and the rounding of the bound.
 constexpr double kNormalLength = 0x1p-50;
 constexpr double kNormalRounding = 0x1p-49;
-/// The least square of a length whose root is accurate; smaller ones count as this one.
+/// The least square of a length whose root is accurate; smaller squares are replaced by it.
 constexpr double kLeastSquare = 0x1p-900;
 /// Rounding of a clearance times a length.
 constexpr double kNeededRounding = 0x1p-50;
 
-// ---- of SamePoints (verify/closest_points.cpp, which derives them) ----
+// ---- bounds for SamePoints (verify/closest_points.cpp derives them) ----
 
 /// Error of a product w . (x - p), relative to the magnitudes of its terms.
 constexpr double kTie = 8 * 0x1p-53;
 /// Error that the rounding of the two points of w adds, relative to the magnitudes of their
 /// coordinates.
 constexpr double kTiePoints = 2 * 0x1p-53;
-/// The same where a coordinate is subnormal.
+/// The same error if a coordinate is subnormal.
 constexpr double kTieSubnormal = 0x1p-1070;
 /// Underflow of products.
 constexpr double kTieAbsolute = 0x1p-1000;

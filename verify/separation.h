@@ -1,9 +1,9 @@
-// Lower bounds of distances in doubles, for the accounting of distances: each is at most the
-// distance, whatever was rounded.
+// Tests in doubles, for the accounting of distances, whether boxes or triangles are farther apart
+// than a limit. Each is true only if this is proved with all roundings.
 //
 // u = 2^-53 is the unit roundoff. Sums and differences of doubles have a relative error of at most
-// u, also where the result is subnormal; so have products and quotients but for an absolute error
-// below 2^-1074 where the result is subnormal.
+// u, also if the result is subnormal. Products and quotients have a relative error of at most u,
+// plus an absolute error below 2^-1074 if the result is subnormal.
 #pragma once
 
 #include <algorithm>
@@ -47,9 +47,9 @@ inline Bounds bounds_of(const std::array<Vec3, 3>& corners) {
 ///
 /// A gap along an axis is one rounded difference. Rounding is monotone, so a gap above the limit is
 /// proved. The sum of squares has three differences (each factor 1 + u, squared), three products
-/// and two sums, and the root one rounding: a relative error below 8 u in all, where squares are
-/// normal numbers. It counts only where it is large enough that what is lost to subnormal squares
-/// is far below u of it, and where nothing overflows.
+/// and two sums, and the root one rounding: a relative error below 8 u in all if the squares are
+/// normal numbers. The root is used only if it is so large that the loss to subnormal squares is
+/// far below u of it, and if nothing overflows.
 inline bool farther(const Bounds& a, const Bounds& b, double limit) {
   double squares = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,12 +65,12 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 /// there are two parallel planes, farther apart than the limit, with one triangle on either side.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
-/// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). A direction
-/// need not be right: for each one the gap is bounded with all that is rounded.
+/// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any direction
+/// may be tried, since for each one the gap is bounded with all its roundings.
 inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                               double limit) {
   constexpr int kSteps = 24;
-  // Relative to a corner. Each coordinate y is one rounded difference.
+  // The corners, relative to one of them. Each coordinate y is one rounded difference.
   std::array<Vec3, 3> s, t;
   for (int i = 0; i < 3; ++i) {
     s[i] = a[i] - a[0];
@@ -91,9 +91,10 @@ inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec
       if (of_s > s_most) s_most = of_s, s_at = i;
       if (of_t < t_least) t_least = of_t, t_at = i;
     }
-    // Each of the three terms of n . y has the rounding of y and of the product, then two sums: at
-    // most 4.01 u of `magnitude` and what is lost to subnormal products, for either side; their
-    // difference is rounded once more, 2 u of `magnitude`. The length has 4 u, the quotient 1 u.
+    // Each of the three terms of n . y has the rounding of y and of the product, then two sums. So
+    // either side is off by at most 4.01 u of `magnitude` and the loss to subnormal products. The
+    // difference of the sides is rounded once more, 2 u of `magnitude`. The length is off by 4 u of
+    // itself, the quotient by 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
     if (!std::isfinite(magnitude)) return false;
     if (gap > 0x1p-900 && gap / n.norm() * (1 - 16 * kU) > limit) return true;

@@ -1,5 +1,5 @@
-// A line along z and a solid, as its floats say it: the exact interval, which decides what a kernel
-// must contain.
+// The exact interval of a solid, as its floats define it, along a line in the direction of z. A
+// kernel's answer must contain this interval.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,8 @@
 
 namespace farcull::box_line {
 
-// A line along z and an oriented box, as the floats of a Solid say it (offsets/obb.glsl): three
-// slabs |a . (p - m)| <= h, cut by zlo <= z <= zhi. The exact interval decides what a kernel must
-// contain.
+// A line along z and an oriented box, as the floats of a Solid define it (offsets/obb.glsl): three
+// slabs |a . (p - m)| <= h, cut by zlo <= z <= zhi.
 
 using rational::Draws;
 using rational::Q;
@@ -26,7 +25,7 @@ struct Interval {
   Number lo, hi;
 };
 
-/// The solid's interval along the line, without rounding; none where the line misses it.
+/// The solid's interval along the line, without rounding; none if the line misses the solid.
 inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid& s) {
   Interval<Q> z{Q(s[0][3]), Q(s[4][0])};
   for (int i = 1; i <= 3; ++i) {
@@ -45,9 +44,9 @@ inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid
   return z;
 }
 
-/// In double, a little too large; none where the line misses for certain. Products of floats are
-/// exact in double, the differences and sums err by 2^-53 each of the terms' sizes: 2^-49 is beyond
-/// all of them together.
+/// The interval in doubles, a little too large; none if the line misses for certain. Products of
+/// floats are exact in double. Differences and sums are off by 2^-53 of the terms' sizes each, and
+/// 2^-49 is more than all of these errors together.
 inline std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& s) {
   Interval<double> z{s[0][3], s[4][0]};
   for (int i = 1; i <= 3; ++i) {
@@ -72,8 +71,9 @@ inline std::optional<Interval<double>> outer_interval(float cx, float cy, const 
 
 inline float number(double x) { return static_cast<float>(x); }
 
-/// A solid made of floats directly: slabs on either side of "parallel", normals with zeros and
-/// denormals, far middles, thin and thick; the line passes through it or close to its border.
+/// A solid whose floats are drawn directly, not computed from a triangle. Its slabs may be nearly
+/// parallel to the line, thin or thick, with zeros and denormals in their normals, and their middle
+/// may be far away. The line passes through the solid or close to its border.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;
@@ -105,7 +105,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
       default:
         break;
     }
-    // The border of the slab close to the line, measured at a depth of its own.
+    // Puts the border of the slab close to the line, at a random depth.
     const double at =
         double(s[i][0]) * (double(cx) - s[0][0]) + double(s[i][1]) * (double(cy) - s[0][1]);
     double h = std::abs(random.scaled(-10, 10));
@@ -117,7 +117,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   double mid = s[0][2] + random.scaled(-6, 8);
   s[0][3] = number(mid - thick);
   s[4][0] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(4) == 0) {  // the slabs alone decide
+  if (random.below(4) == 0) {  // no cuts: the slabs alone decide
     s[0][3] = number(-2 * far);
     s[4][0] = number(2 * far);
   }
@@ -134,12 +134,12 @@ inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
 
 namespace farcull::minkowski_line {
 
-// A line along z and a triangle fattened by a ball, as the floats of a Solid say it
+// A line along z and a triangle fattened by a ball, as the floats of a Solid define it
 // (offsets/minkowski.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d =
 // c - m in the image; p a point of the triangle; root = sqrt(r^2 - |d - p.xy|^2). The ball about p
-// cuts the line in the chord from m.z + p.z - root to m.z + p.z + root, and the solid's interval is
-// the hull of all chords, so any p is a test of a kernel: decided with rationals wherever long
-// doubles leave a doubt.
+// cuts the line in the chord from m.z + p.z - root to m.z + p.z + root. The solid's interval is the
+// hull of all chords, so a kernel's answer has to contain the chord of any p. Rationals decide this
+// wherever long doubles leave a doubt.
 
 using rational::Q;
 using Real = long double;
@@ -148,8 +148,8 @@ using Real3 = std::array<Real, 3>;
 static_assert(std::numeric_limits<Real>::digits >= 64);
 using Kernel = bool (*)(float cx, float cy, const Solid& solid, float& entry, float& exit);
 
-/// p = v0 + w1 (v1 - v0) + w2 (v2 - v0). Multiples of 2^-62 with w1, w2 >= 0 and w1 + w2 <= 1, all
-/// exactly: the point is in the triangle.
+/// The point p = v0 + w1 (v1 - v0) + w2 (v2 - v0). w1 and w2 are multiples of 2^-62, and
+/// w1, w2 >= 0 and w1 + w2 <= 1 hold exactly, so p is in the triangle.
 struct Weights {
   Real w1, w2;
 };
@@ -160,7 +160,7 @@ inline Weights weights(Real w1, Real w2) {
   return {first, grid(std::clamp<Real>(w2, 0, 1 - first))};
 }
 
-/// The point t of the way along an edge.
+/// The point at fraction t of an edge.
 inline Weights on_edge(int edge, Real t) {
   t = weights(t, 0).w1;
   return edge == 0 ? Weights{t, 0} : edge == 1 ? Weights{1 - t, t} : Weights{0, 1 - t};
@@ -169,9 +169,9 @@ inline Weights on_edge(int edge, Real t) {
 /// The part of the line in the ball about one point.
 struct Chord {
   Real square;    // of its half-length; negative: the line misses the ball
-  Real lo, hi;    // depths, where square >= 0
+  Real lo, hi;    // depths of its ends if square >= 0
   Real doubt;     // bounds the error of lo and hi
-  Real no_chord;  // below -no_chord the ball is missed for certain
+  Real no_chord;  // if square is below -no_chord, the line misses the ball for certain
 };
 
 class Line {
@@ -198,7 +198,7 @@ class Line {
     const Real x = p[0] - dx_, y = p[1] - dy_;
     Chord out{};
     out.square = r_ * r_ - x * x - y * y;
-    // |x| and |y| are at most r near a chord's ends, and their own errors 2^-56 flat.
+    // |x| and |y| are at most r near a chord's ends, and x and y are off by at most 2^-56 flat.
     const Real e = 0x1p-56L * flat_;
     out.no_chord = 8 * e * (r_ + e) + 0x1p-56L * r_ * r_ + 0x1p-300L;
     const Real root = std::sqrt(std::max<Real>(out.square, 0));
@@ -212,7 +212,7 @@ class Line {
 
   /// Finds the place where the line enters the solid (sign -1) or leaves it (sign 1): the best of
   /// the three corners, the contacts with the cylinders of the three edges, and the contact with
-  /// the face. `depth` receives the depth; false: the line misses.
+  /// the face. `depth` receives the depth of the place; false: the line misses.
   bool contact(int sign, Weights& best, Real& depth) const {
     bool found = false;
     const auto offer = [&](const Weights& w) {
@@ -290,7 +290,7 @@ inline Answer answer(Kernel kernel, float cx, float cy, const Solid& solid) {
   return a;
 }
 
-/// Without rounding: whether the chord of p, cut by zlo and zhi, leaves the answer.
+/// Whether the chord of p, cut by zlo and zhi, reaches beyond the answer; nothing is rounded.
 inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const Answer& answer) {
   const auto rational = [](Real x) {
     const double high = static_cast<double>(x);
@@ -312,7 +312,8 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
     if (!answer.hit || *z < Q(answer.entry) || *z > Q(answer.exit)) return true;
   }
   if (!answer.hit) return false;
-  // Inside the chord and the cuts a depth beyond the answer is possible.
+  // If an end of the answer lies strictly inside the chord and the cuts, the chord reaches beyond
+  // it.
   const auto strictly_inside = [&](const Q& z) {
     const Q off = z - p[2];
     return off * off < square;
@@ -322,7 +323,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
          (exit < zhi && exit >= zlo && strictly_inside(exit));
 }
 
-/// True where long doubles leave a doubt that the chord is held. False is certain.
+/// True if long doubles leave a doubt whether the answer contains the chord. False is certain.
 inline bool doubtful(const Solid& s, const Chord& c, const Answer& answer) {
   if (c.square < -c.no_chord) return false;
   if (c.hi + c.doubt < s[0][3] || c.lo - c.doubt > s[2][3]) return false;

@@ -1,10 +1,10 @@
-// Squared distances as fractions of integers, compared by products across, and rounded once.
+// Squared distances as fractions of integers, compared by cross-multiplying, and rounded once.
 //
 // Rounding. A quotient or a root is first cut off to an integer of at least 55 bits, times a power
-// of two. One more bit is appended, which is 1 iff something was cut off. A double has 53 bits, so
-// at least two bits are behind those that are kept, and the last of them says whether the number is
-// beyond them: the longer number lies on the same side of every double, and of every middle between
-// two doubles, as the exact one. Rounding it is rounding the exact one.
+// of two. One more bit is appended, which is 1 iff something was cut off. A double keeps 53 bits,
+// so at least two bits follow them, and then the appended bit. So the long number lies on the same
+// side of every double, and of every middle between two doubles, as the exact number. Therefore
+// rounding the long number gives the rounded exact number.
 #include "verify/squared_distance.h"
 
 #include <cmath>
@@ -30,7 +30,7 @@ mpz_class shifted(const mpz_class& x, long k) {
   return out;
 }
 
-/// |num| 2^k / den, cut off; `more` is set where something was.
+/// |num| 2^k / den, cut off to an integer; sets `more` if something was cut off.
 mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool& more) {
   mpz_class quotient, rest;
   const mpz_class n = shifted(num, std::max(k, 0L));
@@ -44,7 +44,7 @@ mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool&
   return quotient;
 }
 
-/// 2 x + more, away from 0.
+/// 2 x with a last bit `more`, which makes the magnitude larger.
 mpz_class with_last_bit(const mpz_class& x, bool more, int sign) {
   const mpz_class magnitude = 2 * abs(x) + (more ? 1 : 0);
   return sign < 0 ? mpz_class(-magnitude) : magnitude;
@@ -58,7 +58,8 @@ double rounded(const mpz_class& m, long exponent) {
   const long last = std::max(bits(magnitude) + exponent - kDigits, kLeastExponent);
   const long drop = last - exponent;
   if (drop > 0) {
-    // Half of the last bit kept is added, and the sum cut off; of two as near the even one stays.
+    // Adds half of the last bit that is kept, and cuts off the sum. Of two equally near numbers the
+    // even one is kept.
     const auto k = static_cast<mp_bitcnt_t>(drop);
     const bool middle = mpz_scan1(magnitude.get_mpz_t(), 0) == k - 1;
     mpz_class sum = magnitude + shifted(1, drop - 1);
@@ -67,7 +68,8 @@ double rounded(const mpz_class& m, long exponent) {
     exponent = last;
   }
   if (magnitude == 0) return 0;
-  // Now at most 53 bits, or 2^53: exact. What is beyond the largest double ldexp makes infinite.
+  // The magnitude now has at most 53 bits, or is 2^53, so get_d() is exact. ldexp() returns
+  // infinity for a result beyond the largest double.
   const double size =
       exponent > 2000 ? HUGE_VAL : std::ldexp(magnitude.get_d(), static_cast<int>(exponent));
   return m < 0 ? -size : size;

@@ -15,9 +15,9 @@ struct SquaredDistance::Value {
   long exponent = 0;
 };
 
-/// m times 2^exponent, rounded to the nearest double, to even where two are as near. Subnormal
-/// results are rounded once as well; beyond the largest double infinity, as IEEE 754 rounds. Never
-/// -0.0.
+/// m times 2^exponent, rounded to the nearest double, to the even one of two equally near doubles.
+/// Subnormal results are rounded once as well. Results beyond the largest double become infinity,
+/// as IEEE 754 rounds. Never -0.0.
 double rounded(const mpz_class& m, long exponent);
 
 /// num / den times 2^exponent, den > 0, rounded in the same way.

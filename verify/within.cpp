@@ -1,7 +1,7 @@
-// Two disjoint triangles have two closest points that are a corner of one and a point of the other,
-// or that lie on an edge of each. For if one point lies inside a face and the other inside a face
-// or an edge, that edge or face is parallel to the first face, and both points can be moved along
-// it, keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
+// Two disjoint triangles have two closest points of which one is a corner, or of which each lies on
+// an edge. For suppose that one point lies inside a face, and the other inside a face or an edge.
+// Then this edge or face is parallel to the first face, and both points can be moved along it,
+// keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
 // Collision Detection, 2005, section 5.1.10). A degenerate triangle is the union of its edges.
 #include "verify/within.h"
 
@@ -31,14 +31,14 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-/// The square of the clearance.
+/// The clearance that is asked about.
 struct Asked {
   const mpq_class& squared;
-  /// x / y is at most that. Precondition: y > 0.
+  /// True iff the squared distance x / y is within the clearance. Precondition: y > 0.
   bool holds(const mpq_class& x, const mpq_class& y = 1) const { return x <= squared * y; }
 };
 
-/// |w - [0, 1] u|^2: the point w from the segment 0 to u, which may be a point.
+/// The squared distance of the point w from the segment from 0 to u, which may be a point.
 mpq_class from_segment(const Vector& w, const Vector& u) {
   const mpq_class uu = dot(u, u);
   mpq_class along = dot(w, u);
@@ -47,7 +47,7 @@ mpq_class from_segment(const Vector& w, const Vector& u) {
   return dot(w, w) - along * (2 * dot(w, u) - along) / uu;
 }
 
-/// True iff segments p + [0, 1] u and q + [0, 1] v come that near.
+/// True iff the segments p + [0, 1] u and q + [0, 1] v are within the clearance.
 bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Vector& v,
                      const Asked& asked) {
   const Vector w = minus(p, q);
@@ -56,7 +56,8 @@ bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Ve
   const Vector q_end = {back[0] + v[0], back[1] + v[1], back[2] + v[2]};
   if (asked.holds(from_segment(w, v)) || asked.holds(from_segment(p_end, v))) return true;
   if (asked.holds(from_segment(back, u)) || asked.holds(from_segment(q_end, u))) return true;
-  // Else both closest points lie inside: where the difference is perpendicular to both lines.
+  // Else both closest points lie inside the segments, and their difference is perpendicular to
+  // both.
   const mpq_class uu = dot(u, u);
   const mpq_class uv = dot(u, v);
   const mpq_class vv = dot(v, v);
@@ -72,7 +73,7 @@ bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Ve
   return asked.holds(height * height, den);  // |normal|^2 = den
 }
 
-/// True iff p lies over the face of t, that near.
+/// True iff p lies over the face of t, within the clearance.
 bool face_within(const Vector& p, const Corners& t, const Asked& asked) {
   const Vector normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
   const mpq_class nn = dot(normal, normal);

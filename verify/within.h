@@ -1,5 +1,5 @@
-// Is the distance of two triangles at most a clearance? Filters in doubles answer first, exact
-// arithmetic where they leave a doubt. For the sources of verify/exact.h alone.
+// Is the distance of two triangles at most a clearance? Filters in doubles answer first; exact
+// arithmetic answers if they leave a doubt. For the sources of verify/exact.h alone.
 //
 // Semantics and preconditions as in verify/exact.h: closed convex hulls of the three corners with
 // the doubles as given, any finite ones, degenerate triangles included.
@@ -26,14 +26,14 @@ inline void require_clearance(const char* where, double clearance) {
 bool within_unfiltered(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                        double clearance);
 
-/// The answer where filter_planes() does not know it.
+/// The answer for triangles about which filter_planes() is `unknown`.
 inline bool is_within_beyond_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                                     double clearance) {
   const Triage triage = clearance > 0 ? filter_within(a, b, clearance) : Triage::unknown;
   return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
 }
 
-/// Precondition: the clearance passes require_clearance().
+/// The answer for any two triangles. Precondition: the clearance passes require_clearance().
 inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       double clearance) {
   const Triage triage = filter_planes(a, b, clearance);
@@ -43,8 +43,8 @@ inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 
 /// True iff the distance of two disjoint triangles is at most `clearance` (world units, finite, >=
 /// 0). Compares squared distances of rational points with the square of the clearance; nothing is
-/// rounded. Precondition: the triangles share no point (only the boundaries are looked at, so
-/// crossing triangles could get a wrong answer).
+/// rounded. Precondition: the triangles share no point. (Edges are not compared with faces that
+/// they cross, so crossing triangles could get a wrong answer.)
 bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

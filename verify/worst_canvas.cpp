@@ -1,5 +1,5 @@
-// A pixel counts as covered only if it is covered whatever the roundings that the assumptions
-// allow. Its depths are the worst ones.
+// A pixel counts as covered only if it is covered with all roundings that the device assumptions
+// allow. Its depths are the worst that these roundings give.
 #include "verify/worst_canvas.h"
 
 #include <algorithm>
@@ -14,16 +14,17 @@
 namespace farcull {
 namespace {
 
-// A float32 operation in any rounding mode; GLSL 4.50, 4.7.1.
+// Relative error of a float32 operation in any rounding mode (GLSL 4.50, 4.7.1).
 constexpr double kUlp = 0x1p-23;
 
 struct Range {
   double lo, hi;
 };
 
-// How far a window coordinate can be from the exact one: times 2/viewport, over w = 1, times
-// viewport/2, plus the centre, then snapped. A1 bounds the error over the whole viewport, so every
-// corner may err as one at its rim does, where all intermediate results are largest.
+// How far a window coordinate can be from the exact one. A coordinate is multiplied by 2/viewport,
+// divided by w = 1, multiplied by viewport/2, added to the centre, then snapped. A1 bounds the
+// error over the whole viewport, so every corner may be as far off as a corner at the rim, where
+// all intermediate results are largest.
 double displacement(int viewport, int subpixel_bits) {
   const double half = 0.5 * viewport;
   double x = half;
@@ -52,10 +53,10 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
   return true;
 }
 
-// The same where the two products that are compared, dx (c.y - a.y) and dy (c.x - a.x), are of
-// floats, each operation off by half a unit in its last place to the worse side: two in each
-// factor, one in the product, and none in comparing. Doubles hold these products of floats to
-// 2^-53.
+// The same for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x - a.x) in floats.
+// Each operation is off by half a unit in its last place to the worse side. A product has three
+// roundings, one in each factor and one of its own; the comparison has none. Doubles hold these
+// products of floats to 2^-53.
 bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
   constexpr double kHalfUnit = 0x1p-24;
   const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
@@ -64,7 +65,7 @@ bool surely_beside(const float* a, const float* b, const Point& c, double orient
   return orientation * (left - right) > lost;
 }
 
-// Spreads the bits of a word.
+// A hash of the word.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 31) * 0x9e3779b97f4a7c15u;
   x = (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
@@ -92,16 +93,16 @@ void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
 }
 
-// The value in the depth buffer for a depth, if all programs round to nearest; with 24 bits the
-// multiple of 2^-24 below it.
+// The value in the depth buffer for a depth if all programs round to nearest. With 24 bits it is
+// cut off to a multiple of 2^-24.
 float WorstCanvas::held(float z) const {
   const float mapped = std::min(std::max(0.5f + z * depth_scale(window_), 0.25f), 0.75f);
   if (options_.depth_bits == 32) return mapped;
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// The same of the program that stores or of the one that asks. Each operation may round either way,
-// and the map is one of two neighbours, up and down, as the ranges give them.
+// The value for a depth in the program that stores or the one that asks. Each rounding goes up or
+// down, to the ends of the ranges that glsl_worst computes.
 float WorstCanvas::held(float z, Verb verb) const {
   if (options_.exact_samples) return held(z);
   const bool ask = verb == Verb::ask;
@@ -141,7 +142,7 @@ void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) 
   }
 }
 
-// Whether the centre is inside for every choice that the assumptions leave.
+// True if the pixel centre is inside the proxy for all roundings that the assumptions allow.
 bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, double cy) const {
   const Point c = {cx, cy};
   for (int i = 0; i < 4; ++i) {
@@ -194,8 +195,8 @@ void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit&
   }
 }
 
-// Calls visit(pixel, px, held) for each fragment of an element: px is the entry or exit depth, held
-// what the depth buffer holds of it, or compares with what it holds.
+// Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
+// is the value that the depth buffer stores for it, or compares with its own.
 template <class Visit>
 void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
   if (element == kEverywhere) {

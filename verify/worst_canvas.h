@@ -1,6 +1,6 @@
 // A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more:
-// whatever they leave open goes against culling. It knows the steps that a coordinate takes through
-// a rasterizer, not the budget's terms.
+// of all results that they allow it takes the worst for culling. It models the steps that a
+// coordinate takes through a rasterizer, and does not know the budget's terms.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,29 @@ namespace farcull {
 struct WorstCanvasOptions {
   int subpixel_bits = 8;
   int depth_bits =
-      32;  // 32: stored as the float that was computed; 24: rounded to a multiple of 2^-24
+      32;  // 32: depths are stored as computed floats; 24: rounded to multiples of 2^-24
   int max_resolution = 16370;
-  /// Keeps what core/native/canvas.h promises, and no more: corners are not moved, but the floats
-  /// that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
+  /// True: the canvas keeps what core/native/canvas.h promises, and no more. Corners are not moved,
+  /// but the floats that compare a pixel centre with an edge are rounded as badly as IEEE 754
+  /// allows.
   bool exact_samples = false;
-  /// The asked depth lies this far behind D(exit), as on a GL device; less in twins.
+  /// The asked depth lies this far behind D(exit), as on a GL device. Tests set less, to show that
+  /// culling then fails.
   float asked_behind = kAskedBehind;
-  /// 0: each program rounds depths as badly as it may, what is stored up and what is asked down.
-  /// Else the seed by which each program, independently, rounds each depth up or down.
+  /// 0: each program rounds depths as badly as it may: stored depths up, asked depths down.
+  /// Else: the seed by which each program, independently, rounds each depth up or down.
   std::uint64_t rounding_seed = 0;
 };
 
-/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for
-/// every choice of corners that the roundings of the vertex stage, the division by w, the viewport
-/// transform and snapping allow, ties lost. The solid is evaluated with
-/// SolidProgram::interval_worst: discarded where some rounding discards, entry as late and exit as
-/// early as any rounding makes them. Depths (A4, A5): storing and asking are two programs, and each
-/// rounds the map, and converts to 24 bits, in a direction of its own; with exact_samples both
+/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is strictly inside the
+/// quadrilateral for every choice of corners that the roundings of the vertex stage, the division
+/// by w, the viewport transform and snapping allow. SolidProgram::interval_worst evaluates the
+/// solid: it discards a fragment if any rounding discards it, and makes the entry as late and the
+/// exit as early as any rounding does. Depths (A4, A5): storing and asking are two programs. Each
+/// rounds the depths, and converts them to 24 bits, in its own direction; with exact_samples both
 /// round to nearest, as the native canvas does. A query sees exactly what passes (A6). Triangles
-/// (fixed depth) are sampled at pixel centres without displacement, and their depths are rounded
-/// alike: that path promises nothing.
+/// (fixed depth) are sampled at pixel centres without displacement, and both programs round their
+/// depths in the same direction: the assumptions promise nothing about them.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});

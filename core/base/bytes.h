@@ -17,8 +17,8 @@ namespace farcull {
 
 std::string to_base64(std::span<const std::uint8_t> bytes);
 
-/// The bytes whose to_base64() is the text; empty if there are none. So the unused bits before the
-/// padding have to be 0.
+/// The bytes whose to_base64() is `text`; empty if no bytes have it, as when unused bits before the
+/// padding are not 0.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
 // FNV-1a, the hash of fingerprints: 64 bits over a sequence of bytes.

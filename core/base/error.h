@@ -14,8 +14,8 @@ namespace farcull {
 class Error : public std::runtime_error {
  public:
   /// where: a file ("mesh.obj"), a parameter ("{radius}") or a GL stage ("store"); reason: what is
-  /// wrong there; remedy: what the user can do next; line: of a text file, from 1; 0: no line. The
-  /// three texts are spelled().
+  /// wrong there; remedy: what the user can do next; line: of a text file, from 1; 0: no line.
+  /// spelled() is applied to the three texts.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;
@@ -26,12 +26,12 @@ class Error : public std::runtime_error {
 
 // ---- names of parameters ----
 
-/// The text as its reader writes parameters: by the name alone, unless the program has another
-/// spelling.
+/// Writes each {parameter} in the text as its reader does: by the name alone, unless the program
+/// has set another spelling.
 std::string spelled(const std::string& text);
 /// Sets how the program spells a parameter's name, such as --depth-format on a command line.
 /// `spelling` returns an empty text for a name that is no parameter; the text then stays as it is
-/// (a file may be called a{b}.obj). To be called before any thread runs.
+/// (a file may be called a{b}.obj). Call it before any thread runs.
 void spell_parameters(std::string (*spelling)(const std::string& name));
 
 }  // namespace farcull

@@ -1,6 +1,7 @@
 // Finds out by arithmetic how the thread computes; the operands are volatile, so that it is done at
-// run time. <cfenv> sets and restores the environment. C libraries keep flushing in fenv_t and turn
-// it off in FE_DFL_ENV; if one does not, the arithmetic that follows shows it.
+// run time. <cfenv> sets and restores the environment. In C libraries fenv_t includes whether
+// results are flushed to zero, and FE_DFL_ENV turns flushing off; if a library does otherwise, the
+// guard notices it by arithmetic.
 #include "core/base/floating_point.h"
 
 #include <array>

@@ -31,13 +31,13 @@ std::string to_string(const FloatingPoint& floating_point);
 /// every processor. May raise floating-point exceptions.
 FloatingPoint floating_point();
 
-/// Throws Error naming `where` unless the calling thread computes as kProved says: to be called
-/// after code of others, which may have changed that, before its results are used.
+/// Throws Error naming `where` unless the calling thread computes as kProved says. Call it after
+/// code of others, which may have changed the environment, and before its results are used.
 void require_proved(const std::string& where);
 
 /// Sets kProved for the calling thread, with no exception trapping, and restores what was there
-/// (rounding, flushing, traps and raised exceptions) at the end of its scope. A scope ends before
-/// that of the guard around it. Takes less than a microsecond.
+/// (rounding, flushing, traps and raised exceptions) at the end of its scope. Guards may be nested:
+/// an inner one ends before the outer one. Takes less than a microsecond.
 ///
 /// A compiler that knows nothing of the environment may move arithmetic on local variables across
 /// the guard. So the guarded function leaves arithmetic that matters to functions that it calls and
@@ -56,8 +56,8 @@ class FloatingPointGuard {
   bool outermost_ = false;
 };
 
-/// The environment of our caller, as the outermost guard of the calling thread found it. Without a
-/// guard, floating_point().
+/// The environment of farcull's caller, as the outermost guard of the calling thread found it; if
+/// the thread has no guard, floating_point().
 FloatingPoint callers_floating_point();
 
 }  // namespace farcull

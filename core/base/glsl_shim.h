@@ -26,7 +26,7 @@ inline float sqrt(float a) { return std::sqrt(a); }
 inline float fixed(float a) { return a; }
 inline float clamp(float a, float lo, float hi) { return min(max(a, lo), hi); }
 
-// Component by component, the same operations; four at a time where the processor can.
+// Operators on vec4 work component by component; with SSE2 one instruction does all four.
 #ifdef __SSE2__
 inline __m128 lanes(vec4 a) { return _mm_load_ps(&a.x); }
 inline vec4 from_lanes(__m128 a) {

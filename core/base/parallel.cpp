@@ -20,10 +20,10 @@
 namespace farcull {
 namespace {
 
-// The request to stop of the call that this thread works for; null where it works for none.
+// The stop flag of the StoppableCall that this thread works for; null if it works for none.
 thread_local const std::atomic<bool>* stop_requested = nullptr;
 
-// While it lives, the calling thread works for the call of this request.
+// While the object lives, the calling thread works for the StoppableCall with this stop flag.
 class WorksFor {
  public:
   explicit WorksFor(const std::atomic<bool>* request)
@@ -54,7 +54,8 @@ bool spin_until(const Done& done) {
   return done();
 }
 
-// Signals are left to the threads of the caller.
+// Blocks all signals in the calling thread. Threads that it starts meanwhile inherit that, so
+// signals go to threads of the caller.
 class SignalsBlocked {
  public:
 #ifndef _WIN32
@@ -145,7 +146,7 @@ class Pool {
         batch.part(batch.data, k);
       }
       lock.lock();
-      // The batch may be gone from here on.
+      // The batch may be gone after this increment: then its run_parts() may return.
       const bool last = batch.done.fetch_add(1) + 1 == batch.parts;
       lock.unlock();
       if (last) finished_.notify_all();

@@ -1,6 +1,6 @@
-// Work on all cores in contiguous chunks, so that results can be joined in order; work that threads
-// take item by item; and calls that can be stopped. All threads of farcull's own work start here,
-// so each computes as the proofs say (core/base/floating_point.h).
+// Divides work among all cores: in contiguous chunks, so that results can be joined in order, or
+// item by item. Also calls that can be stopped. All threads of farcull's own work start here, so
+// each computes as the proofs say (core/base/floating_point.h).
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,9 @@ namespace farcull {
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
 /// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if
-/// threads are free, rounding to nearest with subnormals kept, whatever the caller does. No chunk
-/// may wait for another. The first exception of the lowest chunk is thrown again here.
+/// threads are free. Inside, threads round to nearest and keep subnormals, whatever the caller's
+/// environment. No chunk may wait for another. The first exception of the lowest chunk is thrown
+/// again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -66,7 +67,7 @@ void for_each_with_memory(std::size_t count, unsigned threads, const Work& work)
   });
 }
 
-/// The same with work(k).
+/// As for_each_with_memory(), but calls work(k).
 template <class Work>
 void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
   struct Nothing {};
@@ -81,13 +82,13 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "stopped"; }
 };
 
-/// Throws Stopped where the calling thread works for a StoppableCall that was asked to stop. Else
-/// it does nothing. Each step that is divided by for_chunks() begins with it.
+/// Throws Stopped if the calling thread works for a StoppableCall that was asked to stop. Else it
+/// does nothing. Each call of run_parts(), and so of for_chunks(), begins with it.
 void stop_point();
 
 /// Runs `work` in a thread of its own. The threads that help with it in for_chunks() see the same
-/// request to stop. Signals are left to the threads of the caller. The thread starts with the
-/// floating-point environment of the thread that constructs the object.
+/// request to stop. All these threads block signals, which go to threads of the caller. The thread
+/// starts with the floating-point environment of the thread that constructs the object.
 class StoppableCall {
  public:
   /// Throws std::system_error where no thread can be started; nothing has run then.

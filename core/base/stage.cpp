@@ -98,7 +98,7 @@ std::string name_of(const Stage& stage) {
 
 std::string reason_of(const Stage& stage) {
   const std::string n = grouped(stage.n), m = grouped(stage.m);
-  // The detail of a stage about boxes of objects may be "ignored ones".
+  // Stages about boxes of objects may name in `detail` which pairs are left out: "ignored ones".
   const std::string apart = stage.detail.empty() ? "" : ", " + stage.detail + " apart";
   switch (stage.reason) {
     case Reason::none:

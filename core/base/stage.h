@@ -127,7 +127,8 @@ struct Stage {
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
   std::uint64_t queries = 0;      // slots asked
-  // Fewer than plain CULLIDE's passes take on the same live triangles; by Quick-CULLIDE and FAR.
+  // How many fewer than plain CULLIDE's passes take on the same live triangles. Quick-CULLIDE and
+  // FAR save some.
   std::uint64_t draws_saved = 0;
   std::uint64_t queries_saved = 0;
 };
@@ -139,8 +140,8 @@ std::string reason_of(const Stage& stage);
 /// "triangles", "pairs", "views" or "".
 std::string to_string(Unit unit);
 
-/// Elements drawn and slots asked by all stages together, and how many fewer than plain CULLIDE;
-/// the rest of the stage is empty.
+/// A stage with the sums over all stages of draws, queries, draws_saved and queries_saved; its
+/// other fields are empty.
 Stage work_of(const std::vector<Stage>& stages);
 
 }  // namespace farcull

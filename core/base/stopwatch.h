@@ -1,4 +1,4 @@
-// Wall clock since it was made, for the times of stages.
+// Measures the wall-clock time since its construction, for the times of stages.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Questions about a terminal: POSIX, or the C runtime and the console of Windows.
+// Asks about a terminal by POSIX, or by the C runtime and the console of Windows.
 #include "core/base/text.h"
 
 #ifdef _WIN32

@@ -12,9 +12,9 @@
 
 namespace farcull {
 
-/// Removes the number at the beginning of `text` and returns it. A decimal number as of
-/// std::from_chars: no leading space and no '+'. Empty, and `text` unchanged, if it begins with no
-/// number or T cannot hold the number.
+/// Removes the number at the beginning of `text` and returns it. The number is decimal, as
+/// std::from_chars reads it: no leading space and no '+'. Returns empty and leaves `text` unchanged
+/// if it begins with no number or T cannot hold the number.
 template <class T>
 std::optional<T> take_number(std::string_view& text) {
   T value{};
@@ -24,7 +24,7 @@ std::optional<T> take_number(std::string_view& text) {
   return value;
 }
 
-/// The number that is all of `text`; empty where `text` is anything else.
+/// Parses the whole `text` as one number; empty if it is anything else.
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
   const std::optional<T> value = take_number<T>(text);
@@ -47,12 +47,12 @@ inline std::string counted(std::uint64_t n, const std::string& one, const std::s
   return grouped(n) + " " + (n == 1 ? one : many);
 }
 
-// ---- the terminal: the questions about it that systems answer differently ----
+// ---- the terminal ----
 
-/// True where the stream is a terminal; false too where it is closed.
+/// True if the stream is a terminal; false also if the stream is closed.
 bool is_terminal(std::FILE* stream);
 
-/// Columns of the stream's terminal as it is now; 0 if the stream is no terminal or does not say.
+/// Columns of the stream's terminal now; 0 if the stream is no terminal or their number is unknown.
 unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

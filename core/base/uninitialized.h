@@ -28,7 +28,7 @@ struct UninitializedAllocator : std::allocator<T> {
   }
 };
 
-/// resize() leaves what it adds without a value.
+/// A vector whose resize() leaves new elements without a value.
 template <class T>
 using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 

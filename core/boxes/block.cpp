@@ -1,5 +1,5 @@
-// Bounds of points as two pairs of registers, and their conversion to floats and columns. For the
-// order, boxes are cut in halves along the axis along which they lie farthest apart.
+// Bounds of points are kept in two pairs of registers, and converted to floats and columns.
+// spatial_order() cuts boxes in halves along the axis along which they lie farthest apart.
 #include "core/boxes/block.h"
 
 #include <ranges>
@@ -39,7 +39,7 @@ struct Bounds {
     _mm_store_sd(out.hi.data() + 2, hi_z);
     return out;
   }
-  // `origin`: a point.
+  // Precondition: `origin` bounds a single point.
   FloatBox relative_to(const Bounds& origin) const {
     const auto floats = [](__m128d xy, __m128d z) {
       const __m128 all = _mm_movelh_ps(_mm_cvtpd_ps(xy), _mm_cvtpd_ps(z));
@@ -136,7 +136,7 @@ FloatBox relative(const Box& box, const Vec3& origin) {
 }
 
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  // Each of the three corners has bounds of its own, so that none waits for another.
+  // Each of the three corners has bounds of its own, so that no corner waits for another.
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {
@@ -203,7 +203,7 @@ std::size_t blocks_of_tree(std::size_t leaves) {
 
 namespace {
 
-// A box to be put in order. Halves, since a difference of two doubles may be infinite.
+// A box to be put in order. Sides are halved, since a difference of two doubles may be infinite.
 struct Placed {
   std::array<double, 3> middle, half;  // half of its sides
   std::uint32_t box;
@@ -222,7 +222,7 @@ Placed placed(const Box& box, std::uint32_t k) {
   return out;
 }
 
-// The axis along which most middles lie farthest apart, and from where to where.
+// The axis along which most middles lie farthest apart, and the range of their coordinates there.
 struct Spread {
   std::size_t axis = 0;
   double lo = 0, hi = 0;
@@ -232,7 +232,7 @@ struct Spread {
   }
 };
 
-// The spread of a sample, without an eighth at either end: few distant boxes must not decide it.
+// The spread of a sample without an eighth at either end, so that few distant boxes do not decide.
 Spread sampled_spread(std::span<const Placed> items) {
   constexpr std::size_t kMost = 32;
   const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
@@ -256,14 +256,14 @@ Spread whole_spread(std::span<const Placed> items) {
   return out;
 }
 
-// Puts the items in order. `at`: the number of the first one among all.
+// Puts the items in order. `at`: the position of the first item among all boxes.
 void sort_in_place(std::span<Placed> items, std::size_t at) {
   while (items.size() > kWide) {
     Spread spread = sampled_spread(items);
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
-    // Boxes that span the whole spread would make both parts as long. Each is set apart once, and
-    // only if they are not most of the items, so that the depth stays logarithmic.
+    // Boxes that span the whole spread would make both parts as long as the whole. Each is set
+    // apart once, and only if they are at most half of the items: so the depth stays logarithmic.
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;

@@ -1,10 +1,11 @@
-// Boxes of triangles: in doubles, grown by half the clearance, so that two triangles at that
-// distance or less have boxes that overlap; in floats; sixteen as columns, for lanes; and trees of
-// these, with an order of boxes by which their nodes are compact.
+// Boxes of triangles. In doubles they are grown by half the clearance, so that two triangles at
+// that distance or less have boxes that overlap. They are also kept in floats, sixteen as columns
+// for lanes, and in trees over such columns, with an order of boxes that makes the nodes compact.
 //
-// Boxes in floats are taken relative to a common origin and rounded. Subtraction and rounding never
-// decrease, so boxes that overlap still do; and where floats are less, so were the doubles. So no
-// margin is needed, and only boxes that touch in floats are compared again in doubles.
+// Boxes in floats are taken relative to a common origin and rounded. Subtraction and rounding are
+// monotone, so boxes that overlap in doubles overlap in floats; and if one float is less than
+// another, so was the double. So no margin is needed, and only boxes that touch in floats are
+// compared again in doubles.
 #pragma once
 
 #ifdef __SSE2__
@@ -24,13 +25,13 @@
 
 namespace farcull {
 
-/// How far each of two boxes grows so that boxes at that distance meet: half of it, rounded up.
+/// How far each of two boxes grows so that boxes `clearance` apart meet: half of it, rounded up.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
 
-/// The box grown outward by at least `half` (world units, >= 0) on every side; an empty one and
-/// half 0 change nothing. Never decreasing in the box's coordinates, and beyond the exact sum.
+/// The box grown outward by at least `half` (world units, >= 0) on every side. An empty box stays
+/// as it is, and so does any box if `half` is 0. The result is monotone in the box's coordinates.
 inline Box grow(const Box& box, double half) {
   if (half == 0 || box.is_empty()) return box;
   Box out = box;
@@ -115,10 +116,10 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// Boxes in a WideBoxes, children of a node, triangles of a block.
+/// The number of boxes in a WideBoxes, and the most children of a node and triangles of a block.
 constexpr std::uint32_t kWide = 16;
 
-/// Sixteen boxes as columns. A missing one meets nothing.
+/// Sixteen boxes as columns. A missing box meets nothing.
 template <class Number>
 struct alignas(64) WideBoxes {
   std::array<std::array<Number, kWide>, 6> column;  // x0, y0, z0, x1, y1, z1
@@ -158,8 +159,8 @@ struct BlockLanes {
 /// Fills `out` with these triangles, whose boxes are boxes[triangle - first].
 void fill_lanes(std::span<const std::uint32_t> triangles, const FloatBox* boxes,
                 std::uint32_t first, BlockLanes& out);
-/// The same from the scene, the boxes grown by `half` and relative to the origin. Returns the box
-/// of all the triangles, not grown.
+/// Fills `out` with these triangles and computes their boxes from the scene, grown by `half` and
+/// relative to the origin. Returns the box of all the triangles, not grown.
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,
                const Vec3& origin, BlockLanes& out);
 
@@ -172,15 +173,15 @@ template <class Number>
 struct BoxTree {
   std::uint64_t leaves = 0;
   int levels = 0;                                // 0: there is no leaf, and nothing else is set
-  std::array<std::size_t, kMostLevels> first{};  // block of each height, into blocks
+  std::array<std::size_t, kMostLevels> first{};  // per height: index of its first block in `blocks`
   BoxOf<Number> box = empty_box<Number>();       // of all leaves
 };
 
-/// Blocks of a tree over so many leaves.
+/// The number of blocks of a tree over so many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
 /// Makes the tree over the boxes, and writes its blocks_of_tree() blocks from blocks[at] on. boxes:
-/// of the leaves; they are overwritten.
+/// one per leaf; this function overwrites them.
 template <class Number>
 BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Number>> blocks,
                           std::size_t at) {

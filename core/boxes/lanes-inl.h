@@ -1,4 +1,4 @@
-// One box against the sixteen of a block, and against those of a tree, on the lanes of this
+// Compares one box with the sixteen of a block, and with those of a tree, on the lanes of this
 // processor. Compiled once for each instruction set (hwy/foreach_target.h).
 #if defined(FARCULL_BOXES_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_BOXES_LANES_INL_H_
@@ -72,7 +72,7 @@ HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8);
 }
 
-/// The same for all sixteen boxes, as bits.
+/// overlapping() for all sixteen boxes, as bits.
 template <class Number>
 HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
                                           const OneBox<Number>& box) {
@@ -84,8 +84,8 @@ HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
 
 using Gaps = std::array<double, kWide>;
 
-/// The squared gaps from a box to those of a block; returns which are at most `square_limit`, as
-/// bits.
+/// Sets `squares` to the squared gaps from a box to the boxes of a block. Returns as bits which of
+/// them are at most `square_limit`.
 HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox<double>& box,
                                     double square_limit, Gaps& squares) {
   const Tag<double> n;
@@ -138,7 +138,7 @@ HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
       const std::uint32_t child = kWide * at.number + next_bit(bits);
       const std::uint64_t begin = std::uint64_t{child} << (4 * below);
       const std::uint64_t end = (std::uint64_t{child} + 1) << (4 * below);
-      // Missing boxes of a block overlap an infinite one.
+      // Skips missing boxes too: they overlap an infinite box.
       if (end <= least || begin >= tree.leaves) continue;
       if (below == 0) {
         visit(child);

@@ -20,8 +20,8 @@ constexpr std::size_t kAhead = 16;
 
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
-// Whether boxes of blocks are much longer than those of compact parts of a surface would be. mean:
-// of their lengths.
+// Whether the boxes of an object's blocks are much longer than boxes of compact parts of a surface
+// would be. mean: the mean of their lengths.
 bool are_scattered(double mean, std::uint32_t blocks, const Box& object) {
   return mean * std::sqrt(blocks) > kScattered * length(object);
 }
@@ -40,7 +40,7 @@ double sampled_place(std::size_t k) {
   return at - std::floor(at);
 }
 constexpr std::uint32_t kSampledBlocks = 64;
-// A sample of fewer blocks than this would cost as much as all of them.
+// Objects of fewer blocks are not sampled: a sample would cost as much as all their blocks.
 constexpr std::uint32_t kJudgedBlocks = 4 * kSampledBlocks;
 
 // The mean length of a sample of an object's blocks, if it has many and the mean says that they are
@@ -139,7 +139,7 @@ void for_blocks_of(const TriangleBlocks& blocks, std::uint32_t object, unsigned 
   });
 }
 
-// The boxes of the objects, from those of their blocks.
+// Sets the box of an object to the union of the boxes of its blocks.
 void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
   blocks.objects[object] = Box::empty();
   for (std::uint32_t k = blocks.first[object]; k < blocks.first[object + 1]; ++k)
@@ -159,7 +159,8 @@ void keep_objects(ScatteredBoxes& scattered, const Keeps& keeps) {
   scattered.first.resize(kept);
 }
 
-// Fills in the boxes of all triangles of its objects, and in `objects` those of the objects.
+// Fills in the boxes of all triangles of the scattered objects, and in `objects` those of the
+// objects themselves.
 void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
                     std::span<Box> objects) {
   std::size_t size = 0;
@@ -223,7 +224,7 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
     if (seems[o] > 0 || is_scattered(out, o)) scattered->objects.push_back(o);
   }
   fill_scattered(scene, half, threads, *scattered, out.objects);
-  // The box of a sample is smaller than that of the object, so these are judged again.
+  // The box of a sample is smaller than that of the object, so sampled objects are judged again.
   keep_objects(*scattered, [&](std::uint32_t o) {
     const std::uint32_t count = out.first[o + 1] - out.first[o];
     if (seems[o] == 0 || are_scattered(seems[o], count, out.objects[o])) return true;
@@ -331,7 +332,7 @@ std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& regi
   return static_cast<std::uint32_t>(inside[0].size());
 }
 
-// The same for all triangles of a stretched object.
+// Puts all triangles of a stretched object in the order of spatial_order(); returns their number.
 std::uint32_t order_stretched(const Scene& scene, const Object& object,
                               std::span<std::uint32_t> order) {
   std::vector<Box> boxes(object.triangle_count);

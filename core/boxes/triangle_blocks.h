@@ -68,9 +68,9 @@ struct ScatteredBoxes {
 /// An object's blocks are scattered if they are more than kScattered times as long as those of a
 /// smooth surface.
 constexpr double kScattered = 3;
-/// An object is stretched if its box is more than kStretched times as long as the one around most
-/// of its triangles, by a sample: grids over its box, and boxes of blocks as floats, are of no use
-/// then. Objects of a few blocks are not judged.
+/// An object is stretched if its box is more than kStretched times as long as the box around most
+/// of its triangles (judged by a sample). Grids over such a box, and boxes of blocks as floats, are
+/// of no use. Objects of a few blocks are not judged.
 constexpr double kStretched = 8;
 
 /// Blocks in the order of the file. threads: 0 for as many as there are cores. scattered: if it is
@@ -80,16 +80,16 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
                            ScatteredBoxes* scattered = nullptr);
 /// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
 /// Morton order, as blocks with lanes.
-/// regions: per object, contains the boxes of all its triangles, grown, that can meet anything; an
-/// empty one if no triangle can.
+/// regions: per object a box that contains the grown boxes of all its triangles that can meet
+/// anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, ScatteredBoxes& scattered, TriangleBlocks& blocks);
 
-/// Blocks in the order of the file; of scattered objects all triangles in Morton order, with lanes
-/// and a box for each block; of stretched objects in the order of spatial_order().
+/// Blocks in the order of the file. Scattered objects have all triangles in Morton order, with
+/// lanes and a box for each block; stretched ones have them in the order of spatial_order().
 TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Recomputes the boxes and lanes of such blocks where corners moved, and the boxes of the objects.
-/// moved: per block, whether a corner moved.
+/// Brings blocks from make_ordered_blocks() up to date: recomputes the boxes and lanes of those in
+/// which a corner moved, and the boxes of the objects. moved: per block, whether a corner moved.
 void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
                   unsigned threads, TriangleBlocks& blocks);
 

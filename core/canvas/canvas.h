@@ -81,7 +81,7 @@ struct Proxy {
 struct NativeJob;    // core/native/canvas.h
 struct NativeLines;  // core/native/canvas.h
 
-/// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
+/// A solid's shader function, one source for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
 /// false: the line through the pixel centre c along the depth misses the solid; else [entry, exit],
 /// widened outward by the function's own rounding error, contains the part of the line inside the
@@ -90,11 +90,12 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// The same on the worst device that GLSL allows (core/base/glsl_worst.h): false where some
+  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false where some
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// The same on the lanes of this processor (core/native/canvas.h), for proxies and single lines.
+  /// solid_interval on the lanes of this processor (core/native/canvas.h), for proxies and for
+  /// single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
@@ -188,19 +189,19 @@ inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) 
 }
 /// How far a depth that a buffer gives back may be from 0.5 + z * scale of an exact z of the
 /// window, in steps of 2^-24, whatever the rounding of its operations: the product, of at most 1/4,
-/// rounds by 2^-25, and the sum, below 1, by 2^-24. Of 24 bits, storing rounds by 1 / (2^24 - 1)
-/// more, and reading back as a float by 2^-24.
+/// rounds by 2^-25, and the sum, below 1, by 2^-24. A buffer of 24 bits rounds by 1 / (2^24 - 1)
+/// more when it stores, and by 2^-24 when it is read back as a float.
 inline double depth_rounding(int depth_bits) {
   return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
-/// A GL canvas asks a proxy this far behind D(exit): four steps of 2^-24. Derived in
-/// docs/budget.md, "Two programs", and proved by farcull_proofs (depth.behind). The program that
-/// stores and the one that asks may round the depth map in different directions, and convert a
+/// A GL canvas asks a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
+/// docs/budget.md, "Two programs", derives it; farcull_proofs (depth.behind) proves it. The program
+/// that stores and the one that asks may round the depth map in different directions, and convert a
 /// depth to 24 bits to different neighbours; with the slack entry <= exit is seen all the same. 3/4
 /// plus the slack stays below 1, the value of an empty pixel. The canvas's own items have given
-/// depths and need no slack. The native canvas needs none: both depths are rounded to nearest by
-/// the same function.
+/// depths and need no slack. The native canvas needs no slack: the same function rounds both depths
+/// to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 
 }  // namespace farcull

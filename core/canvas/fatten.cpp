@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-// The part of one thread, with drawables of its own until all parts are joined.
+// The triangles that one thread fattens, into drawables of its own until all parts are joined.
 class Part {
  public:
   Part(const Scene& scene, const Window& window, const Fattener& fattener, double radius)
@@ -79,7 +79,7 @@ class Part {
   ProxyBounds bounds_;
 };
 
-// The drawables of all parts in order, in the memory of `out`.
+// Writes the drawables of all parts to `out`, in order; uses the memory of `out` again.
 void join(const std::vector<Part>& parts, std::size_t items, Drawables& out) {
   const std::size_t count = parts.size();
   std::vector<std::size_t> element(count + 1), item(count + 1);

@@ -43,7 +43,8 @@ struct Fattener {
   /// px (>= 0).
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
-  /// The same bits for many triangles at once, all of which need no clipping; null: one by one.
+  /// Fattens many triangles at once, those that need no clipping, to the same bits as `fatten`;
+  /// null: triangles are fattened one by one.
   void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };

@@ -14,7 +14,8 @@ struct SolidCase {
   float cx, cy;
   Solid solid;
 };
-/// solid_interval of it (core/canvas/canvas.h); entry and exit mean nothing where it is not hit.
+/// What solid_interval (core/canvas/canvas.h) gives for a SolidCase; without a hit, entry and exit
+/// mean nothing.
 struct SolidAnswer {
   bool hit;
   float entry, exit;
@@ -31,7 +32,7 @@ struct IntervalCase {
   std::array<std::array<std::int8_t, 3>, 3> shift;
 };
 /// Bounds of the whole triangle, its range along x between the pixel's rows, and its depths over
-/// the pixel, as the programs of FAR pairs compute them; not hit: it has no point there.
+/// the pixel, as the programs of FAR pairs compute them; not hit: no point of it is over the pixel.
 struct IntervalAnswer {
   std::array<float, 3> lo, hi;
   float row_lo, row_hi;

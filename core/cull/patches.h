@@ -1,6 +1,7 @@
 // Patches: how FAR tests an object against itself (docs/reliability.md, "Self-collision by FAR").
-// The triangles of the object are cut into patches, and each patch is an owner of the passes. Pairs
-// of triangles in different patches are culled by drawing, pairs inside a patch by boxes alone.
+// The triangles of the object are cut into patches. In the passes each patch counts as an object of
+// its own (an owner, core/cull/cull.h). Pairs of triangles in different patches are culled by
+// drawing, pairs inside a patch by boxes alone.
 #pragma once
 
 #include <cstdint>
@@ -47,8 +48,8 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
 /// Which of some pairs drawing can take away.
 struct PairsToDraw {
   std::vector<TrianglePair> drawn;  // of different owners, without a common vertex
-  std::vector<TrianglePair> other;  // all others: every view finds that they touch, or their owner
-                                    // is one
+  std::vector<TrianglePair> other;  // all others: they share a vertex, so every view finds that
+                                    // they touch, or both have the same owner
 };
 /// owner: per triangle of the scene; see CullSettings::owners.
 PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,

@@ -40,7 +40,7 @@ struct WidePixels {
   static HWY_INLINE WideLane pixel_error_bound(WideLane sum) {
     return WideLane(kMapRounding) * sum + WideLane(kMapUnderflow);
   }
-  /// Which are drawable, and inside the region as they are.
+  /// The lanes whose triangles are drawable, and inside the region without clipping.
   HWY_INLINE WideBool inside(const Window& window) const {
     WideBool in = error <= WideLane(kMaxDoubleError);
     for (const dvec3& q : p) {

@@ -76,7 +76,7 @@ using LaneVector = hn::Vec<LaneTag>;
 using Lane = LaneOf<LaneTag>;
 using Bool = BoolOf<LaneTag>;
 HWY_INLINE Lane select(Bool c, Lane a, Lane b) { return Lane(hn::IfThenElse(c.mask, a.v, b.v)); }
-/// The answer of the first lane, for values that are the same in all of them.
+/// The common value of all lanes. Precondition: they have one.
 HWY_INLINE bool of_all(Bool c) { return hn::AllTrue(LaneTag(), c.mask); }
 
 struct vec2 {
@@ -86,8 +86,8 @@ struct vec4 {
   Lane x, y, z, w;
 };
 
-// Lanes of doubles, for texts in doubles: `double` stands for WideLane, and each lane is a triangle
-// of its own.
+// Lanes of doubles, for source files that compute in double (offsets/fit.inl): there `double`
+// stands for WideLane, and each lane holds one triangle.
 using PlainDouble = double;  // where `double` stands for WideLane
 using WideTag = hn::CappedTag<double, 8>;
 using NarrowTag = hn::Rebind<float, WideTag>;

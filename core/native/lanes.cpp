@@ -1,4 +1,4 @@
-// Highway's table of functions is told which entry to use.
+// Tells Highway's table of functions which entry to use.
 #include "core/native/lanes.h"
 
 #include <hwy/highway.h>
@@ -12,7 +12,8 @@
 namespace farcull {
 namespace {
 
-// Those that were compiled and that the processor has, best first: lower bits are better.
+// The instruction sets that were compiled and that the processor has, best first: in Highway's
+// masks lower bits are better.
 std::vector<std::int64_t> usable() {
   std::vector<std::int64_t> found;
   const std::int64_t both = hwy::SupportedTargets() & HWY_TARGETS;

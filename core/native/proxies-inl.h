@@ -1,5 +1,5 @@
-// Draws elements in blocks of pixels, one pixel on each lane, and takes from their fragments depths
-// to store, or an answer. A block is 4 pixels wide if there are 4 lanes or more, since the proxies
+// Draws elements in blocks of pixels, one pixel on each lane. Their fragments are stored as depths,
+// or answer an ask. A block is 4 pixels wide if there are 4 lanes or more, since the proxies
 // of culling are small. Proxies are drawn with a solid's kernel: a type with
 //   interval(c, s0, .., s4, entry, exit): its solid_interval on lanes;
 //   nearest(solid), farthest(solid): depths (px) that no entry comes before and no exit behind.
@@ -26,8 +26,8 @@ constexpr int kBlockHeight = kLanes / kBlockWidth;
 static_assert(kLanes == 1 || kLanes % 4 == 0);
 static_assert(kBlockWidth <= kNativeOverhang && kBlockHeight <= kNativeOverhang);
 
-/// kBlockHeight rows of kBlockWidth floats, of which the first `rows` are ours: the others belong
-/// to another thread and are not touched. Where they are missing the first row is loaded again.
+/// kBlockHeight rows of kBlockWidth floats, of which the first `rows` are this thread's: the others
+/// belong to another thread and are not touched. In their place the first row is loaded again.
 #if HWY_TARGET == HWY_SCALAR
 template <int kCount>
 HWY_INLINE LaneVector load_rows(const float* at, int, int) {
@@ -262,7 +262,7 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
   });
 }
 
-/// The kernel's answers for single lines.
+/// Asks the kernel about single lines.
 template <class Kernel>
 HWY_INLINE void follow_lines(const NativeLines& lines) {
   const Solid& s = *lines.solid;

@@ -97,10 +97,10 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
                                   hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        // For the corner of the pixel that is farthest inside.
+        // The most by which a corner of the pixel is farther inside than the centre.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
         const Wide least = hn::Set(wide, -reach);
-        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // its points: a left or a top edge
+        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge owns its points
         covered = hn::And(covered, kTouched || owns ? hn::Ge(side, least) : hn::Gt(side, least));
         place = hn::Add(place, hn::Mul(hn::Mul(side, over), hn::Set(wide, t.place[i])));
       }

@@ -1,6 +1,6 @@
-// FAR pairs asks a device for the raw pairs of one view. Two implementations from one kernel
-// text (core/pairs/interval.glsl): threads of the CPU, which compile it as C++, and GL compute
-// shaders (core/gl/pairs/pairs.h).
+// FAR pairs asks a device for the raw pairs of one view. Two implementations share one kernel
+// (core/pairs/interval.glsl): threads of the CPU, which compile it as C++, and GL compute shaders
+// (core/gl/pairs/pairs.h).
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ struct PairTask {
   std::span<const std::uint32_t> owners;                    // object of each triangle
   std::span<const std::uint8_t> self;                       // per object: tested against itself
   std::span<const PixelBox> limits;       // per object: contains every point it can share
-  std::span<const std::uint32_t> active;  // ascending indices into triangles: who takes part
+  std::span<const std::uint32_t> active;  // ascending indices into triangles: those that take part
   bool neighbours = true;  // false: pairs of one object that share a vertex index may be left out
   int width = 0;           // px; pixel (i, j) is [i, i + 1] x [j, j + 1]
   int height = 0;          // px; 0 <= i < width, 0 <= j < height
@@ -61,7 +61,7 @@ struct PairTask {
   /// entries of their lists, and large triangles times active ones.
   std::uint64_t most_tests = UINT64_MAX;
   /// Takes away pairs that the caller knows to be apart, so that lists that fill up stay short;
-  /// null: it knows of no such pair. Called by several threads at once.
+  /// null: the caller knows of no such pair. Called by several threads at once.
   std::function<void(std::vector<TrianglePair>&)> narrow = {};
   glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
                           // triangle of its PixelVertex corners, up to float rounding
@@ -83,7 +83,7 @@ struct PairCounts {
   bool given_up = false;  // there is more work than PairTask::most_tests; no pairs
   double prepare_ms = 0;  // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
-  // The same by the clock of a GL device; negative where it gives none, and on the CPU.
+  // The three times by the clock of a GL device; negative if it has no clock, and on the CPU.
   double mark_device_ms = -1, list_device_ms = -1, pair_device_ms = -1;
 };
 
@@ -94,12 +94,12 @@ class PairBackend {
   /// Threads of the CPU that the rest of the work may use too; 0: as many as there are cores.
   virtual unsigned threads() const { return 0; }
   /// Pairs a < b (indices into task.triangles), sorted, each once: of different owners, or of one
-  /// that is `self`; without some or all that task.narrow takes away. None where counts.given_up.
+  /// that is `self`. Pairs that task.narrow takes away may be missing. None where counts.given_up.
   /// Throws Error unless every command is known to have run (A7).
   virtual std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) = 0;
 };
 
-/// Pixels on a side of a window that this back end takes.
+/// The most pixels on a side of a window that the CPU back end takes.
 constexpr int kMostCpuPixels = 32767;
 
 /// threads: 0 for as many as there are cores. memory: bytes, about, that the masks and lists of one
@@ -110,8 +110,8 @@ constexpr int kMostCpuPixels = 32767;
 std::unique_ptr<PairBackend> cpu_pair_backend(unsigned threads = 0,
                                               std::size_t memory = std::size_t{256} << 20);
 
-/// The same in one thread for tasks whose active triangles are some of `count`: large ones are
-/// those that are large among all of these.
+/// A CPU back end in one thread, for tasks whose active triangles are a sample of `count`: a
+/// triangle is large if it would be large among all `count`.
 std::unique_ptr<PairBackend> cpu_sample_backend(std::size_t count);
 
 }  // namespace farcull

@@ -16,15 +16,15 @@ namespace {
 // Triangles are fetched this far ahead, since their corners may lie anywhere.
 constexpr std::size_t kAhead = 16;
 
-// PairItem holds pixels, and an int their products.
+// PairItem holds a pixel in 16 bits, and a product of two such numbers fits an int.
 static_assert(kMostCpuPixels < 1 << 15);
 
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
 constexpr int kBandsPerThread = 8;
 constexpr int kLeastShift = 2;
 
-// Pairs are held although they may repeat, up to this part of a thread's memory, in all threads
-// together, or so many, whichever is more, or as many as are distinct.
+// The pool may hold repeated pairs, of all threads together: in a kBufferPart-th of one thread's
+// memory, or kLeastBuffer of them, whichever is more, or as many as are distinct.
 constexpr std::size_t kBufferPart = 8;
 constexpr std::size_t kLeastBuffer = 4096;
 
@@ -129,7 +129,7 @@ class CpuPairs : public PairBackend {
   }
 
  private:
-  // Bounds of all active triangles: the small ones as items of the bands that they meet.
+  // Finds the bounds of all active triangles; small ones become items of the bands that they meet.
   void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks,
                        WorkLimit& work) {
     const PairTask& task = grid.task();
@@ -168,7 +168,7 @@ class CpuPairs : public PairBackend {
     for (const auto& part : large_of) large_.insert(large_.end(), part.begin(), part.end());
   }
 
-  // Compares large triangles with each active one, in the rectangle of that one's bounds.
+  // Compares large triangles with each active one, over the rectangle of the active one's bounds.
   void compare_large(const PairGrid& grid, std::size_t chunks, PairPool& found) {
     if (large_.empty()) return;
     const PairTask& task = grid.task();

@@ -70,13 +70,13 @@ class PairGrid {
   const interval::vec4& corner(std::uint32_t triangle, int k) const {
     return task_.vertices[task_.triangles[triangle][k]];
   }
-  /// Fetches the corners, for a call that follows soon.
+  /// Fetches the corners of a triangle into the cache, for a use that follows soon.
   void prefetch([[maybe_unused]] std::uint32_t triangle) const {
 #ifdef __GNUC__
     for (const std::uint32_t v : task_.triangles[triangle]) __builtin_prefetch(&task_.vertices[v]);
 #endif
   }
-  /// Real bounds, and within the owner's limits.
+  /// The bounds of the real triangle. bounds() cuts them to the limits of its owner.
   PairBounds real_bounds(std::uint32_t triangle) const {
     const std::array<std::uint32_t, 3>& t = task_.triangles[triangle];
     PairBounds out;
@@ -144,7 +144,7 @@ class PairRows {
     hi = std::min(strip_.hi + margin_.x, bounds_.hi.x);
     return lo <= hi;
   }
-  /// The interval over a rectangle of the row; false: none.
+  /// The depth interval over a rectangle of the row; false: none.
   bool depths(float x0, float x1, float& near, float& far) {
     if (!interval::far_depths(strip_, x0 - margin_.x, x1 + margin_.x, near, far)) return false;
     near = std::max(near - margin_.z, bounds_.lo.z);

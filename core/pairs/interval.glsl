@@ -1,6 +1,6 @@
-// Where a triangle can be in pixel space: its bounds, and its depth interval over a rectangle of the image. One text for GLSL
-// and C++: GL back end, CPU back end and property tests. Every result contains what it speaks about, for any rounding that
-// GLSL allows; the constants are derived in docs/budget.md, "Interval pairs".
+// Where a triangle can be in pixel space: its bounds, and its depth interval over a rectangle of the image. This file compiles
+// as GLSL for the GL back end, and as C++ for the CPU back end and property tests. Every bound and interval contains the exact
+// one, for any rounding that GLSL allows; the constants are derived in docs/budget.md, "Interval pairs".
 //
 // A triangle is three float corners (px). Every point of the real triangle is within `widen` (px per axis) plus half a unit in
 // the last place of the point of the float triangle with the same barycentric coordinates. Preconditions: a coordinate is 0 or
@@ -59,7 +59,8 @@ FAR_KERNEL void far_segment(FAR_INOUT(FarStrip) strip, float px, float pz, float
   strip.hi = max(strip.hi, s.z);
 }
 
-// Where an edge crosses the strip's two border lines; a line crosses an even number of edges, since an edge has one of its ends.
+// The first crossings of edges with the strip's two border lines. A line crosses an even number of edges, since each edge
+// contains only its upper end.
 struct FarChords {
   vec4 first;  // x, z on the lower line; x, z on the upper line
   bool lower;  // the first crossing of that line has been seen

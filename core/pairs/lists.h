@@ -2,9 +2,9 @@
 // Each owner is marked against the earlier ones in masks of 64 slices per pixel; entries outside
 // the slices that two owners touch are left out.
 //
-// And the pairs of triangles that one thread has settled: reported already, or never to be
-// reported. Long lists of triangles that lie on each other share most of their pairs from pixel to
-// pixel; a table of bits lets such a pair be passed over.
+// Also a table of the pairs of triangles that one thread has settled: reported already, or never
+// to be reported. Long lists of triangles that lie on each other share most of their pairs from
+// pixel to pixel; by this table of bits such a pair is passed over.
 #pragma once
 
 #include <algorithm>
@@ -34,8 +34,8 @@ class SettledPairs {
     forget();
   }
 
-  /// Makes sure that `count` more triangles can have numbers; forgets everything where that takes
-  /// it. False: the table never holds so many.
+  /// Makes sure that `count` more triangles can have numbers; forgets everything if that is needed.
+  /// False: the table never holds so many.
   bool reserve(std::size_t count) {
     if (count > most_) return false;
     if (count_ + count > most_) forget();
@@ -192,7 +192,8 @@ void TileLists::for_each_pixel(const PairItem& item, const Visit& visit) const {
   }
 }
 
-// Owner by owner: first the slices of earlier owners that it meets, then its own slices.
+// Goes owner by owner: first marks the slices of earlier owners that this one meets, then adds its
+// own slices.
 inline std::size_t TileLists::mark(const PairTile& tile, std::span<const PairItem> items) {
   tile_ = tile;
   const std::size_t cells = static_cast<std::size_t>(tile_.width()) * tile_.height();
@@ -233,7 +234,7 @@ inline void TileLists::sort_entries(std::size_t cells) {
   for (std::size_t c = 0; c < cells; ++c) first_[c + 1] += first_[c];
   first_[cells + 1] = static_cast<std::uint32_t>(raw_.size());
   entries_.resize(raw_.size());
-  // From the back, so that first_[c + 1], the end of list c, ends as its start.
+  // From the back, so that first_[c + 1], the end of list c, becomes its start.
   for (std::size_t k = raw_.size(); k-- > 0;) {
     const RawEntry& raw = raw_[k];
     const Shown& shown = shown_[raw.entry.shown];

@@ -1,4 +1,4 @@
-// Boxes of blocks give their pairs; each view takes candidates away from the ones before it.
+// Boxes of blocks give their pairs; each view takes candidates away that the views before it left.
 #include "core/pairs/pairs.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 // every pair of boxes that overlap, to keep few of them.
 constexpr std::size_t kComparedWithAll = 256;
 
-// Pairs of a few triangles (ascending) and any others that count and whose grown boxes overlap.
+// Pairs that count, of one of a few triangles (ascending) and any other, whose grown boxes overlap.
 std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& regions,
                                        std::span<const std::uint32_t> few, double clearance) {
   const std::vector<std::uint32_t> owner = join_owners(scene);
@@ -90,7 +90,8 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
   });
 }
 
-// How many pairs ahead the second corners are prefetched; the first ones are mostly those before.
+// How many pairs ahead the corners of second triangles are prefetched. The first triangle is mostly
+// that of the pair before.
 constexpr std::size_t kAhead = 8;
 
 // Keeps the pairs whose boxes overlap, in order. owners: as neighbours_count() takes them.
@@ -202,7 +203,7 @@ class Finding {
       out_.stages.push_back(stage);
       return true;
     }
-    // A view that keeps them all takes next to nothing away: the triangles lie on each other.
+    // A view that keeps all of a sample takes almost nothing away: the triangles lie on each other.
     if (kept_by(scene_, plan_.regions, choice, plan_.settings.clearance, out_.candidates) == 1) {
       stage.reason = Reason::keeps_sample;
       out_.stages.push_back(stage);

@@ -30,7 +30,7 @@ struct PairChoice {
   int resolution = 0;  // px
   std::string reason;
 };
-/// The best direction of the scene (the axes, and the principal directions of its edges) first.
+/// Directions of the scene (the axes, and the principal directions of its edges), the best first.
 /// `resolution`: 0 to choose it. Preconditions: regions.triangles is not empty.
 std::vector<PairChoice> choose_pair_views(const Scene& scene, const PairRegions& regions,
                                           int resolution);
@@ -42,13 +42,12 @@ struct PairWindow {
   Window window;
   std::array<float, 3> widening;  // px per axis: half the clearance and the error of the map
 };
-/// Empty if pixel space cannot resolve the regions or the clearance: nothing can be said in this
-/// view.
+/// The window of a view; empty if pixel space cannot resolve the regions or the clearance in it.
 std::optional<PairWindow> pair_window(const PairRegions& regions, const View& view, int resolution,
                                       double clearance);
 
-/// The scene in one view. `task` points into it, so it must not be copied or moved while that is
-/// used.
+/// The scene in one view. `task` points into this object, so it must not be copied or moved while
+/// the task is used.
 struct PairScene {
   Window window;
   std::vector<PixelVertex> vertices;
@@ -105,18 +104,18 @@ struct PairPlan {
 };
 
 /// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
-/// there are cores. memory: of the scene's last frame, planned and found with the same one; null:
-/// nothing is kept. It may change which triangles are left to views, but no colliding pair is lost
-/// by it. Throws Error for a scene that is too large, std::logic_error for a clearance that is
-/// negative or not finite.
+/// there are cores. memory: keeps the scene's last frame, if that was planned and found with the
+/// same object; null: nothing is kept. The memory may change which triangles are left to views, but
+/// loses no colliding pair. Throws Error for a scene that is too large, std::logic_error for a
+/// clearance that is negative or not finite.
 PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0,
                     PairMemory* memory = nullptr);
 
-/// The stages that find_pairs() will go through, in order. Those that candidates decide about are
+/// The stages that find_pairs() will go through, in order. Stages that depend on the candidates are
 /// marked so, with the rule.
 std::vector<Stage> planned_stages(const PairPlan& plan);
 
-/// Whether one of the two is in the list.
+/// Whether a triangle of the pair is in the list.
 bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair);
 /// The fraction of pairs that a view would keep, from an even sample of `from`. For choices alone:
 /// no pair is lost either way. Precondition: there is a pair.
@@ -150,8 +149,8 @@ struct PairResult {
   std::vector<Stage> stages;
 };
 
-/// Buffers that calls use again, and, if plan_pairs() was given it too, the memory of one frame of
-/// a scene for the next one.
+/// Buffers that calls use again; and the memory of one frame of a scene for the next one, if
+/// plan_pairs() is given that memory.
 struct PairWorkspace {
   PairScene seen;
   PairMemory memory;
@@ -160,12 +159,12 @@ struct PairWorkspace {
 /// Finds the candidate pairs of the scene that was planned: of different objects, and of one object
 /// if it is marked `self`. The result does not depend on threads, memory limits or earlier
 /// calls; a backend keeps its buffers between calls, and so does `workspace`, whose contents are
-/// replaced. A plan that was made with workspace.memory must be found with it, and before the next
-/// one is made. Throws Error if the backend cannot vouch for its answer.
+/// replaced. A plan that was made with workspace.memory must be given here with that workspace,
+/// before the next plan is made. Throws Error if the backend cannot vouch for its answer.
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
                       PairWorkspace& workspace, const Progress& progress = {});
 
-/// Both in one call, with a workspace of its own; the stages are those of planning and finding.
+/// plan_pairs() and find_pairs() in one call, with a new workspace; the stages are those of both.
 PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBackend& backend);
 
 }  // namespace farcull

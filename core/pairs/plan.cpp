@@ -93,7 +93,7 @@ std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& reg
   return choices;
 }
 
-// About how many pairs of boxes overlap, and some of them.
+// An estimate of how many pairs of boxes overlap, and some of these pairs.
 struct PairEstimate {
   double pairs = 0;
   std::vector<TrianglePair> sample;
@@ -137,14 +137,14 @@ PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
   const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
   const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
-  // The constant takes some 10 ms, whatever the scene: a few triangles may have many pixels.
+  // The constant allows some 10 ms in any scene, since a few triangles may have many pixels.
   return static_cast<std::uint64_t>(std::min(
       0x1p63,
       0x1p24 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
 }
 
-// An uneven scene whose boxes overlap often, as those of needles do, is left to views where one
-// takes pairs away.
+// Leaves an uneven scene whose boxes overlap often (as those of needles do) to views, if the best
+// view takes enough pairs away.
 void try_views(const Scene& scene, unsigned threads, const PairSettings& settings, PairParts& parts,
                std::vector<PairChoice>& choices) {
   const PairEstimate estimate = estimated_pairs(scene, parts.rest.triangles, settings.clearance);
@@ -159,7 +159,7 @@ void try_views(const Scene& scene, unsigned threads, const PairSettings& setting
   choices = std::move(views);
 }
 
-// Triangles that take part in what blocks decide, or views, or both.
+// The number of triangles that take part in pairs that blocks decide, or views, or both.
 std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
   if (plan.blocks.empty()) return plan.regions.triangles.size();
   if (plan.regions.triangles.empty()) return plan.blocks.triangles;
@@ -178,7 +178,8 @@ std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
 
 enum class LastFrame : std::uint8_t { unknown, known, ignored };
 
-// Whether the memory knows the scene's last frame. Unless that is ignored, it then holds this one.
+// Whether the memory knows the scene's last frame. Afterwards the memory holds this frame, unless
+// the answer is `ignored`.
 LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemory& memory) {
   const bool complete = std::exchange(memory.complete, false);  // until this frame is found
   if (memory.patience.waits()) {

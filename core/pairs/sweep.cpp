@@ -20,7 +20,7 @@ using Mask = hn::Mask<Words>;
 
 HWY_INLINE Mask as_words(hn::Mask<Numbers> mask) { return hn::RebindMask(Words(), mask); }
 
-// Entry x against those behind it.
+// Compares entry x with the entries behind it.
 class RowOfSweep {
  public:
   HWY_INLINE RowOfSweep(const SweepColumns& columns, std::size_t x, bool drops_neighbours)
@@ -29,11 +29,11 @@ class RowOfSweep {
     for (std::size_t k = 0; k < 3; ++k) word_[k] = hn::Set(Words(), columns.words(k)[x]);
   }
 
-  // Those of a vector from y on that begin before the far end of x.
+  // The entries of a vector from y on that begin before the far end of x.
   HWY_INLINE hn::Mask<Numbers> in_reach(std::size_t y) const {
     return hn::Le(number(2, y), number_[5]);
   }
-  // Those of them that meet x and make a pair with it.
+  // The entries of `reach` that meet x and make a pair with it.
   HWY_INLINE Mask met(hn::Mask<Numbers> reach, std::size_t y) const {
     const auto x = hn::And(hn::Ge(number(3, y), number_[0]), hn::Le(number(0, y), number_[3]));
     const auto z = hn::And(reach, hn::Ge(number(5, y), number_[2]));
@@ -45,7 +45,7 @@ class RowOfSweep {
     if (!drops_neighbours_ || hn::AllFalse(Words(), kept)) return kept;
     return hn::And(kept, hn::Not(neighbours(y)));
   }
-  // Writes the pairs of x with those of the mask, and returns how many.
+  // Writes the pairs of x with the entries of the mask, and returns how many.
   HWY_INLINE std::size_t write(Mask mask, std::size_t y, TrianglePair* out) const {
     const auto others = hn::Compress(word(0, y), mask);
     const auto least = hn::Min(others, word_[0]), most = hn::Max(others, word_[0]);
@@ -60,7 +60,7 @@ class RowOfSweep {
   HWY_INLINE hn::Vec<Words> word(std::size_t column, std::size_t y) const {
     return hn::LoadU(Words(), columns_.words(column) + y);
   }
-  // Those of one owner with x that share one of its vertices.
+  // The entries with the owner of x that share one of its vertices.
   HWY_INLINE Mask neighbours(std::size_t y) const {
     const auto p = word(4, y), q = word(5, y), r = word(6, y);
     const auto equal = [&](std::size_t corner) {

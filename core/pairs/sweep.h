@@ -17,7 +17,7 @@ class SweepColumns {
   /// One entry.
   struct Row {
     float x0, y0, near, x1, y1, far;  // px
-    std::uint32_t id;                 // of the answer; different for each entry
+    std::uint32_t id;                 // names the entry in the answer; different for each entry
     std::uint32_t group;              // entries of one group make no pair
     std::uint32_t begun;  // bits; entries with a common bit make no pair: another pixel reports it
     std::uint32_t owner;  // entries of one owner that share a vertex make no pair, if so asked
@@ -63,16 +63,17 @@ constexpr std::size_t kSweepPadding = 16;
 /// The state of a sweep.
 struct Sweep {
   const SweepColumns* columns;
-  bool sorted;              // ascending by near: an entry ends where the others begin behind it
-  bool drops_neighbours;    // of one owner that share a vertex
+  bool sorted;              // ascending by near: partners end where one begins behind the entry
+  bool drops_neighbours;    // leaves out pairs of one owner that share a vertex
   std::size_t next = 0;     // the entry that is compared next with those behind it
   std::uint64_t tests = 0;  // entries compared
 };
 
-/// Writes pairs of ids (the smaller one first) of entries that meet into `out`, as many entries as
-/// have room for all of their pairs, and returns how many pairs; sweep.next is the number of
-/// entries when all are done. Two entries meet where their closed bounds overlap in x, y and depth.
-/// The same on every instruction set. Precondition: out holds columns.size() + kSweepPadding pairs.
+/// Writes pairs of ids (the smaller one first) of entries that meet into `out`, and returns how
+/// many. Goes on from entry sweep.next as long as `out` has room for all pairs that the next entry
+/// can have; sweep.next is the number of entries when all are done. Two entries meet where their
+/// closed bounds overlap in x, y and depth. The result is the same on every instruction set.
+/// Precondition: out holds columns.size() + kSweepPadding pairs.
 std::size_t sweep_on(Sweep& sweep, std::span<TrianglePair> out);
 
 }  // namespace farcull

@@ -20,8 +20,8 @@
 
 namespace farcull {
 
-/// Counts work of several threads. Whether all of it is beyond the limit does not depend on their
-/// order, and each of them sees it soon.
+/// Counts work of several threads. Whether the total is beyond the limit does not depend on the
+/// order of the threads, and each thread sees it soon.
 class WorkLimit {
  public:
   explicit WorkLimit(std::uint64_t most = UINT64_MAX) : most_(most) {}
@@ -37,8 +37,7 @@ class WorkLimit {
   std::atomic<std::uint64_t> done_ = 0;
 };
 
-/// The rules by which a pair is passed over. Tests put others in their place, by which pairs are
-/// lost.
+/// The rules by which a pair is passed over. Tests replace them by wrong rules, which lose pairs.
 struct TileRules {
   /// True: a pair is settled also where its intervals do not overlap.
   static constexpr bool kSettlesApart = false;
@@ -67,16 +66,16 @@ class TileWorker {
 
   // Longer lists are sorted by near depth, so that the partners of an entry stand together.
   static constexpr std::size_t kSortFrom = 224;
-  // Pairs of such lists are looked up in the table of settled ones where a list is crowded, or
-  // where so many pairs were added for each listed triangle that most of them must be the same ones
-  // again: what the table costs is little then.
+  // Pairs of such lists are looked up in the table of settled pairs if the list is crowded, or if
+  // more than kRepeatedFrom pairs were added for each listed triangle, so that most must be
+  // repeats: then the table costs little in comparison.
   static constexpr std::size_t kRepeatedFrom = 32;
   // The part of a worker's memory that the table may take.
   static constexpr std::size_t kSettledPart = 8;
 
   /// The place at which the pairs of a list are reported.
   struct Place {
-    bool pixel;  // a whole pixel, and no crowded one
+    bool pixel;  // a whole pixel that is not crowded
     int i, j;
   };
 
@@ -132,20 +131,21 @@ bool TileWorker<Rules>::meet(const Entry& a, const Shown& s, const Entry& b, con
          t.y0 <= s.y1;
 }
 
-// Neighbours that the task does not ask for.
+// Whether two triangles are neighbours and the task does not ask for such pairs.
 template <class Rules>
 bool TileWorker<Rules>::left_out(const Shown& a, const Shown& b) const {
   if (grid_->task().neighbours || a.owner != b.owner) return false;
   return share_index(a.vertices, b.vertices);
 }
 
+// Fills the columns of a sweep. `begun` (TileRules) keeps pairs of whole triangles from repeats.
 // Two whole triangles overlap in all their common pixels or in none. Only the first of these in
-// this tile, the lower left corner of the common rectangle, reports them. Both are listed there if
-// they are here: a list leaves an entry out by its slices alone, which are the same in all pixels
-// of a whole triangle, and two that overlap in depth have a common slice, which is in conflict in
-// every pixel that both meet. Bounds are cut to the limits before, so the limits are the same
-// everywhere. If that pixel is crowded, this one reports them too, since their intervals may be
-// finer there.
+// this tile, the lower left corner of the common rectangle, reports them. Both are listed in that
+// pixel if they are listed here: a list leaves an entry out by its slices alone. These are the same
+// in all pixels of a whole triangle, and two triangles that overlap in depth have a common slice,
+// which is in conflict in every pixel that both meet. Bounds are cut to the limits before, so the
+// limits are the same everywhere. If the first pixel is crowded, this one reports them too, since
+// their intervals may be finer there.
 template <class Rules>
 void TileWorker<Rules>::fill_columns(std::span<const Entry> entries, const Place& place) {
   constexpr std::uint32_t kAlone = 0x80000000;  // a group of one
@@ -205,8 +205,7 @@ void TileWorker<Rules>::keep(std::span<const TrianglePair> found, std::span<cons
   }
 }
 
-// Reports each two entries that meet and whose triangles may collide. Long lists are put into
-// another order.
+// Reports each two entries that meet and whose triangles may collide. Sorts a long list first.
 template <class Rules>
 void TileWorker<Rules>::sweep(std::span<Entry> entries, const Place& place) {
   const std::size_t n = entries.size();
@@ -253,20 +252,20 @@ bool TileWorker<Rules>::number_entries(std::span<const Entry> entries) {
   return true;
 }
 
-// The same for a long list, in order by near depth: a pair that is settled is passed over, and one
-// that is looked at becomes settled. False: too long.
+// sweep() for a long list, sorted by near depth: a pair that is settled is passed over, and one
+// that is looked at becomes settled. False: the list is too long.
 //
-// The partners of an entry are those behind it up to its far depth. Reading a row of the table
-// costs about an eighth of a test for each word, so the row is read only where it is much shorter
-// than the partners, and used only where it leaves fewer of them: never much slower than without
-// the table.
+// The partners of an entry are the entries behind it up to its far depth. Reading a row of the
+// table costs about an eighth of a test for each word. So the row is read only if it is much
+// shorter than the list of partners, and used only if it leaves fewer partners: the sweep is never
+// much slower than without the table.
 //
 // Nothing is lost: a pair is looked at where its intervals overlap. It is kept there, or no pixel
 // will ever keep it, because of its owners, because nobody asks for neighbours, or because the
 // bounds in the image, which are the same in all pixels, are apart. A pair whose intervals do not
 // overlap here is not settled. The pool holds kept pairs until the whole window is done, and the
-// bits are forgotten before the next one. The rule of whole triangles is not needed here, since the
-// bits say the same.
+// bits are forgotten before the next window. The rule of whole triangles (fill_columns()) is not
+// needed here, since the bits already prevent repeats.
 template <class Rules>
 bool TileWorker<Rules>::sweep_unsettled(std::span<const Entry> entries) {
   const std::size_t n = entries.size();

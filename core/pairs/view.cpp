@@ -149,7 +149,7 @@ constexpr double kDeep = 0.075;
 constexpr std::size_t kTrial = 192;  // triangles of the sample
 constexpr double kTrialFrom = 4096;  // triangles; fewer are looked at in no time
 constexpr double kTrialTest = 0.25, kTrialPair = 8;
-// Rows of pixels are cut one by one for triangles that meet more than a few: work of each pixel.
+// Work of each pixel of a triangle that meets more than a few: its rows are cut one by one.
 constexpr double kTightPixelWork = 4;
 // A direction that is no axis loses the exact boxes of the axes, so it has to win clearly.
 constexpr double kOblique = 1.25;
@@ -223,8 +223,8 @@ Image image_of(const Sample& sample, const View& view) {
   return out;
 }
 
-/// The work of a resolution: pixels met (the area of an image grown by a pixel), pixels there, and
-/// pairs in them.
+/// The work of a resolution: of pixels that triangles meet (the area of an image grown by a pixel),
+/// of the window's pixels, and of pairs in them.
 double work(const Sample& sample, const Image& image, int resolution) {
   const double pixel = image.side() / resolution;
   const double met = sample.count * (image.area / (pixel * pixel) + image.girth / pixel + 1);
@@ -266,7 +266,7 @@ Scene scene_of(const Sample& sample, const Scene& scene) {
   return out;
 }
 
-/// The work of what triangles meet, without their pairs.
+/// The work of the pixels that triangles meet, without that of their pairs.
 double met_work(const Sample& sample, const Image& image, int resolution) {
   const double pixel = image.side() / resolution;
   const double each = image.area / (pixel * pixel) + image.girth / pixel + 1;

@@ -21,18 +21,19 @@
 
 namespace farcull {
 
-/// Two triangles, of objects.a and of objects.b, that are probably near, as the nearest ones of the
-/// frame before.
+/// Two triangles, of objects.a and of objects.b, that are probably near, such as the nearest ones
+/// of the frame before.
 struct NearHint {
   ObjectPair objects;
   TrianglePair triangles;
 };
 
-/// The triangles of two objects that can be nearest; or of one twice: its own, without neighbours.
+/// The pairs of triangles of two objects that can be nearest. If the two are the same object, these
+/// are its own pairs, without neighbours.
 struct NearPairs {
   ObjectPair objects;
-  /// Some pair of triangles of these objects is at most this far apart (world units); infinite
-  /// where they have none, or none within the limit asked for.
+  /// Some pair of triangles of these objects is at most this far apart (world units); infinite if
+  /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
   /// All pairs of their triangles at the least distance are among these, where that distance is at
   /// most the limit; where triangles meet, the first pair of those that meet. Sorted, each once.
@@ -46,9 +47,9 @@ struct ProximityCounts {
   std::uint64_t kept = 0;            // of these, left to exact arithmetic
 };
 
-/// Trees of boxes over the objects of a scene, and what they answer. Precondition everywhere: the
-/// scene satisfies validate() and does not change before the trees are gone, and the thread rounds
-/// to nearest and keeps subnormals.
+/// Trees of boxes over the objects of a scene, and the questions that they answer. Precondition of
+/// all functions: the scene satisfies validate() and does not change before the trees are gone, and
+/// the thread rounds to nearest and keeps subnormals.
 class ProximityTrees {
  public:
   /// threads: 0 for as many as there are cores; changes no answer.
@@ -59,9 +60,9 @@ class ProximityTrees {
 
   /// Answers each question, in their order. within: world units, >= 0, may be infinite: pairs that
   /// are farther apart need not be found. hints: empty, or one for each question: a pair of
-  /// triangles of these objects that is probably near, as the nearest one of the frame before. Its
-  /// distance bounds the answer from the start, and no nearest pair is lost by it. A pair of other
-  /// triangles, in the other order, or of neighbours is left aside. Throws std::logic_error for
+  /// triangles of these objects that is probably near, such as the nearest one of the frame before.
+  /// Its distance bounds the answer from the start; no nearest pair is lost by a hint. A hint of
+  /// other triangles, in the other order, or of neighbours is ignored. Throws std::logic_error for
   /// objects that the scene does not have or in the other order, for another number of hints, and
   /// for a limit that is negative or NaN; Error where one question leaves more than 100 million
   /// pairs.
@@ -69,28 +70,28 @@ class ProximityTrees {
                                     std::span<const std::optional<TrianglePair>> hints,
                                     const Progress& progress = {}) const;
 
-  /// For each object with triangles its k nearest others: those at its k least distances, and all
-  /// that are as far as the kth of them. Returns the pairs of objects that this names, sorted, each
-  /// once, and perhaps more, with what can be nearest of them. Objects farther away than `within`
-  /// need not be found. Throws as near_pairs().
+  /// Finds for each object with triangles its k nearest others: those at its k least distances, and
+  /// all others as far as the kth of them. Returns these pairs of objects, sorted, each once, and
+  /// perhaps more, each with the pairs of triangles that can be nearest. Objects farther away than
+  /// `within` need not be found. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// The same, but among others that are equally far those with lower numbers are enough. hints: in
-  /// any order; of those for the same two objects the first one counts. Where hints name k others
-  /// of an object, their distances bound its answer from the start.
+  /// As above, but of others that are equally far only those with the lowest numbers need be found.
+  /// hints: in any order; of hints for the same two objects the first one counts. Where hints name
+  /// k others of an object, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
-  /// All pairs of triangles at most `within` apart, of different objects, and of one that is `self`
-  /// where they are no neighbours; and a few that are farther only by roundings. Sorted, each once.
+  /// All pairs of triangles at most `within` apart, of different objects, or of one `self` object
+  /// if they are no neighbours; and a few that are farther only by roundings. Sorted, each once.
   /// Precondition: within is finite. Throws std::logic_error for an invalid limit, and Error where
-  /// there are more than `most` pairs. Memory: at most some tens of bytes for each pair, and some
-  /// thousands of others.
+  /// there are more than `most` pairs. Memory: at most some tens of bytes for each pair, and for
+  /// some thousands of other pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 
-  /// Sums over all calls so far.
+  /// Counts of all calls so far together.
   ProximityCounts counts() const;
 
  private:

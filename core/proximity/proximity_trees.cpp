@@ -25,15 +25,15 @@ double square_of_gap(const Box& a, const Box& b) {
   return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
 }
 
-// Objects in the order of their boxes' gaps from a box; of those with the same gap the lower one
-// first. All is scaled.
+// Gives objects in the order of their boxes' gaps from a box; of objects with the same gap the one
+// with the lower number first. All numbers are in scaled units (core/proximity/scene_trees.h).
 class Approach {
  public:
   Approach(const SceneTrees& trees, const Box& box) : trees_(trees), box_(box) {
     const BoxTree<double>& tree = trees.objects();
     if (tree.levels > 0) queue_.push({0, tree.levels, 0});
   }
-  // False where none is left, or the squared gap is above the limit.
+  // False if no object is left, or the squared gap of the next one is above the limit.
   bool next(double square_limit, std::uint32_t& object) {
     while (!queue_.empty() && queue_.top().square <= square_limit) {
       const Node at = queue_.top();
@@ -97,8 +97,8 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// The others that may be among the k nearest of an object. hints: those that name it,
-// sorted. all: also those that are as near and have higher numbers.
+// The others that may be among the k nearest of an object. hints: those that name the object,
+// sorted. all: also others that are as near as the k-th and have higher numbers.
 std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::size_t k,
                             double limit, std::span<const NearHint> hints, bool all,
                             SearchMemory& memory, ProximityCounts& counts) {
@@ -120,7 +120,7 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
     if (hinted != begun.end() && hinted->objects == objects) {
       search = std::move(*hinted);
       search.limit = most;
-      search.counts = {};  // they were added
+      search.counts = {};  // were added above
     } else {
       search = begin_search(trees, objects, most, nullptr, memory);
     }
@@ -150,9 +150,8 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
   return out;
 }
 
-// ProximityTrees::nearest_objects(). limit: scaled; hints: triangles of the objects that they name,
-// sorted by objects, for two objects at most one; all: also others that are as near and have higher
-// numbers. Adds to counts.
+// Does ProximityTrees::nearest_objects(). limit: scaled; hints: triangles of the objects that they
+// name, sorted by objects, for two objects at most one; all: as in found_by(). Adds to counts.
 std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
                                        std::span<const NearHint> hints, bool all, unsigned threads,
                                        ProximityCounts& counts) {
@@ -228,7 +227,7 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.triangle_pairs += search.counts.triangle_pairs;
 }
 
-// ProximityTrees::pairs_within(). limit: scaled. Adds to counts.
+// Does ProximityTrees::pairs_within(). limit: scaled. Adds to counts.
 std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, std::size_t most,
                                        unsigned threads, ProximityCounts& counts) {
   const Scene& scene = trees.scene();

@@ -98,7 +98,7 @@ void SceneTrees::make_object_tree() {
 
 namespace {
 
-// Into the cache, for a use that follows soon.
+// Fetches memory into the cache, for a use that follows soon.
 void fetch([[maybe_unused]] const void* at) {
 #ifdef __GNUC__
   __builtin_prefetch(at);

@@ -21,7 +21,7 @@
 
 namespace farcull::near {
 
-// The error of what near pairs are found by: derivations, and the constants that follow from them.
+// Errors of the arithmetic that finds near pairs: derivations, and the constants that follow.
 //
 // u = 2^-53. All points are scaled (SceneTrees): |x| < 4, each off by at most
 // 2^-1075 from the point as given times the scale. "Exact" is of the points as given, times the
@@ -56,9 +56,9 @@ namespace farcull::near {
 // off by less than 8.1 u of the sum of the products' magnitudes. kDeterminant is 16 u, which covers
 // the roundings of that sum. Then the triangles share a point, and 0 is an upper bound.
 //
-// Underflow: a product is off by at most 2^-1075, so a square of a length above 2^-900 is not
-// touched by it; shorter ones count as 2^-900 where the length shall be large enough, and give no
-// direction. Everything else that is lost that way is far below kAbsolute.
+// Underflow: a product is off by at most 2^-1075, so the square of a length loses nothing by it if
+// it is above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives
+// no direction. All other losses by underflow are far below kAbsolute.
 
 constexpr double kUnit = 0x1p-53;
 constexpr double kPoint = 64 * kUnit;
@@ -88,10 +88,10 @@ namespace farcull {
 
 /// The leaves are blocks of at most sixteen triangles that lie together.
 /// All coordinates are multiplied by `scale`, a power of two by which the largest magnitude of the
-/// scene lies in [1, 4), or below where it is less than 2^-1000. Products are exact, or off by at
-/// most 2^-1075 where they are subnormal: a multiplication by a power of two changes no other
-/// digit. So nothing that is computed from them overflows. Scaled triangles are those with these
-/// corners.
+/// scene lies in [1, 4), or below if it is less than 2^-1000 before. Products are exact, or off by
+/// at most 2^-1075 where they are subnormal: a multiplication by a power of two changes no other
+/// digit. So nothing that is computed from scaled coordinates overflows. Scaled triangles are those
+/// with scaled corners.
 class SceneTrees {
  public:
   SceneTrees(const Scene& scene, unsigned threads);
@@ -164,22 +164,22 @@ struct alignas(64) BlockCorners {
   CornerColumns corner;
   WideBoxes<double> boxes;  // of the triangles
   std::array<std::uint32_t, kWide> triangle;
-  alignas(64) std::array<double, kWide> extreme;  // along a direction: the most of a triangle of a,
-                                                  // the least of one of b
+  alignas(64) std::array<double, kWide> extreme;  // along a direction: the largest coordinate of a
+                                                  // triangle of a, the smallest of one of b
   double most_extreme = 0;
-  std::uint64_t direction = 0;  // which one: a number of the search's memory
+  std::uint64_t direction = 0;  // the direction's number in SearchMemory
   std::uint32_t leaf = UINT32_MAX;
   std::uint32_t count = 0;
 };
 
-/// Loads a leaf of all objects' (SceneTrees::leaf()). Columns behind its last triangle repeat that
-/// one, but have no box.
+/// Loads the leaf with this number among those of all objects (SceneTrees::leaf()). Columns behind
+/// its last triangle repeat that triangle, but have no box.
 void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out);
 
 /// Whether the triangles have a corner at the same position.
 bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
-/// Two nodes of trees, by height and number; the square of the gap of their boxes.
+/// Two nodes of trees, by height and number, and the square of the gap of their boxes.
 struct NodePair {
   double square;
   std::uint32_t a, b;
@@ -196,14 +196,14 @@ struct KeptPair {
 struct Search {
   ObjectPair objects;
   double limit = 0;  // scaled: pairs farther apart are not looked for
-  double upper = std::numeric_limits<double>::infinity();  // the least one of a pair so far
+  double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
   /// The first pair so far that meets for certain. Then a pair behind it is no answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
-  Vec3 direction = Vec3::Zero();  // of that pair; 0: none
+  Vec3 direction = Vec3::Zero();  // of a pair with about the bound `upper`; 0: none
   std::vector<NodePair> open;     // to be looked at, the last one first
   std::vector<KeptPair> kept;
   bool everything = false;       // all pairs within the limit are kept, near or not
-  std::size_t kept_most = 1024;  // beyond it, those that cannot be nearest are dropped
+  std::size_t kept_most = 1024;  // if more are kept, pairs that cannot be nearest are dropped
   ProximityCounts counts;
 
   double bound() const { return everything ? limit : std::min(upper, limit); }
@@ -217,11 +217,11 @@ class SearchMemory {
  public:
   static constexpr std::uint32_t kLeaves = 64;
   SearchMemory() : a(kLeaves), b(kLeaves) {}
-  /// Before searches in another scene.
+  /// To be called before searches in another scene.
   void forget() { *this = SearchMemory(); }
 
   std::vector<BlockCorners> a, b;  // leaves of the first and the second object, at leaf % kLeaves
-  std::uint64_t directions = 0;    // so many were used
+  std::uint64_t directions = 0;    // the number of directions used so far
   PairBatch batch;
 };
 

@@ -49,7 +49,7 @@ class Searcher {
   void begin(const TrianglePair* hint) {
     search_.open.push_back(
         {0, 0, 0, static_cast<std::uint8_t>(a_.levels), static_cast<std::uint8_t>(b_.levels)});
-    probing_ = true;  // these pairs are met again
+    probing_ = true;  // the search looks at these pairs again later, so they are not kept now
     if (hint != nullptr && counts(hint->a, hint->b)) {
       add_hint(*hint);
       flush();
@@ -131,7 +131,8 @@ class Searcher {
     flush();
   }
 
-  // Pairs of children that are not too far apart. The higher node is divided, or both.
+  // Adds pairs of children that are not too far apart to `out`. Divides the higher node, or both if
+  // they are equally high.
   HWY_INLINE void expand(const NodePair& at, double limit, std::vector<NodePair>& out) {
     alignas(64) Gaps squares;
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
@@ -177,7 +178,7 @@ class Searcher {
   }
   void count_boxes(std::size_t blocks) { search_.counts.box_pairs += kWide * blocks; }
 
-  // The pairs of triangles of two leaves that may be near go into the batch.
+  // Puts the pairs of triangles of two leaves that may be near into the batch.
   HWY_INLINE void compare_leaves(const NodePair& at) {
     BlockCorners& a = load(memory_.a, trees_.leaf(search_.objects.a, at.a));
     BlockCorners& b = load(memory_.b, trees_.leaf(search_.objects.b, at.b));
@@ -290,7 +291,8 @@ class Searcher {
     }
     if (best < kWide) {
       new_bound();
-      // If many pairs are as near, the bound sinks by roundings; then the direction stays.
+      // Among many pairs at almost the same distance the bound falls only by rounding errors. Such
+      // a fall does not change the direction.
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};

@@ -133,7 +133,8 @@ class Guess {
     own_best = chosen(better, own, own_best);
     other_best = chosen(better, other, other_best);
   }
-  // Nearest points of the lines, then on each edge the point nearest to the one chosen.
+  // Offers nearest points of two edges: takes those of their lines, then on each edge the point
+  // nearest to the point chosen on the other.
   HWY_INLINE void offer_edges(int i, int j) {
     const Point &u = a_.edge[i], &v = b_.edge[j];
     const Point w = a_.corner[i] - b_.corner[j];
@@ -146,7 +147,7 @@ class Guess {
     const Point difference = w + times(u, s) - times(v, t);
     offer(difference, hn::Eq(s, s), on_edge(i, s), on_edge(j, t), on_a_, on_b_);
   }
-  // From a corner to the face, where it lies over it.
+  // Offers a corner and the point of the face below it, if the corner lies over the face.
   HWY_INLINE void offer_face(const Point& p, const Weights& corner, const LaneTriangle& face,
                              Weights& own_best, Weights& other_best) {
     const Point w = p - face.corner[0];
@@ -155,7 +156,7 @@ class Guess {
     const Point difference = w - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, corner, foot, own_best, other_best);
   }
-  // The point at which an edge crosses the plane of the face, if it lies within the face.
+  // Offers the point at which an edge crosses the plane of the face, if it lies within the face.
   HWY_INLINE void offer_piercing(const LaneTriangle& own, int k, const LaneTriangle& face,
                                  Weights& own_best, Weights& other_best) {
     const Point normal = cross(face.edge[2], face.edge[0]);
@@ -170,7 +171,7 @@ class Guess {
     const Point difference = p - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, on_edge(k, t), foot, own_best, other_best);
   }
-  // The point of the face's plane below one, which is relative to the face's corner 0.
+  // The point of the face's plane below the point w, which is relative to the face's corner 0.
   HWY_INLINE static Weights over(const Point& w, const LaneTriangle& face, Mask& inside) {
     const Number zero = number(0), det = face.determinant;
     const Number ew = dot(face.edge[0], w), fw = hn::Neg(dot(face.edge[2], w));
@@ -292,8 +293,8 @@ HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
     Point d = guess.difference();
     Number lower, upper;
     proof.bound(d, lower, upper);
-    // No edge pierces a face of triangles that are apart. Lanes of those stay as they are, so that
-    // the bounds of a pair do not depend on the others of its batch.
+    // No edge pierces a face if the triangles are apart. Lanes of such triangles stay as they are,
+    // so that the bounds of a pair do not depend on the others of its batch.
     const Mask apart = hn::Gt(lower, number(0));
     if (!hn::AllTrue(n, apart)) {
       guess.offer_piercings();

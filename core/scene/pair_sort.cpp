@@ -56,7 +56,7 @@ std::vector<TrianglePair> sorted_range(Parts parts, std::uint64_t from, std::uin
   }
   for (std::size_t a = 0; a + 1 < first.size(); ++a) first[a + 1] += first[a];
   std::vector<std::uint32_t> partners(first.back());
-  // From the back: first[a + 1], the end of the partners of a, ends as their start.
+  // From the back: first[a + 1], the end of the partners of a, becomes their start.
   for (const auto& part : parts) {
     for (const TrianglePair& pair : part) {
       if (pair.a >= from && pair.a < to) partners[--first[pair.a - from + 1]] = pair.b;
@@ -73,7 +73,7 @@ std::vector<TrianglePair> sorted_range(Parts parts, std::uint64_t from, std::uin
   return out;
 }
 
-// `release` is called when the parts are no longer read.
+// All pairs of the parts, as sorted_unique(). Calls `release` when the parts are no longer read.
 template <class Release>
 std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release& release) {
   std::uint64_t least = UINT64_MAX, most = 0;

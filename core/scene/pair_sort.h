@@ -19,7 +19,7 @@ namespace farcull {
 /// cores).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
-/// The same; empties the parts as soon as it has read them, to make room.
+/// As above; empties the parts as soon as it has read them, to make room.
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
 

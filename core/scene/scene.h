@@ -185,10 +185,10 @@ class MovedCorners {
   std::vector<std::uint8_t> moved_;  // per vertex: bits changed
 };
 
-/// Whether it is worth while to compare frames: not for a while after frames in which most moved.
+/// Says whether comparing frames is worth while: not for some frames after most corners moved.
 class BackoffCounter {
  public:
-  /// To be asked once a frame.
+  /// True if this frame is not to be compared. To be asked once a frame.
   bool waits() { return frames_left_ > 0 && frames_left_-- > 0; }
   void notify(bool worth_while) {
     frames_left_ = worth_while ? 0 : next_;

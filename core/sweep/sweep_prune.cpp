@@ -43,7 +43,7 @@ bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Less& l
   return moved <= most;
 }
 
-// The same as overlap(), of boxes that are not empty.
+// overlap() for boxes that are not empty.
 bool meet(const Box& a, const Box& b) {
   return a.lo.x() <= b.hi.x() && b.lo.x() <= a.hi.x() && a.lo.y() <= b.hi.y() &&
          b.lo.y() <= a.hi.y() && a.lo.z() <= b.hi.z() && b.lo.z() <= a.hi.z();
@@ -195,8 +195,9 @@ void SweepPrune::forget() {
   order_.clear();
 }
 
-/// Finds the triangles whose box meets that of a partner, an object whose box meets that of their
-/// own, or that have more than kTries partners to compare; and all of `self` objects.
+/// Finds the triangles that may have candidates. The partners of a triangle are the objects whose
+/// box meets that of its object. It finds triangles whose box meets that of a partner, triangles
+/// with more than kTries partners to compare, and all triangles of `self` objects.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
@@ -204,8 +205,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   survivors_.clear();
   marks_.assign(boxes.size(), kDropped);
   groups_.resize(boxes.size());
-  // The partners of each object, one after the other; along the axis of the sweep by their lower
-  // ends, so that the search of a triangle may end early.
+  // The partners of each object, one object after the other. Partners are sorted by their lower
+  // ends along the axis of the sweep, so that the search of a triangle may end early.
   std::vector<std::size_t> starts(scene.objects.size() + 1, 0);
   for (const TrianglePair& pair : object_pairs) ++starts[pair.a + 1], ++starts[pair.b + 1];
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
@@ -380,7 +381,7 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   return pairs;
 }
 
-/// Sorts the order for the calls to come, of which this one is taken to be the first.
+/// Sorts the triangles in order_ by the lower ends of this call's boxes, for the calls to come.
 void SweepPrune::sort_order() {
   std::vector<Key> keys;
   keys.reserve(items_.size());

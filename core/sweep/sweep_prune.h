@@ -81,13 +81,12 @@ struct SweepPruneResult {
 /// for each triangle that gets to the sweep.
 class SweepPrune {
  public:
-  /// The candidates are all pairs of triangles of different objects, and of one object where it is
-  /// `self`, whose closed boxes overlap: what box_join() finds, and inside `self` objects all such
-  /// pairs, neighbours included. Precondition: validate(scene); fewer than 2^31 triangles and
-  /// objects.
+  /// The candidates are all pairs of triangles whose closed boxes overlap, of two different objects
+  /// or both of one object marked `self`, neighbours included. box_join() with join_owners() finds
+  /// the same. Precondition: validate(scene); fewer than 2^31 triangles and objects.
   SweepPruneResult find(const Scene& scene);
-  /// The same where the boxes are at hand (triangle_boxes(), or those grown by a margin: candidates
-  /// are the pairs of the boxes that are given). Throws std::logic_error if there are not as many
+  /// As above, with the boxes given: triangle_boxes(), or boxes grown by a margin. The candidates
+  /// are then the pairs whose given boxes overlap. Throws std::logic_error if there are not as many
   /// boxes as triangles.
   SweepPruneResult find(const Scene& scene, std::span<const Box> boxes);
   /// The next call starts as the first one did.

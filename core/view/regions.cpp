@@ -17,7 +17,7 @@ Regions find_regions(const Scene& scene, const RegionRules& rules) {
 
   std::vector<std::uint32_t> objects(scene.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
-  // As owners of themselves, objects join like triangles.
+  // With each object as its own owner, box_join() joins objects as it joins triangles.
   std::vector<std::vector<std::uint32_t>> partners(objects.size());
   for (const TrianglePair& pair : box_join(out.object_boxes, objects, objects)) {
     partners[pair.a].push_back(pair.b);

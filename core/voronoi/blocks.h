@@ -67,7 +67,8 @@ inline GridPoint centre_of(const Block& block) {
   return out;
 }
 
-// Adds the halves of the block along each axis that has any. All have the triangles `kept`.
+// Cuts the block in halves along each axis with more than one cell, and adds the parts. All parts
+// have the triangles `kept`.
 inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, Level& below) {
   std::array<std::vector<std::pair<int, int>>, 3> parts;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -200,7 +201,7 @@ void descend(Form& form, const Block& whole, std::size_t triangles, const Vorono
   }
 }
 
-/// The same for the whole grid.
+/// descend() for the whole grid.
 template <class Form>
 void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
              const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {

@@ -27,7 +27,7 @@ namespace {
 // one is linear in c, so it is largest at a corner of the block.
 using Exactly = std::array<double, 3>;  // a point or a step, in units of the grid
 
-// The points that |x - centre| <= half along each axis.
+// The points x with |x - centre| <= half along each axis.
 struct BlockBox {
   Exactly centre, half;
 };

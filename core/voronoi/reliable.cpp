@@ -61,7 +61,7 @@ class Reliable {
     const std::size_t lists = chunks_for(last_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
     for (std::size_t first = 0; first < last_.blocks.size();) {
-      // Cells that add some millions of pairs at the most, or one alone.
+      // Takes cells until they may add some millions of pairs, and at least one cell.
       std::size_t next = first;
       std::uint64_t added = 0;
       while (next < last_.blocks.size() && (next == first || added < kPairsHeld)) {
@@ -147,7 +147,7 @@ class Reliable {
     return block.is_cell() ? half * widening_ : half;
   }
 
-  // The distance to another object is at most that of the way through the point.
+  // The distance of two objects is at most the length of the way through the point.
   static void note_upper(const Distances& distances, std::vector<float>& upper) {
     const auto least = distances.least_upper<2>();
     for (const Near& near : distances.objects()) {
@@ -185,7 +185,7 @@ class Reliable {
     return out;
   }
 
-  // work(the triangles of a cell) for each cell of a slice.
+  // Calls work(the triangles of a cell) for each cell of a slice.
   template <class Work>
   static void for_cells(const std::vector<VoronoiNear>& slice, const Work& work) {
     for (std::size_t begin = 0, end = 0; begin < slice.size(); begin = end) {
@@ -267,7 +267,7 @@ ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions&
   return voronoi::finished(std::move(pairs), triangles, form, grid, counts);
 }
 
-// Twice over the grid: for the upper bounds, and with them for the pairs.
+// Goes over the grid twice: for the upper bounds, and then with them for the pairs.
 ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
                                        VoronoiDevice& device, const Progress& progress) {
   voronoi::require(options);

@@ -93,7 +93,7 @@ using GridPoint = std::array<float, 3>;
 /// 32 uN, with N cells along the longest side.
 inline float voronoi_error(int longest) { return 0x1p-19f * static_cast<float>(longest); }
 
-/// lower <= the exact distance <= upper. computed: as a diagram in float has it.
+/// lower <= the exact distance <= upper. computed: the distance that a diagram in float compares.
 struct GridDistance {
   float computed;
   float lower;
@@ -113,13 +113,13 @@ inline float dot(const GridPoint& a, const GridPoint& b) {
 inline GridPoint cross(const GridPoint& a, const GridPoint& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-// In [0, 1], also where the quotient is not a number.
+// The quotient, clamped to [0, 1]; 0 where it is not a number.
 inline float part(float numerator, float denominator) {
   const float t = numerator / denominator;
   return t > 0 ? std::min(t, 1.0f) : 0.0f;
 }
 
-// The shorter of n and c - w, with its square.
+// The shortest step so far from a point w of the triangle to c, and its square.
 struct Shortest {
   GridPoint n;
   float square;
@@ -138,13 +138,13 @@ inline GridPoint to_edge(const GridPoint& c, const GridPoint& q, const GridPoint
   return minus(c, {q[0] + t * along[0], q[1] + t * along[1], q[2] + t * along[2]});
 }
 
-// Adds the point of the face below c, if it is inside.
+// Adds the step from the point of the face below c, if that point is inside the triangle.
 inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e, const GridPoint& f,
                      Shortest& shortest) {
   const GridPoint normal = cross(e, f), from = minus(c, q);
   const float square = dot(normal, normal);
   const float s = dot(cross(from, f), normal) / square, t = dot(cross(e, from), normal) / square;
-  // Not so where the normal is 0 and these are no numbers.
+  // Negated, since s and t are not numbers if the normal is 0.
   if (!(s >= 0 && t >= 0 && s + t <= 1)) return;
   GridPoint w;
   for (std::size_t k = 0; k < 3; ++k) w[k] = q[k] + s * e[k] + t * f[k];
@@ -266,7 +266,7 @@ class VoronoiDevice {
   virtual void start(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid) = 0;
 
   /// For each cell of the slice in a brick the two objects that are nearest to its centre among the
-  /// triangles of the brick, by computed distances; the lower number first among those as near.
+  /// triangles of the brick, by computed distances; among objects as near, the lower number first.
   /// kNone where there are fewer, and for cells of no brick. Bricks that do not meet the slice are
   /// left out; no two bricks share a cell. A distance errs by at most voronoi_bounds::error().
   virtual std::vector<std::array<std::uint32_t, 2>> nearest_two(int slice,
@@ -274,15 +274,16 @@ class VoronoiDevice {
 
   /// For each cell of the slice in a brick all triangles of the brick that satisfy
   /// lower <= the least upper bound of the brick's triangles + reach. Sorted by cell, then by
-  /// triangle. The bounds hold (docs/voronoi.md, lemma V13). Throws Error where these are too many.
+  /// triangle. The bounds hold (docs/voronoi.md, lemma V13). Throws as require_voronoi_list().
   virtual std::vector<VoronoiNear> near(int slice, const VoronoiBricks& bricks, float reach) = 0;
 };
 
-/// near() lists no more for a slice: 16 bytes each. Throws Error if it would.
+/// The most entries (16 bytes each) that near() may list for one slice. require_voronoi_list()
+/// throws Error if `listed` is more.
 constexpr std::size_t kVoronoiMostListed = std::size_t{1} << 24;
 void require_voronoi_list(std::size_t listed);
 
-/// On the cores of the CPU. threads: 0 for as many as there are cores.
+/// A device on the cores of the CPU. threads: 0 for as many as there are cores.
 std::unique_ptr<VoronoiDevice> cpu_voronoi_device(unsigned threads);
 
 /// The two forms above, with the distances of all cells computed by the device. The answers

@@ -1,5 +1,5 @@
-// The distance of a point from a triangle between two bounds of the exact one, for any rounding that GLSL allows. One text
-// for GLSL and C++.
+// The distance of a point from a triangle, between two bounds of the exact distance, for any rounding that GLSL allows. This
+// file compiles as GLSL and as C++.
 //
 // N is at least every coordinate of the point and of the triangle, none of which is negative; 1 <= N <= 2^14. v = 2^-23 is the
 // largest relative error of a sum, a difference or a product, in any rounding mode; a quotient errs by 2.5 v; results below

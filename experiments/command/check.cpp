@@ -41,8 +41,8 @@ Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxCheckedBytes), clean_name(path));
 }
 
-// The clearance to check: --clearance, or that of the certificate; with several frames that of the
-// first one, so that all frames answer one question.
+// The clearance to check: --clearance, or the clearance of the certificate. If there are several
+// frames, the caller gives the first frame's certificate, so that all frames answer one question.
 double clearance_of(const CheckArguments& arguments,
                     const std::optional<Certificate>& certificate) {
   return arguments.clearance.value_or(certificate ? certificate->clearance : 0);

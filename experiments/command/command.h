@@ -142,7 +142,8 @@ Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 Command add_manual(CLI::App& app);
 
-// The commands of `farcull experiment`. 1 of lemma: a violation at the budget radius or more.
+// The commands of `farcull experiment`. lemma exits with 1 if it finds a violation at the budget
+// radius or more.
 Command add_lemma(CLI::App& experiment);
 /// A command for each study, and `all`. Exit status 1: a method with a guarantee missed a pair; 2:
 /// a point could not be measured.
@@ -181,9 +182,9 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 /// and inode, with links followed.
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-/// The same, and throws Error if two outputs are one file, which need not exist yet. Standard
-/// output always counts as an output, wherever it goes. Anything but a regular file (a terminal,
-/// /dev/null) may be an output several times, but "-" only once.
+/// As require_not_read(), and throws Error if two outputs are one file, which need not exist yet.
+/// Standard output always counts as an output, wherever it goes. Anything but a regular file (a
+/// terminal, /dev/null) may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
 /// The row of the required argument SCENE.
@@ -193,7 +194,7 @@ OptionRow scene_row(std::vector<std::string>& scene);
 /// may hold.
 void complain(const std::string& message);
 
-/// The same for a broken guarantee, in red on a terminal.
+/// Prints the line of a broken guarantee likewise, in red on a terminal.
 void complain_broken(const std::string& message);
 
 /// Two lines for people: why nothing was tested, and the `command` that tests it. Empty if
@@ -312,7 +313,7 @@ struct CheckArguments {
   std::string json = {};           // "" for none; "-": standard output, in place of the text
   bool self = false;               // every object is tested against itself, as by run --self
   std::string pairs = {};          // "" for none, or a list as `farcull run --pairs` writes it
-  std::optional<double> clearance = {};  // of the list; of a certificate: the same value
+  std::optional<double> clearance = {};  // of the list; a certificate must have it too
   std::optional<FrameRange> frames = {};
 };
 

@@ -396,7 +396,7 @@ class DoctorCommand {
         "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"
         "promises nothing.");
   }
-  // 0: every assumption holds on the native canvas and on the chosen device; 1: one does not.
+  // Returns 0 if every assumption holds on the native canvas and on the chosen device, else 1.
   // Without OpenGL only the native canvas is tested.
   int run() const;
 

@@ -17,7 +17,7 @@ namespace {
 class OraclesCommand {
  public:
   CLI::App* add_to(CLI::App& experiment);
-  // 1: the oracles disagree about a pair.
+  // Returns the exit status; 1: the oracles disagree about a pair.
   int run();
 
  private:

@@ -1,6 +1,6 @@
-// Pairs whose triangles have one common point, or lie in one plane: made of whole numbers, so that
-// the contact is exact, with ever more bits. One pair in three is then moved by one unit. And the
-// list of all families of pairs.
+// Pairs whose triangles have one common point, or lie in one plane. They are made of whole numbers
+// with ever more bits, so that the contact is exact; b is then moved by one unit in one pair of
+// three. This file also has the list of all families of pairs.
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -14,13 +14,13 @@ using Corners = std::array<Vec3, 3>;
 
 const std::vector<double> kBits = {8, 16, 24, 32, 40, 52};
 
-/// `v` or -v, whichever does not point against `towards`.
+/// `v`, or -v if `v` points against `towards`.
 Vec3 along(const Vec3& v, const Vec3& towards) { return v.dot(towards) < 0 ? Vec3(-v) : v; }
 
 Vec3 normal(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
 
-/// A triangle in multiples of 4, so that quarters of it are whole; the extents below keep all sums
-/// of a contact under 2^bits.
+/// A triangle whose coordinates are multiples of 4, so that their quarters are whole. The extents
+/// below keep all sums of a contact under 2^bits.
 Corners first_triangle(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 4);
   return {4 * draws.whole_point(extent), 4 * draws.whole_point(extent),
@@ -43,7 +43,8 @@ MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) 
   return out;
 }
 
-/// True three times in four: b then keeps to one side of a. Else it leaves the point to any side.
+/// True three times in four: b then keeps to one side of a. Else b goes to any side of the contact
+/// point.
 bool keeps_aside(RandomDraws& draws) { return !draws.chance(4); }
 
 MadePair vertex_vertex(RandomDraws& draws, double bits) {
@@ -58,7 +59,7 @@ MadePair vertex_vertex(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, {a[0], a[0] + u, a[0] + v});
 }
 
-/// A corner of b at `at`, a point of a.
+/// b has a corner at `at`, a point of a.
 MadePair corner_at(RandomDraws& draws, double bits, const Corners& a, const Vec3& at) {
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
@@ -81,7 +82,8 @@ MadePair vertex_face(RandomDraws& draws, double bits) {
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
-/// An edge of b along a line in the plane of a: inside it, or the edge of a itself.
+/// b has an edge in the plane of a: parallel to an edge of a from a point inside a, or that edge
+/// itself.
 MadePair edge_face(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const Vec3 quarter = (a[1] - a[0]) / 4;
@@ -100,14 +102,14 @@ MadePair edge_edge(RandomDraws& draws, double bits) {
   const Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
   if (keeps_aside(draws)) {
-    // The plane of both edges has a on one side; v goes to the other one.
+    // The plane of both edges has a on one side; v points to the other side.
     const Vec3 across = (a[1] - a[0]).cross(u);
     v = along(v, across.dot(a[2] - at) > 0 ? Vec3(-across) : across);
   }
   return finished(draws, bits, a, {at - u, at + draws.whole(1, 3) * u, at + v});
 }
 
-/// Corners on a grid of two whole vectors.
+/// Two triangles of one plane: their corners are whole combinations of two whole vectors.
 MadePair coplanar(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 5);
   const Vec3 u = draws.whole_point(extent);
@@ -122,11 +124,11 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   Corners a = {drawn(), drawn(), drawn()};
   Corners b = {drawn(), drawn(), drawn()};
   switch (draws.below(4)) {
-    case 0:  // an edge in common
+    case 0:  // both have an edge in common
       b[0] = a[0];
       b[1] = a[1];
       break;
-    case 1: {  // a copy, moved in the plane
+    case 1: {  // b is a copy of a, moved in the plane
       const double i = draws.whole(-2, 2);
       const double j = draws.whole(-2, 2);
       const Vec3 move = i * u + j * v;
@@ -139,14 +141,14 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Two triangles of one plane, then b moved by so many of the shortest steps: out of the plane, or
-/// in it over the edge at which both touch.
+/// Two triangles of one plane. b is then moved by so many of the shortest steps: out of the plane,
+/// or in the plane across the edge at which both touch.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
   constexpr double kExtent = 0x1p44;
   const auto drawn = [&] { return draws.whole(-kExtent, kExtent); };
-  // The edge from (0, 0) to (length, 0), a below it and b above it.
+  // a is below the edge from (0, 0) to (length, 0). If b moves in the plane, it is above that edge.
   const double length = draws.whole(kExtent / 2, kExtent);
   const double depth = draws.whole(1, kExtent);
   const double height = draws.whole(1, kExtent);
@@ -158,7 +160,7 @@ MadePair coplanar_step(RandomDraws& draws, double steps) {
   const double shift = drawn() / 2;
   MadePair pair;
   pair.a = {at(0, 0, 0), at(length, 0, 0), at(drawn(), -depth, 0)};
-  // Out of the plane b lies above a, so that the triangles would overlap.
+  // If b moves out of the plane, it is on a's side, so that without the move both would overlap.
   const double top = in_plane ? height : -height;
   const double from = std::floor(in_plane ? shift : length / 4);
   pair.b = {at(from, step, out), at(from + std::floor(length / 2), step, out),
@@ -181,7 +183,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
   for (Vec3& p : out.b) p[moved] += by;
   if (units == 0) {
     out.neighbours = draws.chance(3);
-    // The same but for one corner, which moves by one unit.
+    // b equals a but for one corner, which moves by one unit.
     if (!out.neighbours && draws.chance(2)) out.b[draws.below(3)][moved] += draws.sign();
   }
   each_corner(out, [&](Vec3& p) { p *= 0x1p-50; });

@@ -1,5 +1,5 @@
-// Pairs about distance (gaps on both sides of contact, distances from the origin, scales) and about
-// shape (random triangles, slivers, degenerate ones, neighbours that fold).
+// Families of pairs that vary distance (gaps on both sides of contact, distances from the origin,
+// scales) or shape (random triangles, slivers, degenerate triangles, neighbours that fold).
 #include <cmath>
 
 #include "experiments/generators/pair_generators.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// 0, 2^-k and -2^-k for these k; 0 once, or before each.
+/// 2^-k and -2^-k for the k below, and 0: first, or before each k with zero_each.
 std::vector<double> signed_powers(bool zero_each) {
   std::vector<double> out;
   for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
@@ -33,7 +33,7 @@ MadePair mapped(const Frame& frame, const Corners& a, const Corners& b) {
   return out;
 }
 
-/// A corner of b above the inside of a, by the gap; below it where the gap is negative.
+/// b has a corner above the inside of a, by the gap; a negative gap puts the corner below.
 MadePair gap_face(RandomDraws& draws, double gap) {
   const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
                      Vec3(draws.coarse(-1, 0), 1, 0)};
@@ -49,7 +49,7 @@ MadePair gap_face(RandomDraws& draws, double gap) {
   return mapped(frame_of(draws), a, b);
 }
 
-/// An edge of b across an edge of a, above it by the gap; below it where the gap is negative.
+/// An edge of b crosses above an edge of a, by the gap; a negative gap puts it below.
 MadePair gap_edge(RandomDraws& draws, double gap) {
   const double left = -draws.coarse(0.25, 1);
   const double right = draws.coarse(0.25, 1);
@@ -84,7 +84,7 @@ MadePair near_pair(RandomDraws& draws) {
   }
 }
 
-/// Moved away from the origin, so that coordinates lose their last bits.
+/// A pair moved away from the origin, so that coordinates lose their last bits.
 MadePair far_away(RandomDraws& draws, double distance) {
   MadePair pair = near_pair(draws);
   Vec3 to = draws.point();
@@ -93,7 +93,7 @@ MadePair far_away(RandomDraws& draws, double distance) {
   return pair;
 }
 
-/// Scaled, half of the time by a power of two, which keeps contact exact.
+/// A scaled pair; half of the time the scale is a power of two, which keeps contact exact.
 MadePair scales(RandomDraws& draws, double scale) {
   MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
@@ -105,7 +105,7 @@ MadePair scales(RandomDraws& draws, double scale) {
   return pair;
 }
 
-/// A triangle and one that is so many times smaller, at its corner, edge or face.
+/// A triangle, and one that is `ratio` times smaller at a corner, an edge or the face of the first.
 MadePair mixed_scales(RandomDraws& draws, double ratio) {
   const Frame frame = frame_of(draws);
   const auto drawn = [&] {
@@ -116,7 +116,7 @@ MadePair mixed_scales(RandomDraws& draws, double ratio) {
   };
   Corners a = {drawn(), drawn(), drawn()};
   if (draws.chance(2)) {
-    for (Vec3& p : a) p.z() = 0;  // in a plane of the frame: a point of it is no rounded one
+    for (Vec3& p : a) p.z() = 0;  // in a plane of the frame: its points are not rounded out of it
   }
   const Vec3 at[] = {a[0], (a[0] + a[1]) / 2, (2 * a[0] + a[1] + a[2]) / 4};
   const Vec3 place = at[draws.below(3)];
@@ -158,15 +158,15 @@ MadePair in_units(MadePair pair, double bits) {
   return pair;
 }
 
-/// A point, a segment or a triangle that has the point `at`: in its inside, on an edge or as a
-/// corner.
+/// A point, a segment or a triangle (dimension 0, 1 or 2) that contains the point `at`: in its
+/// inside, on an edge or as a corner.
 Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double extent) {
   if (dimension == 0) return {at, at, at};
   const Vec3 u = draws.whole_point(extent);
   if (dimension == 1) {
     switch (draws.below(4)) {
       case 0:
-        return {at, at + u, at + u};  // the point is an end, and a corner stands twice
+        return {at, at + u, at + u};  // the point is an end, and two corners are equal
       case 1:
         return {at - u, at + u, at - u};
       case 2:
@@ -186,7 +186,7 @@ Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double ext
   }
 }
 
-/// b moved by a unit, or far, every third time.
+/// The step that moves b: up to one unit along each axis every third time, else none.
 Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);
@@ -215,15 +215,15 @@ MadePair segments(RandomDraws& draws, double bits) {
   return in_units({{a, b}}, bits);
 }
 
-/// Neighbours by their coordinates along the axes of a frame.
+/// Neighbours, from their coordinates along the axes of a frame.
 MadePair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
   MadePair out = mapped(frame_of(draws), a, b);
   out.neighbours = true;
   return out;
 }
 
-/// Both have the edge from 0 to 1 on the x axis; a lies in the plane z = 0, and b's third corner is
-/// above it by the height, on the side of a or on the other.
+/// Both have the edge from 0 to 1 on the x axis. a lies in the plane z = 0; b's third corner is
+/// above this plane by the height, on a's side of the edge or on the other side.
 MadePair fold_edge(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.25, 1);
   const double y = draws.coarse(0.25, 1);
@@ -235,8 +235,8 @@ MadePair fold_edge(RandomDraws& draws, double height) {
   return fold(draws, {p, q, Vec3(x, y, 0)}, {p, q, Vec3(u, v, height)});
 }
 
-/// Both have the corner 0; a lies in the plane z = 0. b has a corner above the inside of a by the
-/// height, or below it where that is negative, and one far above.
+/// Both have the corner 0; a lies in the plane z = 0. A second corner of b is above a by the height
+/// (below if it is negative), mostly over the inside of a; the third is far above.
 MadePair fold_vertex(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.5, 1);
   const double y = draws.coarse(0.5, 1);

@@ -1,5 +1,6 @@
-// Families of meshes. Of two or three objects: scans, plates, shells, copies, and what stands on a
-// ground. Of one object that is tested against itself: cloth, ropes, soup, fans and folds.
+// Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
+// small triangles at a ground. Others have one object that is tested against itself: cloth, ropes,
+// soup, fans and folds.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,7 +26,7 @@ SuiteObject sheet(int columns, int rows, const Place& place) {
   return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
-/// The place of column i of a sheet that is folded to and fro in layers of `width` columns.
+/// The place of column i in a sheet that is folded to and fro, in layers of `width` columns.
 double folded(int i, int width) {
   const int layer = i / width;
   const int within = i % width;
@@ -43,7 +44,7 @@ Objects cloth(RandomDraws& draws, double gap, int cells) {
   })};
 }
 
-/// A sheet folded flat: every layer is in the plane z = 0 exactly, a little aside of the others.
+/// A sheet folded flat: every layer is exactly in the plane z = 0, a little aside of the others.
 Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,
@@ -56,7 +57,7 @@ Objects crumpled(RandomDraws& draws, double amount, int cells) {
                 [&](int i, int j) { return Vec3(Vec3(i, j, 0) + amount * draws.point()); })};
 }
 
-/// Points of the unit circle without sines: a rational parameter for each quarter.
+/// Point i of the unit circle, computed without sines by a rational parameter for each quarter.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
@@ -120,8 +121,7 @@ Objects fan(RandomDraws& draws, double spread, int count) {
   return {std::move(out)};
 }
 
-/// Pages with one edge in common; some of them lie in one plane, on one side of the edge or on
-/// both.
+/// Pages with one edge in common; some of them lie in one plane, on the same side of the edge.
 Objects book(RandomDraws& draws, double pages, int directions) {
   SuiteObject out;
   out.vertices = {Vec3(0, 0, -1), Vec3(0, 0, 1)};
@@ -136,7 +136,7 @@ Objects book(RandomDraws& draws, double pages, int directions) {
   return {std::move(out)};
 }
 
-/// A crumpled sheet in which one triangle in so many is a segment or a point.
+/// A crumpled sheet in which one triangle in `one_in` is a segment or a point.
 Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   SuiteObject out = sheet(cells, cells, [&](int i, int j) {
     const double x = i + draws.coarse(-0.75, 0.75);
@@ -191,7 +191,8 @@ SuiteObject scan(RandomDraws& draws, int level) {
   return out;
 }
 
-/// Two scans; the outermost vertex of the second along x is inside the first by the depth.
+/// Two scans that touch or overlap: the leftmost vertex of the second along x is left of the
+/// rightmost vertex of the first by the depth.
 Objects scans(RandomDraws& draws, double depth, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = scan(draws, level);
@@ -218,8 +219,8 @@ Objects scaled_scans(RandomDraws& draws, double scale, int level) {
   return out;
 }
 
-/// A box from `lo` to `hi` whose top and bottom are fans of long thin triangles to `steps` points
-/// on each of two edges.
+/// A box from `lo` to `hi`. Its top and its bottom are fans of long thin triangles from one corner
+/// to `steps` points on each of the two edges that do not meet this corner.
 SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   SuiteObject out;
   for (const double z : {lo.z(), hi.z()}) {
@@ -232,7 +233,7 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
     for (std::uint32_t i = 1; i <= 2 * static_cast<std::uint32_t>(steps); ++i)
       out.add(first, first + i, first + i + 1);
   }
-  // The sides: from each of the four corners below to the same ones above.
+  // The sides connect the four corners below with those above.
   const auto n = static_cast<std::uint32_t>(steps);
   const std::uint32_t above = 2 * n + 2;
   const std::array<std::uint32_t, 5> corner = {0, 1, n + 1, 2 * n + 1, 0};
@@ -243,8 +244,8 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   return out;
 }
 
-/// Two plates that lie on each other, and a bar through both, made narrower by 2^halvings. Every
-/// coordinate is short, so the faces are in one plane exactly.
+/// Two plates that lie on each other, and a bar through both, all made 2^halvings times narrower.
+/// Coordinates have few bits, so the faces that touch are exactly in one plane.
 Objects plates(RandomDraws&, double slivers, int halvings) {
   const double width = std::ldexp(1, -halvings);
   const int steps = static_cast<int>(slivers * width);
@@ -256,8 +257,8 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// Three shells, each outside the one before by the gap; the outermost is moved by 1.5 gaps, so
-/// that it crosses the one below it.
+/// Three shells, each outside the one before by the gap. The outermost is moved by 1.5 gaps along x
+/// and a random vector of up to a gap along each axis, so that it mostly crosses the middle one.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -269,7 +270,7 @@ Objects shells(RandomDraws& draws, double gap, int level) {
   return out;
 }
 
-/// A surface and its copy with the triangles in the opposite order, moved by some units.
+/// A scan, and its copy moved by `units` times 2^-52, with the triangles in the opposite order.
 Objects copies(RandomDraws& draws, double units, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = a;
@@ -278,7 +279,8 @@ Objects copies(RandomDraws& draws, double units, int level) {
   return {std::move(a), std::move(b)};
 }
 
-/// Two large triangles, and many small ones that stand on them, above and below.
+/// Two large triangles in one plane, and many small triangles that cross that plane, have a corner
+/// in it, or lie close to it.
 Objects ground(RandomDraws& draws, double ratio, int count) {
   SuiteObject large;
   large.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
@@ -296,7 +298,8 @@ Objects ground(RandomDraws& draws, double ratio, int count) {
   return {std::move(large), std::move(small)};
 }
 
-/// A sheet above another one by the gap; some of its vertices touch the lower one or are below it.
+/// Two sheets, one above the other by the gap; some vertices of the upper one touch the lower one
+/// or are below it.
 Objects sheets(RandomDraws& draws, double gap, int cells) {
   const auto above = [&](int i, int j) {
     const double height = draws.chance(20) ? gap * draws.whole(-1, 0) : gap;
@@ -321,7 +324,7 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-/// A row of the table of families. small: its first member is in a small suite too.
+/// A row of the table of families. small: the first member is in a small suite too.
 MeshFamily family(const char* name, const char* description, const char* parameter,
                   decltype(MeshFamily::make) make, bool self, bool small,
                   std::vector<MeshFamily::Member> members) {

@@ -1,5 +1,6 @@
-// Contact is made exactly, on integers, and then spoilt on purpose: by an ulp, by rounding, by
-// scale. Corners change places and a changes places with b, since predicates branch on their order.
+// Pairs in contact are made exactly, on integers; some are then changed on purpose by an ulp, by
+// rounding or by a scale. Corners change places, and so do a and b, since predicates branch on
+// their order.
 #include "experiments/generators/pair_generators.h"
 
 #include <cmath>
@@ -66,7 +67,7 @@ Corners whole_triangle(RandomDraws& random, double extent) {
   return {random.whole_point(extent), random.whole_point(extent), random.whole_point(extent)};
 }
 
-/// Every coordinate through a function.
+/// Applies a function to every coordinate.
 template <class Function>
 DrawnPair mapped(DrawnPair pair, const Function& function) {
   for (Corners* t : {&pair.a, &pair.b}) {
@@ -94,9 +95,9 @@ DrawnPair random_pair(RandomDraws& random) {
   return pair;
 }
 
-/// Contact in one point, exactly: a corner, a point of an edge or of the face of a (multiples of 4,
-/// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side,
-/// so that it may also cross, and every third time steps back from it by one.
+/// Exact contact: a corner of a, or a point of an edge or of the face of a, is on a corner, an edge
+/// or the face of b. Coordinates of a are multiples of 4, so that their quarters are whole. b goes
+/// to any side of the point, so it may also cross a; every third time it moves by up to one unit.
 DrawnPair contact(RandomDraws& random) {
   constexpr int kExtent = 64;
   DrawnPair pair;
@@ -125,7 +126,7 @@ DrawnPair contact(RandomDraws& random) {
     case 2:
       pair.b = {at - u - v, at + u, at + v};
       break;
-    default:  // along an edge of a
+    default:  // an edge of b along an edge of a
       pair.b = {pair.a[0], pair.a[1], at + v};
       if (random.chance(2)) pair.b[1] = at - (pair.a[1] - pair.a[0]) / 4;
   }
@@ -155,8 +156,8 @@ DrawnPair coplanar(RandomDraws& random) {
   return pair;
 }
 
-/// A contact of coordinates with all 53 bits, rounded, so that it is missed or overdone by about an
-/// ulp; then one more coordinate in three moved by an ulp.
+/// A contact whose coordinates have all 53 bits. They are rounded, so there is a gap or an overlap
+/// of about an ulp. One coordinate of b in three is then moved by an ulp.
 DrawnPair one_ulp(RandomDraws& random) {
   DrawnPair pair;
   for (Vec3& p : pair.a) p = random.point();
@@ -176,7 +177,7 @@ DrawnPair one_ulp(RandomDraws& random) {
       pair.b = {at, at + (at - pair.a[1]) * random.between(-1, 2),
                 at + (at - pair.a[2]) * random.between(-1, 2)};
       break;
-    default:  // a plate on a plate, one coordinate the same
+    default:  // both in one plane of equal z, but for a corner of b
       for (int i = 0; i < 3; ++i) {
         pair.a[i].z() = at.z();
         pair.b[i] = {random.point().x(), random.point().y(), at.z()};
@@ -203,7 +204,8 @@ DrawnPair needles(RandomDraws& random) {
   return {needle(centre), needle(centre + random.below(3) * width * random.point())};
 }
 
-/// Points and segments against each other and against triangles, in contact every other time.
+/// A point or segment, and a point, segment or triangle; half of the time both hold one common
+/// point.
 DrawnPair degenerate(RandomDraws& random) {
   const auto shape = [&](int dimension, const Vec3& through) -> Corners {
     const Vec3 u = random.whole_point(6);
@@ -221,8 +223,8 @@ DrawnPair degenerate(RandomDraws& random) {
   return {shape(random.below(2), at), shape(random.below(3), near)};
 }
 
-/// One scale for the pair or one per axis, 1e-30 .. 1e30; exact contacts are rounded away by some
-/// scales and kept by others.
+/// A pair scaled by 1e-30 .. 1e30, with one scale or one for each axis. Some scales keep exact
+/// contact, others round it away.
 DrawnPair magnitudes(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? contact(random) : one_ulp(random);
   const auto scale = [&] {
@@ -235,7 +237,7 @@ DrawnPair magnitudes(RandomDraws& random) {
   return pair;
 }
 
-/// Whole multiples of the least double, and some axes of the pair in normal size beside them.
+/// Coordinates that are whole multiples of the least double; half of the time on one axis only.
 DrawnPair denormals(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? contact(random) : small_grid(random);
   const int exponent = random.whole(-1074, -1030);
@@ -245,7 +247,8 @@ DrawnPair denormals(RandomDraws& random) {
   return pair;
 }
 
-/// Moved 1e9 of its diagonals away from the origin: rounding leaves some 23 bits of the shape.
+/// A pair moved away from the origin by about 1e9 of its diagonals: rounding leaves some 23 bits of
+/// the shape.
 DrawnPair far_away(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;
@@ -255,7 +258,8 @@ DrawnPair far_away(RandomDraws& random) {
   return pair;
 }
 
-/// A triangle of 1e3 .. 1e30 and one of about 1 in, on or near its corner, edge or face.
+/// A triangle of size 1e3 .. 1e30, and one of size about 1 at a corner, an edge or the face of the
+/// large one.
 DrawnPair huge_beside_tiny(RandomDraws& random) {
   const double size = std::pow(10, random.between(3, 30));
   DrawnPair pair;

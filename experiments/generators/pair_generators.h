@@ -1,5 +1,5 @@
-// Pairs of triangles and meshes that are hard to decide: random draws, generators of pairs by name
-// (for tests and for running the exact oracles against each other), and the families of a suite.
+// Makes pairs of triangles and meshes that are hard to decide: random draws; generators of pairs by
+// name, for tests and for comparing the exact oracles; and the families of a suite.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 namespace farcull {
 
 // Random draws of whole coordinates, points and pairs of triangles. Whole numbers times a power of
-// two are exact, so contact that is made with them is contact of the doubles that are written.
+// two are exact doubles, so triangles made of them that touch still touch when written as doubles.
 // Nothing here uses sines or logarithms, whose last bits differ between platforms.
 
 class RandomDraws : public RandomNumbers {
@@ -23,15 +23,15 @@ class RandomDraws : public RandomNumbers {
   using RandomNumbers::RandomNumbers;
 
   bool chance(int of) { return below(of) == 0; }
-  /// lo .. hi, both included, a whole number of their type; |lo|, |hi| <= 2^52.
+  /// A whole number in lo .. hi, both included, of their type. Precondition: |lo|, |hi| <= 2^52.
   template <class Low, class High>
   auto whole(Low lo, High hi) {
     using Number = std::common_type_t<Low, High>;
     const auto count = static_cast<std::uint64_t>(hi - lo) + 1;
     return static_cast<Number>(lo) + static_cast<Number>(below(count));
   }
-  /// A multiple of 2^-8 in lo .. hi, which are such too: few bits, so that a small gap fits beside
-  /// it in a double.
+  /// A multiple of 2^-8 in lo .. hi, which must be such multiples too. It has few bits, so that a
+  /// small gap can be added exactly in a double.
   double coarse(double lo, double hi) { return whole(lo * 256, hi * 256) / 256; }
   /// Whole coordinates in -extent .. extent.
   Vec3 whole_point(double extent) {
@@ -40,7 +40,7 @@ class RandomDraws : public RandomNumbers {
     const double z = whole(-extent, extent);
     return {x, y, z};
   }
-  /// In the cube [-1, 1]^3.
+  /// A point in the cube [-1, 1]^3.
   Vec3 point() {
     const double x = between(-1, 1);
     const double y = between(-1, 1);
@@ -53,14 +53,15 @@ class RandomDraws : public RandomNumbers {
 struct DrawnPair {
   std::array<Vec3, 3> a, b;
 };
-/// Calls function(p) with each corner, those of a first.
+/// Calls function(p) with each corner, first those of a.
 template <class Function>
 void each_corner(DrawnPair& pair, const Function& function) {
   for (std::array<Vec3, 3>* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) function(p);
   }
 }
-/// Shuffles the corners of each triangle, and a with b, since predicates branch on their order.
+/// Shuffles the corners of each triangle, and exchanges a and b half of the time, since predicates
+/// branch on their order.
 void shuffle(RandomDraws& draws, DrawnPair& pair);
 
 /// Three axes at right angles and of equal length.
@@ -73,10 +74,10 @@ struct Frame {
 
 /// The axes of the coordinates, in any order and direction.
 Frame straight_frame(RandomDraws& draws);
-/// A rotation times a whole number, with whole entries of at most 4: of a quaternion with parts
-/// from -1 to 1. Not straight.
+/// The rotation of a quaternion with parts -1, 0 and 1, times 3: its entries are 1 or 2 in size. No
+/// axis is along an axis of the coordinates.
 Frame leaning_frame(RandomDraws& draws);
-/// A rotation whose entries are rounded: of a quaternion with parts from -9 to 9.
+/// The rotation of a quaternion with whole parts from -9 to 9; its entries are rounded.
 Frame turned_frame(RandomDraws& draws);
 
 struct PairGenerator {
@@ -85,11 +86,11 @@ struct PairGenerator {
   DrawnPair (*make)(RandomDraws&);
 };
 
-/// Each makes pairs that meet and pairs that do not, of either at least one in fifty.
+/// Each generator makes pairs that meet and pairs that do not: at least one in fifty of either.
 const std::vector<PairGenerator>& pair_generators();
 
-// The families of a suite: of pairs, and of meshes. Each makes pairs that meet and pairs that do
-// not; most have a number that goes to an extreme.
+// The families of a suite (docs/suite.md), of pairs and of meshes. Each makes pairs that meet and
+// pairs that do not. Most have a number, the parameter, that goes to an extreme.
 
 struct MadePair : DrawnPair {
   bool neighbours = false;  // corners at equal positions are one vertex of a mesh
@@ -124,7 +125,7 @@ struct MeshFamily {
   std::string description;  // one line
   std::string parameter;    // the meaning of its number
   bool self = false;        // its objects are tested against themselves too
-  /// The objects; `detail` says how fine, each family counts it in its own way.
+  /// Makes the objects. detail: how fine they are, in a unit that each family chooses.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
     double parameter = 0;
@@ -137,13 +138,13 @@ struct MeshFamily {
 /// In the order of the names.
 const std::vector<MeshFamily>& mesh_families();
 
-/// The objects of member `index` of a family. They depend on the seed and these two alone. In a
-/// mesh that is tested against itself, vertices at one position are one vertex.
+/// The objects of member `index` of a family. They depend only on the family, the seed and the
+/// index. In a mesh that is tested against itself, vertices at one position are one vertex.
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index);
 
-// Parts of pair_families(): distance_families() has gaps, distances from the origin and scales,
-// shape_families() random triangles, slivers, degenerate triangles and folds.
+// Parts of pair_families(): distance_families() has gaps, distances from the origin and scales;
+// shape_families() has random triangles, slivers, degenerate triangles and folds.
 std::vector<PairFamily> distance_families();
 std::vector<PairFamily> shape_families();
 

@@ -1,4 +1,5 @@
-// Generators of triangles, a window full of them at a time, and the exact test of their points.
+// Draws triangles by generators, a window full at a time, and tests their points exactly. Also
+// compares the two exact oracles.
 #include "experiments/lemma/lemma.h"
 
 #include <fmt/format.h>
@@ -25,8 +26,8 @@ constexpr double kUsualDepth = 128;  // LemmaSettings::depth
 
 using Random = RandomNumbers;
 
-// A triangle in pixel space about the origin of its cell, and the weights of points to look at. The
-// pixel grid is that of the cell: its centre is a pixel corner.
+// A triangle in pixel space, with the centre of its cell as the origin, which is a pixel corner;
+// and the weights of the points of the triangle to test.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<std::array<int, 3>> weights;
@@ -46,8 +47,8 @@ std::vector<std::array<int, 3>> random_weights(Random& random, int count) {
   return out;
 }
 
-// A short segment at 45 degrees in the image, its middle at q: its box has a face a radius away
-// from q towards the corner.
+// A short segment at 45 degrees in the image, with its middle at q. Its box has a face that is one
+// radius away from q towards the corner.
 Trial diagonal_segment(Random& random, const Vec3& q) {
   const Vec3 half(0x1p-14, 0x1p-14 * random.sign(), 0);
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
@@ -93,7 +94,7 @@ Trial random_triangle(Random& random) {
           random_weights(random, 120)};
 }
 
-// Edges at 45 degrees, corners at pixel corners.
+// A triangle with two edges at 45 degrees and its corners at pixel corners.
 Trial diagonal_triangle(Random& random) {
   const int n = 1 + random.below(10);
   const double s = random.sign();
@@ -112,7 +113,7 @@ Trial edge_on(Random& random) {
   return {{a, b, c}, random_weights(random, 120)};
 }
 
-// Almost parallel to the image: its slab's normal is almost the line.
+// A triangle almost parallel to the image: the normal of its slab is almost along the view.
 Trial flat(Random& random) {
   Trial t = random_triangle(random);
   const double tilt = std::exp2(random.between(-45, -3));
@@ -120,7 +121,7 @@ Trial flat(Random& random) {
   return t;
 }
 
-// Aspect 1e3 to 1e12, in any direction, steep ones among them.
+// A needle of aspect 1e3 to 1e12 in any direction; some are steep.
 Trial needle(Random& random) {
   Vec3 along = in_ball(random, 14);
   if (random.below(3) == 0) along.head<2>() *= std::exp2(random.between(-30, 0));
@@ -135,9 +136,9 @@ Trial segment_or_point(Random& random) {
   return {{a, b, random.below(2) ? a : b}, random_weights(random, 60)};
 }
 
-// Nearly along the view, its longest edge leaning at 45 degrees in the image, the middle of that
-// edge at a pixel corner: the face of its box that looks at a pixel's centre is as steep as the
-// edge. The lean is a multiple of 2^-20 px, so that the middle stays where it is.
+// A triangle nearly along the view. Its longest edge leans at 45 degrees in the image, with its
+// middle at a pixel corner. So the face of its box that looks at a pixel's centre is as steep as
+// the edge. The lean is a multiple of 2^-20 px, so that the middle is exactly at the corner.
 Trial steep_corner(Random& random) {
   const double lean = std::floor(std::exp2(random.between(-10, -1)) * 0x1p20) * 0x1p-20;
   const Vec3 q(0, 0, random.between(-20, 20));
@@ -174,8 +175,9 @@ Window lab_window(int side, double depth) {
   return w;
 }
 
-// Moves each corner by kMaxDoubleError along the axes, as double arithmetic may: all by one vector,
-// which moves the points of the triangle farthest, or each by its own, which turns its edges.
+// Moves each corner by kMaxDoubleError along each axis, as double arithmetic may. Half of the time
+// one vector moves all corners, which moves the points of the triangle farthest; else each corner
+// has a vector of its own, which turns the edges.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
   const bool turn = random.below(2) != 0;
   Vec3 by(0, 0, 0);
@@ -193,7 +195,7 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
     ++row.no_sample;
     return;
   }
-  if (!std::isfinite(entry) || !std::isfinite(exit)) {  // no kernel answers so
+  if (!std::isfinite(entry) || !std::isfinite(exit)) {  // no kernel returns this
     ++row.not_bounding;
     row.largest_steps = row.largest_px = HUGE_VAL;
     return;
@@ -323,14 +325,15 @@ std::string text(const DrawnPair& pair) {
   return out;
 }
 
-/// A pair, and a clearance where that is asked.
+/// A pair, and the clearance if the question is about one.
 struct Case {
   DrawnPair pair;
   double clearance = 0;
 };
 
-/// neighbours: puts one corner of b on one of a, half of the time two. clearance: sets it to the
-/// distance of two corners, which often is that of the triangles, or to a part of that.
+/// neighbours: puts one corner of b, half of the time two, on corners of a. clearance: sets the
+/// clearance to the distance of two corners, which often is the distance of the triangles, or half
+/// of the time to a part of it.
 Case make_case(const PairGenerator& generator, OracleQuestion question, RandomDraws& random) {
   Case out{generator.make(random)};
   auto& [a, b] = out.pair;

@@ -1,5 +1,5 @@
-// Lemmas 1 and 2 as an experiment: points of triangles that aim at trouble, rasterized with their
-// fattened triangles on a canvas, decided in exact arithmetic.
+// Tests lemmas 1 and 2 (docs/reliability.md) by experiment: draws fattened triangles that are hard
+// cases on a canvas, and checks the samples of their points' pixels in exact arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct LemmaRow {
   std::uint64_t not_bounding = 0;  // its samples do not bound the point's depth
   std::uint64_t rounded = 0;       // not counted above: off by no more than depth_rounding(); only
                                    // if samples are depths of the buffer
-  double largest_px = 0;           // the most by which a depth is outside its samples, 0: none is
+  double largest_px = 0;           // the most by which a depth is outside its samples; 0: none
   double largest_steps = 0;        // the same in steps of the depth buffer
   std::uint64_t violations() const { return no_sample + not_bounding; }
 };
@@ -33,20 +33,20 @@ std::vector<std::string> lemma_generators();
 
 struct LemmaSettings {
   std::uint64_t points = 0;    // in all, shared evenly by the generators
-  std::string generator = {};  // only this one, with the points that it has among all; empty: all
+  std::string generator = {};  // the only one to run, with its share of points; empty: all
   std::uint64_t seed = 0;
   /// The radius in px for a view's budget and depth step.
   std::function<double(const Budget& budget, double depth_step)> radius;
   /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis and
-  /// corner): a half of the triangles as a whole, which is the budget's "double" term at its worst,
-  /// the others each corner by itself, which turns edges.
+  /// corner). Half of the triangles move as a whole, which is the budget's "double" term at its
+  /// worst; in the others each corner moves by itself, which turns edges.
   bool displace = false;
-  /// The samples are what the depth buffer holds (Canvas::depths), the only ones that
-  /// fixed-function depth has. A monotone rounding of both ends costs nothing (docs/reliability.md,
-  /// lemma 4), so what depth_rounding() explains is counted apart.
+  /// The samples are the values in the depth buffer (Canvas::depths); fixed-function depth has no
+  /// others. A monotone rounding of both ends costs nothing (docs/reliability.md, lemma 4), so
+  /// errors up to depth_rounding() are counted apart (LemmaRow::rounded).
   bool stored = false;
   int side = 0;        // px of the window, even, at least 128; 0: the generator's own
-  double depth = 128;  // px, half the window's depth, at least 128; where it is more, the triangles
+  double depth = 128;  // px, half the window's depth, at least 128; if it is more, the triangles
                        // are spread over it
 };
 
@@ -58,12 +58,12 @@ std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
 /// The radius in px by the rule, for a view's budget and depth step.
 double lemma_radius(const RadiusRule& rule, const Budget& budget, double depth_step);
 
-/// The sum of all rows, with the largest of their largest values, named "all".
+/// A row "all" with the sums of the counts and the maxima of the largest values of all rows.
 LemmaRow lemma_total(const std::vector<LemmaRow>& rows);
 
-// The two exact oracles against each other: verify/exact (a filter, CGAL's predicates, rational
-// distances), with which every run is compared, and the integers (verify/certificate/integer_pair),
-// on which certificates rest.
+// Compares the two exact oracles: verify/exact (a filter, CGAL's predicates, rational distances),
+// with which every run is compared, and the integers (verify/certificate/integer_pair), on which
+// certificates rest.
 
 /// The question about a pair.
 enum class OracleQuestion {
@@ -88,10 +88,10 @@ struct OracleRow {
 /// Called with a generator's name before its pairs; may be empty.
 using OracleProgress = std::function<void(const std::string&)>;
 
-/// Every generator of pair_generators() with every question, on all cores; neighbours and clearance
-/// with a tenth of the pairs, rounded up, since they take longer. The pairs and the answers depend
-/// on the seed alone, neither on the cores nor on how many pairs are asked for: more pairs begin
-/// with the same.
+/// Asks both oracles every question about pairs of every generator of pair_generators(), on all
+/// cores. The questions neighbours and clearance get a tenth of the pairs, rounded up, since they
+/// take longer. The pairs and the answers depend on the seed alone, not on the cores. A larger
+/// number of pairs begins with the pairs of a smaller one.
 std::vector<OracleRow> compare_oracles(std::uint64_t pairs_per_generator, std::uint64_t seed,
                                        const OracleProgress& progress = {});
 

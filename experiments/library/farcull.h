@@ -1,10 +1,10 @@
-// The library: all pairs of triangles that collide, between objects and inside them, exactly.
+// The library: finds exactly all pairs of triangles that collide, between objects and inside them.
 //
-// Candidates come from FAR pairs (docs/library.md), which misses no pair that collides where
-// ColliderReport::promises is true; exact predicates on the doubles as given decide them. Triangles
-// are closed sets, so touching counts, and a degenerate triangle is the segment or the point that
-// it is. Where `promises` is true, the answer is the same on every device, for any number of
-// threads, views and pixels: these matter to time alone.
+// Candidates come from FAR pairs (docs/library.md). If ColliderReport::promises is true, FAR pairs
+// misses no pair that collides. Exact predicates on the doubles as given decide the candidates.
+// Triangles are closed sets, so touching counts, and a degenerate triangle is the segment or the
+// point that it is. If `promises` is true, the answer is the same on every device, for any number
+// of threads, views and pixels: these change only the time.
 //
 // Link farcull::farcull (CMake: find_package(farcull)) or `pkg-config farcull`. C++20.
 #pragma once
@@ -35,41 +35,41 @@ class ColliderError : public std::runtime_error {
 enum class ColliderDevice {
   cpu,   // threads
   gl,    // OpenGL 4.3 without a window, through EGL: hardware first, then a software renderer
-  best,  // the CPU where boxes of runs decide, else gl where hardware answers, else the CPU; the
-         // report says which, and why
+  best,  // the CPU if boxes of runs decide (docs/methods.md), else gl if a hardware device answers,
+         // else the CPU; the report says which, and why
 };
 
 /// How much contact detail to report.
 enum class ColliderContacts {
   none,      // nothing, at no cost
   kinds,     // ColliderContact::kind
-  segments,  // the points that they have in common as well
+  segments,  // the kind, and the points that the triangles have in common
 };
 
 struct ColliderOptions {
   ColliderDevice device = ColliderDevice::cpu;
   unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
   bool self = false;     // every object is tested against itself as well
-  std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
+  std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
   double clearance = 0;    // pairs at this distance or less collide too; world units, finite, >= 0
   bool neighbours = true;  // false: neighbours are counted, not decided
   ColliderContacts contacts = ColliderContacts::none;
   /// Pairs of different objects, by their numbers from 0, that are not tested against each other.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
-  std::uint64_t limit = 0;  // only the first so many pairs, neighbours among them, in the order of
-                            // ColliderPair; 0: all
-  std::string views = "auto";  // directions to look along, as in "x,-y,1:1:0.5"; or by the scene
+  std::uint64_t limit = 0;     // only the first so many pairs, neighbours included, in the order of
+                               // ColliderPair; 0: all
+  std::string views = "auto";  // directions to look along, as in "x,-y,1:1:0.5"; auto: by the scene
   int resolution = 0;          // px along a view's larger side, 1 to 16384; 0: by the scene
 };
 
-/// Triangles, as flat arrays that the caller keeps. Nothing is kept of them after the call.
+/// Triangles, as flat arrays of the caller. The library does not refer to them after the call.
 struct ColliderInput {
   std::span<const double> vertices;              // x, y, z of each vertex; finite
   std::span<const std::uint32_t> triangles;      // three indices of vertices for each triangle
   std::span<const std::uint32_t> object_starts;  // the first triangle of each object: ascending,
                                                  // the first is 0; empty: all are one object
-  std::span<const std::int64_t> wide_triangles = {};  // in place of `triangles`, which is then
-                                                      // empty: the same as 64-bit numbers
+  std::span<const std::int64_t> wide_triangles = {};  // the indices as 64-bit numbers, in place of
+                                                      // `triangles`, which is then empty
 };
 
 /// Two triangles, a < b, numbered from 0 in the order of the input.
@@ -79,7 +79,7 @@ struct ColliderPair {
   auto operator<=>(const ColliderPair&) const = default;
 };
 
-/// How two triangles A and B meet: the first that is true (docs/methods.md, "Kinds of contact").
+/// How two triangles A and B meet: the first kind that fits (docs/methods.md, "Kinds of contact").
 enum class ColliderContactKind {
   apart,         // no point in common, and within the clearance
   equal,         // the same set of points
@@ -108,10 +108,10 @@ struct ColliderReport {
   struct Stage {
     std::string name;
     bool ran = false;
-    std::string reason;  // why it ran or was left out
+    std::string reason;  // why the stage ran or was left out
     double ms = 0;
-    std::uint64_t in = 0, out = 0;  // what entered and what was left
-    std::string unit;               // of them: triangles, views or pairs
+    std::uint64_t in = 0, out = 0;  // how many items entered, and how many were left
+    std::string unit;               // what the items are: triangles, views or pairs
   };
   struct View {
     std::string name;           // as in ColliderOptions::views
@@ -120,17 +120,17 @@ struct ColliderReport {
     int width = 0, height = 0;  // px
   };
 
-  std::string device;           // "cpu", or the renderer
-  std::string device_reason;    // why this one
-  bool promises = false;        // a pair that collides is never left out; false where a probe of an
-                                // assumption fails on the device, or broke off
-  std::string promises_reason;  // why, or why not
-  double candidates_ms = 0;     // wall clock, from the input to the candidates
-  double exact_ms = 0;          // wall clock of the exact tests
+  std::string device;            // "cpu", or the renderer
+  std::string device_reason;     // why this device
+  bool promises = false;         // a pair that collides is never left out; false if a probe of an
+                                 // assumption fails on the device, or broke off
+  std::string promises_reason;   // why, or why not
+  double candidates_ms = 0;      // wall clock, from the input to the candidates
+  double exact_ms = 0;           // wall clock of the exact tests
   std::uint64_t candidates = 0;  // without those of ignored objects
-  std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` where
-                              // the limit was reached before
-  std::uint64_t neighbours = 0;  // of those decided, neighbours, colliding or not
+  std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` if the
+                              // limit was reached first
+  std::uint64_t neighbours = 0;  // decided candidates that are neighbours, colliding or not
   double contacts_ms = 0;        // wall clock of the kinds of contact
   std::vector<View> views;
   std::vector<Stage> stages;
@@ -141,42 +141,42 @@ struct ColliderReport {
 };
 
 struct ColliderResult {
-  std::vector<ColliderPair> pairs;  // all that collide, sorted, each once; of different objects, or
-                                    // of one that is tested against itself and not neighbours
+  std::vector<ColliderPair> pairs;  // all that collide and are no neighbours, sorted, each once; of
+                                    // different objects, or of one that is tested against itself
   /// Colliding neighbours: triangles of one object that share a vertex position, and whose
   /// intersection is more than the shared positions and the edge between them. Sorted; empty
   /// without ColliderOptions::neighbours.
   std::vector<ColliderPair> neighbour_pairs;
-  std::vector<ColliderContact> contacts;            // one for each of `pairs`, and
+  std::vector<ColliderContact> contacts;            // one for each of `pairs`, and one for each
   std::vector<ColliderContact> neighbour_contacts;  // of `neighbour_pairs`; empty without
                                                     // ColliderOptions::contacts
   /// False: ColliderOptions::limit ended the search, so there may be more pairs after the last one.
-  /// None is missing before it.
+  /// No pair before the last one is missing.
   bool complete = true;
   ColliderReport report;
 };
 
 /// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
-/// stay from call to call. An object serves one call at a time, of any thread: a second call
-/// meanwhile, or a call of an object that was moved from, throws ColliderError and changes nothing.
-/// This does not protect moving and destroying an object: no other thread may use it then. The EGL
-/// context that the caller has made current is current again after each call.
+/// stay from call to call. An object serves one call at a time, from any thread. A second call at
+/// the same time, or a call of an object that was moved from, throws ColliderError and changes
+/// nothing. Moving and destroying are not protected: no other thread may use the object then. The
+/// EGL context that was current in the caller is current again after each call.
 class Collider {
  public:
   /// Opens the device. A GL device without a kept verdict is probed, which takes about a second
-  /// on Mesa llvmpipe, several where Mesa's cache of shaders is empty (docs/library.md). Throws
-  /// ColliderError naming the option that is bad, or where the device does not answer.
+  /// on Mesa llvmpipe, and several seconds if Mesa's cache of shaders is empty (docs/library.md).
+  /// Throws ColliderError naming the option that is bad, or if the device does not answer.
   explicit Collider(const ColliderOptions& options);
   Collider();  // default options
   ~Collider();
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// Throws ColliderError for input that is not as ColliderInput says, for self_objects of another
-  /// number, for ignored objects that the input does not have, and for any fault of the device;
-  /// std::bad_alloc without memory. The object can be used again after each. The calling thread may
-  /// round in any direction and flush subnormals: the call sets its floating-point environment
-  /// (rounding, flushing, traps) and restores it at the end.
+  /// Throws ColliderError for input that is not as ColliderInput says, for a self_objects that does
+  /// not have one value for each object, for ignored objects that the input does not have, and for
+  /// any fault of the device; std::bad_alloc if memory runs out. The object can be used again after
+  /// each of these. The calling thread may round in any direction and flush subnormals: the call
+  /// sets its floating-point environment (rounding, flushing, traps) and restores it at the end.
   ColliderResult find(const ColliderInput& input);
 
  private:
@@ -187,39 +187,39 @@ class Collider {
 /// A pair that ColliderStream finds.
 struct ColliderFound {
   ColliderPair pair;
-  bool neighbours = false;  // of one object, and they share a vertex position
-  ColliderContact contact;  // where ColliderOptions::contacts asks for it
+  bool neighbours = false;  // the triangles are of one object and share a vertex position
+  ColliderContact contact;  // set if ColliderOptions::contacts asks for it
   bool operator==(const ColliderFound&) const = default;
 };
 
-/// The pairs of Collider::find(), neighbours among them, in the order of ColliderPair and some at a
-/// time: for more pairs than memory holds, or to have the first ones early.
+/// Gives the pairs of Collider::find(), colliding neighbours included, a part at a time, in the
+/// order of ColliderPair. For more pairs than memory holds, or to have the first pairs early.
 ///
 ///   ColliderStream stream(input, options);
 ///   std::vector<ColliderFound> pairs;
 ///   while (stream.next(pairs)) use(pairs);
 ///
-/// Memory O(triangles), whatever the number of pairs. It compares boxes of triangles on the cores
-/// of the CPU, so every pair that collides is found, and it is slower than a Collider where nearly
+/// Memory O(triangles), whatever the number of pairs. A stream compares boxes of triangles on the
+/// cores of the CPU, so it finds every pair that collides. It is slower than a Collider if nearly
 /// all pairs are wanted. An object serves one call at a time, as a Collider does.
 class ColliderStream {
  public:
-  /// Copies the input. Throws ColliderError as Collider::find(), and naming `device` for gl, which
-  /// it does not use. Ignores the options views and resolution.
+  /// Copies the input. Throws ColliderError as Collider::find(), and for device gl, which a stream
+  /// does not use. Ignores the options views and resolution.
   explicit ColliderStream(const ColliderInput& input, const ColliderOptions& options = {});
   ~ColliderStream();
   ColliderStream(ColliderStream&&) noexcept;
   ColliderStream& operator=(ColliderStream&&) noexcept;
 
-  /// Replaces `pairs` by the next ones, perhaps none before the end. Returns false at the end, with
-  /// `pairs` empty. Each call decides at most about 2^16 candidates and those of one more triangle
-  /// for each thread, so that the caller can stop between two calls.
-  /// Throws std::bad_alloc without memory; each later call then throws ColliderError.
+  /// Replaces `pairs` by the next pairs. There may be none even before the end. Returns false at
+  /// the end, with `pairs` empty. Each call decides at most about 2^16 candidates and those of one
+  /// more triangle for each thread, so that the caller can stop between two calls. Throws
+  /// std::bad_alloc if memory runs out; each later call then throws ColliderError.
   bool next(std::vector<ColliderFound>& pairs);
-  /// Candidates that exact tests have decided up to now, by the calls that have ended. Unlike the
-  /// pairs it may depend on the number of threads.
+  /// The number of candidates that exact tests decided in the calls that have ended. Unlike the
+  /// pairs, this number may depend on the number of threads.
   std::uint64_t decided() const;
-  /// After the end: as in ColliderResult. Where exactly as many pairs collide as the limit allows,
+  /// After the end: ColliderResult::complete. If exactly as many pairs collide as the limit allows,
   /// it may depend on the number of threads.
   bool complete() const;
 
@@ -228,46 +228,47 @@ class ColliderStream {
   std::unique_ptr<State> state_;
 };
 
-// Distances (docs/proximity.md). They are exact too: each is the root of a rational number, rounded
-// once, and nothing that is nearer is left out.
+// Distances (docs/proximity.md). Each is exact: the root of a rational number, rounded once, and no
+// nearer pair of triangles exists.
 
 enum class DistanceKind {
-  objects,  // the nearest triangles of every two objects, and of one that is asked about by itself
-  nearest,  // of each object and its k nearest others; at equal distance the lower comes first
+  objects,  // the nearest triangles of every two objects, and within each object with `self`
+  nearest,  // those of each object and its k nearest other objects; of ties, the lower comes first
   all,      // every pair of triangles within a distance
 };
 
 struct DistanceFinderOptions {
   DistanceKind kind = DistanceKind::objects;
   std::size_t k = 1;   // with `nearest`, 1 or more
-  double within = -1;  // leaves out what is farther apart; world units; negative: no limit.
-                       // Finite and 0 or more with `all`
-  bool self = false;   // the triangles of one object as well, neighbours left out; not `nearest`
-  std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
-  bool inside = true;                   // whether an object lies inside another; not with `all`
+  double within = -1;  // leaves out answers that are farther apart; world units; negative: no
+                       // limit. Finite and 0 or more with `all`
+  bool self = false;   // also triangles of one object, without neighbours; not with `nearest`
+  std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
+  bool inside = true;                   // find whether an object is inside another; not with `all`
   unsigned threads = 0;  // up to 1024; 0: as many as there are cores; changes no answer
 };
 
-/// unknown: not asked, or the objects meet. none: neither is inside the other. a, b: all of this
-/// one is inside the other. not_closed: one may be, but the other has no inside.
+/// Which of two objects is inside the other. unknown: not asked, or the objects meet. none: neither
+/// is. a, b: all of this object is inside the other. not_closed: one may be inside the other, but
+/// the other is not closed, so it has no inside.
 enum class DistanceInside { unknown, none, a, b, not_closed };
 
 /// The distance of two objects, or with `all` of two triangles.
 struct DistanceAnswer {
   std::uint32_t object_a = 0, object_b = 0;      // a <= b
-  std::uint32_t triangle_a = 0, triangle_b = 0;  // numbered as in ColliderPair; the first of those
-                                                 // that are nearest
+  std::uint32_t triangle_a = 0, triangle_b = 0;  // numbered as in ColliderPair; the first of the
+                                                 // nearest pairs
   double distance = 0;  // rounded to nearest; infinity beyond the largest double
   std::string squared;  // "numerator/denominator" in lowest terms, nothing rounded
   std::array<double, 3> point_a{}, point_b{};  // nearest points, each coordinate rounded
-  std::string feature_a, feature_b;  // where they lie: "vertex 2", "edge 0" or "face"; an edge goes
-                                     // from the corner of its number to the next
+  std::string feature_a, feature_b;  // where the points lie: "vertex 2", "edge 0" or "face"; edge i
+                                     // goes from corner i to the next
   DistanceInside inside = DistanceInside::unknown;
 };
 
 /// Finds distances again and again. The nearest triangles of one call are the first guess of the
-/// next, which saves time if the scene moved only a little; any other scene is fine too. An object
-/// serves one call at a time, as a Collider does.
+/// next call, which saves time if the scene moved only a little; any other scene may follow, too.
+/// An object serves one call at a time, as a Collider does.
 class DistanceFinder {
  public:
   /// Throws ColliderError naming the option that is bad.
@@ -277,11 +278,12 @@ class DistanceFinder {
   DistanceFinder(DistanceFinder&&) noexcept;
   DistanceFinder& operator=(DistanceFinder&&) noexcept;
 
-  /// Sorted by objects, then by triangles. No answer about an object without triangles. Throws
-  /// ColliderError for input that is not as ColliderInput says, for self_objects of another number,
-  /// where `all` has more than 4,194,304 answers, and where `objects` has more pairs of objects
-  /// than these (four times as many where `within` is finite); std::bad_alloc without memory. The
-  /// floating-point environment is treated as by Collider::find().
+  /// The answers, sorted by objects, then by triangles. There is no answer about an object without
+  /// triangles. Throws ColliderError for input that is not as ColliderInput says, for a
+  /// self_objects that does not have one value for each object, if `all` has more than 4,194,304
+  /// answers, and if `objects` has more pairs of objects than that (four times as many if `within`
+  /// is finite); std::bad_alloc if memory runs out. Sets and restores the floating-point
+  /// environment as Collider::find() does.
   std::vector<DistanceAnswer> find(const ColliderInput& input);
 
  private:

@@ -1,8 +1,9 @@
-# find_package(farcull): the target farcull::farcull, with what its archive links.
+# find_package(farcull): defines the target farcull::farcull, and finds the libraries that its
+# archive links.
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(PkgConfig)
-# Each as NAME:MODULE:DEBIAN-PACKAGE.
+# Each library is NAME:MODULE:DEBIAN-PACKAGE.
 foreach(needed @farcull_links@)
   string(REPLACE ":" ";" needed ${needed})
   list(GET needed 0 name)

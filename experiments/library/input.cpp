@@ -16,13 +16,14 @@
 namespace farcull {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cache
+constexpr std::size_t kBlock = 1024;  // numbers in a block, which fits the fastest cache
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
 
-// Whether no number is infinite or a NaN. Their exponents are all ones, so adding one to the
-// exponent sets the sign bit. The loop has no branch, so that the compiler can vectorize it.
+// Whether no number is infinite or a NaN. The exponent bits of such a number are all ones, so
+// adding one to the exponent sets the sign bit. The loop has no branch, so that the compiler can
+// vectorize it.
 bool all_finite(std::span<const double> block) {
   constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
   std::uint64_t bits = 0;
@@ -38,8 +39,8 @@ bool copy_block(std::span<const std::uint32_t> from, std::uint32_t* to, std::siz
   return most < vertices;
 }
 
-// The same, from 64 bits. A number that 32 bits cannot hold has a bit set above them; so has a
-// negative one, by its sign.
+// The same for 64-bit indices. A number that 32 bits cannot hold has a bit set above them, and so
+// has a negative number.
 bool copy_block(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -53,7 +54,7 @@ bool copy_block(std::span<const std::int64_t> from, std::uint32_t* to, std::size
 }
 
 // Checks the copies, not the input: another thread of the caller may change the input meanwhile,
-// and what the scene holds has to be right.
+// but the numbers in the scene have to be right.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to) {
   to.resize(from.size() / 3);
   if (from.empty()) return;
@@ -78,7 +79,7 @@ void copy_triangles(std::span<const Index> from, std::size_t vertices,
   for (std::size_t begin = 0; begin < from.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, from.size());
     if (copy_block(from.subspan(begin, end - begin), copies + begin, vertices)) continue;
-    // One at a time, to name the first index that is out of range.
+    // Checks one index at a time, to name the first that is out of range.
     for (std::size_t k = begin; k < end; ++k) {
       const Index v = from[k];
       copies[k] = static_cast<std::uint32_t>(v);

@@ -1,4 +1,4 @@
-// For the functions of the library: their input, options, answers and errors.
+// For the functions of the library: converts and checks their input, options, answers and errors.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace farcull {
 
-/// Whether two enumerators have one number, so that a cast makes the second from the first.
+/// Whether two enumerators have the same value, so that a cast converts the first to the second.
 template <class Given, class Own>
 constexpr bool same(Given given, Own own) {
   return static_cast<int>(given) == static_cast<int>(own);
@@ -55,18 +55,19 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
   });
 }
 
-/// Copies the input into `scene`, that of the last call, and reuses its memory. self: every object
-/// is tested against itself; self_objects: the same per object, empty or one for each. Throws Error
-/// for input that is not as ColliderInput says.
+/// Copies the input into `scene`, which holds the scene of the last call, and reuses its memory.
+/// self: every object is tested against itself; self_objects: the same for each object, empty or
+/// one for each. Throws Error for input that is not as ColliderInput says.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
           Scene& scene);
 
-/// Throws Error naming the option that is bad, whatever the input.
+/// Throws Error naming an option that is bad for any input.
 void check(const ColliderOptions& options);
 
 ContactDetail detail_of(ColliderContacts contacts);
 
-/// The ignored pairs of a scene with so many objects. Throws Error if one names an object beyond.
+/// The ignored pairs of a scene with so many objects. Throws Error if a pair names an object that
+/// the scene does not have.
 std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects);
 
 ColliderContact given_out(const ContactShape& shape);

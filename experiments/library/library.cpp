@@ -1,5 +1,5 @@
-// The collider, the stream and distances. Each copies its input into a scene and asks about that
-// (experiments/method/run.h, experiments/method/distances.h).
+// The collider, the stream and distances. Each copies its input into a scene and asks about the
+// scene (experiments/method/run.h, experiments/method/distances.h).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,7 +82,7 @@ struct Collider::State {
     return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies},
                       session);
   }
-  // Reports the device of an answer; `used` may be none.
+  // Reports the device of an answer; `used` may have none.
   void report_device(const UsedDevice& used, ColliderReport& report);
 
   /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
@@ -157,7 +157,7 @@ ColliderResult Collider::find(const ColliderInput& input) {
   });
 }
 
-// The stream: candidates in order, some at a time, each decided exactly as it comes.
+// The stream: makes candidates in order, a part at a time, and decides each part exactly.
 
 namespace {
 
@@ -174,7 +174,7 @@ struct ColliderStream::State {
   std::vector<TrianglePair> part;
   std::uint64_t decided = 0, given = 0;
   bool complete = false;
-  bool failed = false;  // a call began and did not end: what it found is lost
+  bool failed = false;  // a call began and did not end, so its pairs are lost
   std::atomic_flag used;
 
   State(const ColliderInput& input, const ColliderOptions& of)

@@ -1,6 +1,6 @@
-// Sets up the contestants: methods by the one pipeline, peers by their own set-up. Runs a cold
-// round, then the rounds that count, and compares every answer with that of the first contestant.
-// Prints the table and JSON.
+// Sets up the contestants: methods run through the pipeline of `farcull run`, peers through their
+// own code. Runs a cold round, then the rounds that count, and compares every answer with that of
+// the first contestant. Prints the table and JSON.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,8 @@ std::vector<std::string> names_of(const std::vector<Peer>& peers) {
   return names;
 }
 
-/// Those of `known` that the text asks for, in their order. Throws Error naming the option.
+/// The names of `known` that the text asks for, in the order of `known`. Throws Error naming the
+/// option.
 std::vector<std::string> chosen(const std::string& option, const std::string& text,
                                 const std::vector<std::string>& known) {
   if (text == "all") return known;
@@ -55,7 +56,7 @@ std::vector<std::string> chosen(const std::string& option, const std::string& te
   return out;
 }
 
-// Neighbours are not asked for: the peers leave them out too.
+// Runs without neighbours, since the peers leave them out too.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
   options.device = device;
@@ -69,8 +70,7 @@ BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::
   };
 }
 
-/// Sets up contestants. One that cannot run is left out; if it was asked for by name, it is an
-/// Error.
+/// Sets up contestants. Leaves out one that cannot run; throws Error if it was asked for by name.
 class ContestantList {
  public:
   explicit ContestantList(const Progress& progress) : progress_(progress) {}
@@ -102,11 +102,11 @@ class ContestantList {
 void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.methods != "all";
   const bool no_gl = is_cpu(options.device);
-  // Without --device, drawing on GL is measured where hardware answers, and far-pairs where any
-  // does.
+  // If --device is not given, methods that draw are measured on GL only if hardware answers;
+  // far-pairs is measured on any GL device.
   const bool gl_by_name = by_name && !options.device.empty();
   const std::string gl_device = options.device.empty() ? "gl" : options.device;
-  std::shared_ptr<Session> gl;  // that the methods share
+  std::shared_ptr<Session> gl;  // shared by all methods on GL
   const auto on_gl = [&](BenchContestant& c, Method method) {
     if (!gl) gl = std::make_shared<Session>(gl_device, options.threads);
     c.device = gl->context().info().renderer;

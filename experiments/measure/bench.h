@@ -1,9 +1,9 @@
 // `farcull bench` measures peers and our methods from the same triangles to the same pairs; with
-// --distances, to distances between objects and their errors. All in one process and one run.
+// --distances, to distances between objects and their errors. One process runs them all.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,
-// thread pools) comes before and is timed apart. All pairs have to be equal.
+// thread pools) comes before and is timed apart. All contestants must find the same pairs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -30,7 +30,7 @@ struct BenchContestant {
 
 struct BenchOptions {
   std::string peers = "all";    // all, none, or names with commas
-  std::string methods = "all";  // the same
+  std::string methods = "all";  // likewise
   unsigned threads = 1;
   int repeat = 5;
   double limit_s = 60;  // a contestant whose cold run takes longer is not repeated
@@ -43,38 +43,39 @@ struct BenchOptions {
 struct TimedRow {
   std::string name, library;
   bool peer = false;
-  Spread total_ms = {};                 // of the repeats; of the cold run where there are none
-  double cold_ms = 0, build_ms = 0;     // the last one: a median
+  Spread total_ms = {};                 // of the repeats, or of the cold run without repeats
+  double cold_ms = 0, build_ms = 0;     // build_ms: a median
   std::optional<double> peak_mib = {};  // of the cold run, beyond what was there before it
-  int repeats = 0;                      // 0: over the limit, the cold run is all there is
+  int repeats = 0;                      // 0: only the cold run, which was over the limit
 };
 
 struct BenchRow : TimedRow {
   std::string device;
-  double setup_ms = 0, candidates_ms = 0, exact_ms = 0;  // the last two: medians
+  double setup_ms = 0, candidates_ms = 0, exact_ms = 0;  // the last two are medians
   std::uint64_t candidate_pairs = 0, pairs = 0;
 };
 
 /// A pair that one contestant has and another lacks.
 struct Disagreement {
   std::string has, lacks;
-  TrianglePair pair;     // the first such
+  TrianglePair pair;     // the first such pair
   bool collides = true;  // by verify/exact.h, for that pair alone
 };
 
 struct BenchResult {
   std::vector<BenchRow> rows;
   std::vector<BenchContestant> left_out;
-  std::optional<Disagreement> disagreement;  // the first; no ratio means anything with it
+  std::optional<Disagreement> disagreement;  // the first; makes all ratios meaningless
   std::optional<std::size_t> fastest_peer;   // into rows
 };
 
 /// Throws Error naming the option for unknown names, a repeat below 1 or a limit below 0.
 void validate(const BenchOptions& options);
 
-/// Our methods and the peers that the options name, set up. Ours: far-pairs on the CPU and, as far
-/// as there is a device, on GL; far; exact. Throws Error for one that was asked for by name and
-/// cannot run at all in this build or on this machine.
+/// Our methods and the peers that the options name, set up. Our methods are far-pairs, far and
+/// exact on the CPU, and far-pairs and far on GL if there is a device (far without --device only on
+/// hardware). Throws Error for a contestant that was asked for by name and cannot run at all in
+/// this build or on this machine.
 std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions& options,
                                          const Progress& progress = {});
 
@@ -110,8 +111,8 @@ struct DistanceBenchOptions {
 /// The answers of a contestant compared with ours, which are exact.
 struct DistanceErrors {
   std::uint64_t answers = 0;
-  std::uint64_t lacking = 0;       // distances that only ours has
-  std::uint64_t beyond = 0;        // distances that ours leaves out, beyond `within`
+  std::uint64_t lacking = 0;       // distances that only our answer has
+  std::uint64_t beyond = 0;        // distances that our answer leaves out: beyond `within`
   std::uint64_t exact = 0;         // the same double
   std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
   std::uint64_t other_object = 0;  // with `nearest`: another object that is not as near
@@ -127,7 +128,7 @@ struct DistanceBenchRow : TimedRow {
 struct DistanceBenchResult {
   std::vector<DistanceBenchRow> rows;                         // ours is the first
   std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
-  std::optional<std::size_t> fastest_peer;                    // of the comparable ones; into rows
+  std::optional<std::size_t> fastest_peer;                    // into rows; a comparable one
 };
 
 /// Measures distances between different objects, also if the scene tests one against itself. Throws
@@ -135,12 +136,13 @@ struct DistanceBenchResult {
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 
-/// `farcull distance` in the form of the peers: the first one of every bench.
+/// `farcull distance` as a peer: the first contestant of every bench_distances().
 DistancePeer farcull_distances();
-/// The answers of a record of `objects`, or of `nearest` with k = 1, as a peer gives them.
+/// The distances of a record as a peer gives them. Precondition: the record is of `objects`, or of
+/// `nearest` with k = 1.
 std::vector<PeerDistance> as_peer(const DistanceRecord& record);
 
-/// Compares `answer` with the exact one to the same question; both sorted.
+/// Compares `answer` with `exact`, the exact answer to the same question. Both are sorted.
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact);
 
@@ -149,11 +151,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
                                  const DistanceBenchResult& result);
 
-// For both.
+// Shared by bench() and bench_distances().
 
 /// "NAME, cold" or "NAME, 2 of 5"; nothing without a callback.
 void show_round(const Progress& progress, const std::string& name, int round, int repeats);
-/// Writes the times of row i, and makes it the fastest peer if it is one (`counts`: it may be).
+/// Writes the times of row i. Makes the row the fastest peer if it is a peer, `counts` is true and
+/// its median is the least so far.
 template <class Result>
 void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool counts,
                Result& result) {
@@ -167,7 +170,8 @@ void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool cou
   if (!fastest || row.total_ms.median < result.rows[*fastest].total_ms.median)
     result.fastest_peer = i;
 }
-/// Cells of a table: milliseconds, memory, and a row from the median to the cold run.
+/// Cells of a table: milliseconds; memory; the first cells of a row, from its name to its cold
+/// run.
 std::string ms_text(double ms);
 std::string mib_text(const TimedRow& row);
 std::vector<std::string> time_cells(const TimedRow& row);

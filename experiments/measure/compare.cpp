@@ -1,4 +1,4 @@
-// Runs in turn: cells of methods and resolutions, and runs as planned beside those with --full.
+// Runs in turn all cells (a method at a resolution), or runs as planned and runs with --full.
 #include "experiments/measure/compare.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ constexpr const char* kClearanceMethods = "far-pairs,exact";
 constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
 constexpr const char* kAuto = "auto";
 
-// The resolutions of a method; `exact` has one, 0.
+// The resolutions of a method; only 0 for a method without resolutions, such as `exact`.
 std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
   const bool pairs = chooses_views(method);
   if (!pairs && !draws(method)) return {0};

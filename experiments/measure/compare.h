@@ -1,6 +1,5 @@
-// Runs side by side in one process: methods and resolutions on one scene; and `farcull experiment
-// savings`, the time of runs that leave out what they need not do over the time of runs that do
-// everything (--full).
+// Compares runs in one process: methods and resolutions on one scene (`farcull compare`), and runs
+// that skip unneeded work with runs that do everything, --full (`farcull experiment savings`).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,16 +13,16 @@ namespace farcull {
 
 struct CompareArguments {
   std::vector<std::string> scene;
-  /// Names by commas; if none is given, all, or those that support a clearance or objects tested
-  /// against themselves where the scene needs it.
+  /// Names with commas. Empty: far, cullide, far-pairs and exact, without those that do not support
+  /// the clearance, or objects tested against themselves if the scene has such objects.
   std::optional<std::string> methods;
-  /// px, by commas; `auto` is for far-pairs alone, and its default.
+  /// px, with commas; `auto` is only for far-pairs, and is its default.
   std::optional<std::string> resolutions;
   std::string offsets = "obb";  // for far
   bool self = false;            // every object was made to be tested against itself
   std::string repeat = "1";
-  /// Views, device, clearance and seed for all; rounds, clear, level and conservative for those
-  /// that take them.
+  /// Views, device, clearance and seed are for all methods; rounds, clear, level and conservative
+  /// for the methods that take them.
   RunOptions options;
 };
 
@@ -46,8 +45,8 @@ Comparison compare(const Scene& scene, const CompareArguments& arguments,
 nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison);
 
 struct SavingsArguments {
-  std::vector<std::string> scenes;    // of farcull scenes, one by one; empty: all but costly ones
-  std::string methods = "far-pairs";  // by commas
+  std::vector<std::string> scenes;    // listed by `farcull scenes`; empty: all but costly ones
+  std::string methods = "far-pairs";  // with commas
   int repeat = 15;
   RunOptions options;  // resolution, device and so on, of all
 };
@@ -57,7 +56,7 @@ struct SavingsRow {
   Method method{};
   std::vector<double> planned_ms,
       full_ms;             // of each repeat, cull + exact, in the order of the runs
-  bool same_pairs = true;  // with and without, in every repeat
+  bool same_pairs = true;  // with and without --full, in every repeat
 
   double planned() const;  // medians
   double full() const;
@@ -65,15 +64,15 @@ struct SavingsRow {
   bool pays() const;
 };
 
-/// Runs every scene by every method that applies, alternating between the two, after a run of each
-/// that is not counted. Throws Error as run() does.
+/// Runs every scene by every method that applies, in turn as planned and with --full. The first run
+/// of each is not counted. Throws Error as run() does.
 std::vector<SavingsRow> run_savings(const SavingsArguments& arguments,
                                     const Progress& progress = {});
 
 /// Whether two runs found the same pairs, neighbours among them.
 bool same_pairs(const Record& a, const Record& b);
-/// The first method that promises, by these options, and whose pairs differ; empty: none. The
-/// verdict about the device is not looked at.
+/// Names the first row whose method promises to miss nothing, by these options, but whose pairs
+/// differ; empty if there is none. Ignores the verdict about the device.
 std::string broken(const std::vector<SavingsRow>& rows, RunOptions options);
 
 std::string savings_table(const std::vector<SavingsRow>& rows);

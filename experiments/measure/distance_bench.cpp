@@ -1,4 +1,4 @@
-// Ours and the peers in turn; the first answer of each is compared with ours.
+// Runs our search and the peers in turn, and compares each peer's first answer with ours.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ std::vector<PeerDistance> as_peer(const DistanceRecord& record) {
   std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
     return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
   });
-  if (nearest) {  // the pairs are those in which one is the nearest of the other
+  if (nearest) {  // each object keeps only its nearest one
     const auto same = [](const PeerDistance& x, const PeerDistance& y) { return x.a == y.a; };
     out.erase(std::unique(out.begin(), out.end(), same), out.end());
   } else {

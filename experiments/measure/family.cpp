@@ -1,4 +1,4 @@
-// Scenes frame after frame by every method, then the table, the CSV and the JSON.
+// Runs every method on all frames of every scene, and writes the table, the CSV and the JSON.
 #include "experiments/measure/family.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The methods of the table, in its order; far once with each offset.
+// A method of the table; far is listed once with each offset.
 struct ListedMethod {
   Method method;
   std::string offset;
@@ -86,8 +86,9 @@ void require_motion(const std::string& scene) {
   throw Error("--frames", "nothing in " + scene + " moves", "name one of " + moving_names());
 }
 
-// The frames of a scene for one method after the other: kept where they are not too many bytes,
-// since a simulation may take longer than all methods together; else moved anew for each method.
+// Gives the frames of a scene to one method after the other. Keeps frames if all together are not
+// too many bytes, since a simulation may take longer than all methods together; else computes the
+// motion again for each method.
 class Frames {
  public:
   Frames(std::string scene, const FamilyArguments& arguments)
@@ -120,7 +121,7 @@ class Frames {
   std::vector<Scene> kept_;
 };
 
-// One scene by one method; nothing if the method has nothing to test in the scene.
+// Runs one method on one scene; empty if the method has nothing to test in the scene.
 std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod& contestant,
                                    const FamilyArguments& arguments, Frames& frames,
                                    Session& session, const Progress& progress) {

@@ -1,5 +1,6 @@
-// `farcull experiment family`: moving scenes by all methods in one program, beside the rates of the
-// papers; and how much smaller the sets of the other methods are than those of I-COLLIDE.
+// `farcull experiment family` runs all methods on moving scenes in one program, and shows their
+// frame rates beside those of the papers. It also compares the size of the potentially colliding
+// sets of the methods with that of I-COLLIDE.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,13 +16,13 @@ namespace farcull {
 
 struct FamilyArguments {
   std::vector<std::string> scenes;     // empty: all built-in ones that move
-  std::optional<std::string> methods;  // by commas; empty: all that apply to the scene
+  std::optional<std::string> methods;  // with commas; empty: all that apply to the scene
   FrameRange range = {0, 29};
   bool self = false;   // every object is tested against itself, by the methods that do so
   RunOptions options;  // resolution, device, verify and so on, of all
 };
 
-/// A frame of a scene by a method.
+/// The results of a method on one frame.
 struct FamilyFrame {
   long frame = 0;
   double ms = 0;  // from moved vertices to exact pairs: cull + exact
@@ -37,14 +38,14 @@ struct FamilyFrame {
   bool broken = false;  // the method promises, whatever its device's verdict, and missed a pair
 };
 
-/// A scene by a method.
+/// The results of a method on one scene.
 struct FamilyCell {
   std::string scene;
   std::uint64_t objects = 0, triangles = 0;  // in the first frame
   Method method{};
-  std::string offset;     // of far
-  std::string device;     // what answered
-  bool promises = false;  // the method promises, and its device keeps what that rests on
+  std::string offset;                 // of far
+  std::string device;                 // the device that answered
+  bool promises = false;              // the method promises, and its device keeps the assumptions
   std::uint64_t pairs_not_asked = 0;  // in the first frame: of triangles inside objects that the
                                       // method did not test against themselves
   double setup_ms = 0;
@@ -55,8 +56,8 @@ struct FamilyCell {
   bool broken() const;  // in any of its frames
 };
 
-/// The frame rate (1/s) that a paper gives for a scene like this one, measured on hardware of 2004
-/// with other meshes, and where; 0 if no paper does. It is no rate to compare ours with.
+/// The frame rate (1/s) that a paper gives for a similar scene, and the paper; 0 if no paper gives
+/// one. It was measured on hardware of 2004 with other meshes, so it is not comparable with ours.
 struct PaperRate {
   double fps = 0;
   std::string source;
@@ -72,10 +73,11 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
 std::string broken(const std::vector<FamilyCell>& cells);
 
 std::string family_table(const std::vector<FamilyCell>& cells);
-/// A row for each frame. The columns factor_* are the culling efficiency against I-COLLIDE, where
-/// it was run as well: what I-COLLIDE keeps over what this method keeps. `factor_objects` takes the
-/// triangles of the objects that I-COLLIDE keeps, as published, `factor_triangles` and
-/// `factor_pairs` what its boxes of triangles leave. Empty where either is 0.
+/// A row for each frame. The columns factor_* are the culling efficiency against I-COLLIDE: the
+/// number that I-COLLIDE keeps divided by the number that this method keeps. factor_objects counts
+/// all triangles of the objects that I-COLLIDE keeps, as published; factor_triangles and
+/// factor_pairs count the triangles and pairs that I-COLLIDE's boxes of triangles keep. A factor is
+/// empty if I-COLLIDE was not run or either number is 0.
 std::string family_csv(const std::vector<FamilyCell>& cells);
 nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
                                    const FamilyArguments& arguments);

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The keys of a run's record that each frame has of its own; the others hold for all frames.
+// The keys of a run's record that differ between frames; the others hold for all frames.
 constexpr std::array kOfFrame = {"views",
                                  "stages",
                                  "pcs",
@@ -57,17 +57,17 @@ Json frame_json(const Scene& scene, const Record& record, long frame, double rea
   out["queries"] = work.queries;
   out["motion"] = Json::object();
   const FrameNotes notes = source.notes();
-  // Null where it is not finite.
+  // JSON has null for a value that is not finite.
   for (const auto& [name, value] : notes.values) out["motion"][name] = value;
   out["warning"] = text_json(notes.warning);
   return out;
 }
 
-// A line for each frame, made as it comes. Columns appear where a frame has something for them;
-// the names are written again where one appears, or where a cell does not fit any more.
+// Formats a line for each frame as the frame comes. A column is added when a frame first has a cell
+// for it. The line of names is repeated when a column is added or becomes wider.
 class FrameTable {
  public:
-  /// `width` of the first column, if that is more than its name takes.
+  /// width: the least width of the first column.
   explicit FrameTable(std::size_t width) : first_width_(width) {}
 
   void add(const std::string& column, const std::string& cell) {
@@ -85,7 +85,7 @@ class FrameTable {
     found->cell = cell;
   }
 
-  /// The row, with a line of names before it where it needs one.
+  /// The row of the frame, after a line of names if a column is new or wider.
   std::string row() {
     std::string out;
     if (std::exchange(renamed_, false)) {

@@ -17,8 +17,8 @@ namespace farcull {
 
 /// The loop over frames of every command. Calls `one` with each frame of the range and a progress
 /// that puts `before` and "frame 3 of 10: " before its stages. SIGINT, SIGTERM and SIGHUP end the
-/// program at once, with a line on standard error that says how many frames were done, and `end`;
-/// null: without the line.
+/// program at once, with a line on standard error that says how many frames were done, and `end`.
+/// end: null for no line.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
                     const std::function<void(long frame, const Progress& named)>& one);
@@ -28,8 +28,8 @@ struct FramesQuestion {
   FrameRange range;
   bool self = false;
   bool strict = false;       // farcull verify: ask the guarantee of every method
-  bool pairs = false;        // the CSV is wanted
-  PairColumns columns = {};  // of it, besides the usual ones
+  bool pairs = false;        // write the CSV of pairs
+  PairColumns columns = {};  // of the CSV, besides the usual ones
   bool certificates = false;
   /// The objects of a frame's scene that are not tested against each other; empty: options.ignored.
   std::function<std::vector<ObjectPair>(const Scene&)> ignored = {};
@@ -46,10 +46,10 @@ FrameTimes summary_of(std::vector<double> ms);
 
 /// The results of a frame that is done.
 struct FrameReport {
-  const nlohmann::ordered_json& head;     // of all frames: the record without the next two
+  const nlohmann::ordered_json& head;     // of all frames: the record without those below
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
-  std::string rows;                       // for people; the first ones begin with what was run
+  std::string rows;                       // for people; those of the first frame have a heading
   std::string pairs_csv;    // as pairs_rows(), after a column `frame`; the first with the header
   long number = 0;          // of the frame
   std::string certificate;  // its text, where certificates are wanted
@@ -61,7 +61,7 @@ using FrameSink = std::function<void(const FrameReport&)>;
 class FrameRecord {
  public:
   explicit FrameRecord(std::string path) : output_(std::move(path)) {}
-  /// head: an object, which may be empty; that of the first frame counts. summary: of the frames up
+  /// head: an object, which may be empty; the first frame's head counts. summary: of the frames up
   /// to this one. Throws Error as GrowingOutput.
   void add(const nlohmann::ordered_json& head, const nlohmann::ordered_json& frame,
            const nlohmann::ordered_json& summary);
@@ -88,7 +88,7 @@ struct FramesResult {
 /// then the only result.
 FramesResult run_frames(const std::vector<std::string>& scene, const FramesQuestion& question,
                         const Progress& progress = {}, const FrameSink& sink = {});
-/// The same for the frames of a source; question.self is not looked at.
+/// The same for the frames of a source. Ignores question.self.
 FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
                         const Progress& progress = {}, const FrameSink& sink = {});
 

@@ -1,5 +1,5 @@
-// Rounds over the contestants, and the statistics of what they took: resampling by a generator
-// whose numbers the standard fixes, and Boost's quantiles.
+// Runs the contestants in rounds and summarizes their times. The bootstrap draws from a generator
+// whose numbers the C++ standard fixes; the quantiles of Student's t are Boost's.
 #include "experiments/measure/harness.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ double middle_of(std::vector<double>& values) {
 
 class Draws {
  public:
-  // The median of as many values, drawn with replacement.
+  // The median of values.size() draws from `values`, with replacement.
   double median(const std::vector<double>& values) {
     drawn_.clear();
     for (std::size_t i = 0; i < values.size(); ++i) {

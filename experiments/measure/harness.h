@@ -2,8 +2,8 @@
 // runs when, how its times are summed up with which intervals, and how times are written. Medians
 // and their ratios are estimated by the bootstrap, slopes by Student's t.
 //
-// And the state that measurements of one process share: the device with its shaders, the scene that
-// was read last, and the pairs that truly collide in it.
+// Lab keeps the state that measurements of one process share: the device with its shaders, the
+// scene that was read last, and the pairs that truly collide in that scene.
 #pragma once
 
 #include <cstddef>
@@ -29,42 +29,43 @@ struct Estimate {
   std::size_t n = 0;
 };
 
-/// The middle value, of an even number of values the mean of the two in the middle; 0 of none.
+/// The middle value, or the mean of the two in the middle if the number of values is even; 0 if
+/// there are no values.
 double middle(std::vector<double> values);
 
 /// The middle() with the percentile interval of the bootstrap (Efron and Tibshirani 1993,
 /// section 13.3): as many values are drawn with replacement 10,000 times, and the interval goes
 /// from the 2.5th to the 97.5th percentile of their medians. The generator has a fixed seed, so the
-/// same values in any order give the same interval. It contains the true median with a probability
-/// of 75 % for 3 independent runs, 94 % for 5 and 96 % for 9 (docs/experiments.md, "Statistics").
-/// All 0 where there are no values.
+/// same values in any order give the same interval. The interval contains the true median with a
+/// probability of 75 % for 3 independent runs, 94 % for 5 and 96 % for 9 (docs/experiments.md,
+/// "Statistics"). All 0 if there are no values.
 Estimate median_estimate(std::vector<double> values);
 
-/// The ratio of the medians, with both lists resampled; n: the number of values of the smaller one.
-/// Precondition: both have values, those of the second above 0.
+/// The ratio of the medians, with an interval as above for which both lists are resampled. n: the
+/// length of the shorter list. Precondition: no list is empty, and all of `under` is above 0.
 Estimate ratio_estimate(std::vector<double> over, std::vector<double> under);
 
 /// The factor t with which value +- t * standard error is the 95 % interval of a least-squares
 /// slope with so many degrees of freedom (points less 2). Precondition: at least 1.
 double student_t95(std::size_t degrees);
 
-/// Statistics of several values. median: the middle value; of an even number of values the mean of
-/// the two in the middle. low, high: its 95 % interval (median_estimate()). n: how many values.
+/// Statistics of several values. median: as middle(). low, high: the 95 % interval of the median
+/// (median_estimate()). n: how many values.
 struct Spread {
   double median = 0, min = 0, max = 0;
   double low = 0, high = 0;
   std::size_t n = 0;
   FARCULL_FIELDS(median, min, max, low, high, n)
 };
-/// All 0 where there are no values.
+/// All 0 if there are no values.
 Spread spread_of(const std::vector<double>& values);
 nlohmann::ordered_json to_json(const Spread& spread);
 
-/// The index of the run with the median time, of an even number the faster of the two in the
-/// middle. Precondition: not empty.
+/// The index of the run with the median time; if the number of runs is even, the faster of the two
+/// in the middle. Precondition: not empty.
 std::size_t median_run(const std::vector<double>& ms);
 
-/// The time of a run that is compared: culling and exact tests, in ms; neither setup nor
+/// The time by which runs are compared, in ms: culling and exact tests, without setup and
 /// verification.
 double compared_ms(const Record& record);
 
@@ -81,7 +82,7 @@ struct Rounds {
 struct Timed {
   std::vector<double> ms;          // of the counted runs, in their order
   double warm_up_ms = 0;           // of the last warm-up run; 0 without one
-  std::optional<double> peak_mib;  // of the first warm-up run, beyond what was there before
+  std::optional<double> peak_mib;  // of the first warm-up run, above the memory before it
   bool over_limit(const Rounds& rounds) const { return warm_up_ms > rounds.limit_ms; }
 };
 
@@ -90,7 +91,7 @@ struct Timed {
 using TimedRun = std::function<double(std::size_t contestant, int round)>;
 
 /// Runs all contestants in turn, round after round, so that a slow moment of the machine falls on
-/// all of them. What `run` throws ends the measurement.
+/// all of them. An exception of `run` ends the measurement.
 std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& rounds,
                                     const TimedRun& run);
 
@@ -99,9 +100,9 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
 /// The colliding pairs of a scene, by exact predicates on every pair whose boxes meet
 /// (verify/exact.h).
 struct Truth {
-  std::vector<TrianglePair> pairs;  // colliding, neighbours among them; sorted
-  std::uint64_t triangles = 0;      // that are in one of them
-  double ms = 0;                    // that finding them took
+  std::vector<TrianglePair> pairs;  // colliding, neighbours included; sorted
+  std::uint64_t triangles = 0;      // in at least one of the pairs
+  double ms = 0;                    // time of finding the pairs
 };
 
 /// The triangles that are in a pair, each once, ascending.
@@ -113,14 +114,14 @@ Truth without_neighbours(const Scene& scene, const Truth& truth);
 
 /// How an answer differs from the truth. All pairs count, neighbours among them.
 struct Errors {
-  std::uint64_t missed = 0;            // colliding pairs that it lacks
-  std::uint64_t missed_triangles = 0;  // colliding triangles that are in none of its pairs
-  std::uint64_t wrong = 0;             // its pairs that do not collide
+  std::uint64_t missed = 0;            // colliding pairs that the answer lacks
+  std::uint64_t missed_triangles = 0;  // colliding triangles in none of the answer's pairs
+  std::uint64_t wrong = 0;             // pairs of the answer that do not collide
 };
 /// pairs: sorted.
 Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs);
 
-/// How many of a are not in b; both sorted.
+/// How many pairs of a are not in b. Both are sorted.
 std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<TrianglePair>& b);
 
 class Lab {
@@ -132,20 +133,21 @@ class Lab {
   const std::string& device() const { return device_; }
   const Progress& progress() const { return progress_; }
 
-  /// The scene of that name, read once while no other is asked for. frame < 0: without frames; else
-  /// the frame of a motion that has `frames` of them; the same name with another number of frames
-  /// is another scene.
+  /// The scene of that name; it is kept until another scene is asked for. frame < 0: the scene
+  /// without frames; else this frame of its motion, which has `frames` frames. The same name with
+  /// another number of frames is another scene.
   const Scene& scene(const std::string& name, long frame = -1, long frames = 0);
-  /// A scene that `make` gives, kept under the name as those above.
+  /// The scene that `make` returns, kept under the name like a scene that was read.
   const Scene& scene(const std::string& name, const std::function<Scene()>& make);
-  /// The scene that was asked for last, and what collides in it. Precondition: one was.
+  /// The scene asked for last, and its colliding pairs. Precondition: a scene was asked for.
   const Scene& current() const;
   const Truth& truth();
-  /// The notes of its motion on the frame; none of a scene without frames.
+  /// The notes of the scene's motion on its current frame (FrameNotes); empty if the scene was read
+  /// without frames.
   FrameNotes notes() const { return source_ ? source_->notes() : FrameNotes{}; }
 
  private:
-  /// Notes the name of the next scene and drops what is known of the one before.
+  /// Notes the name of the next scene and drops the data of the previous one.
   void begin_scene(const std::string& name, long frame, long frames);
 
   std::string device_;

@@ -1,4 +1,5 @@
-// Single kernels, by Google Benchmark: farcull_kernels_bench. Inputs are drawn with a fixed seed.
+// farcull_kernels_bench times single kernels by Google Benchmark. Inputs are drawn with a fixed
+// seed.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@ namespace {
 using shapes::Corners;
 using shapes::Random;
 
-constexpr std::size_t kCount = 1024;  // inputs that a case goes round
+constexpr std::size_t kCount = 1024;  // inputs that a case uses in turn, again and again
 
 // Triangles of about `size` around places in a cube of the given half side.
 std::vector<Corners> triangles(double half, double size, std::uint64_t seed) {
@@ -38,8 +39,8 @@ interval::vec4 pixel_vertex(const Vec3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0};
 }
 
-// All that a triangle of some pixels takes: bounds, a strip per row, depths per pixel. Items are
-// intervals.
+// Times all work for a triangle of some pixels: its bounds, a strip for each row, depths for each
+// pixel. An item is the interval of depths of a pixel.
 void interval_kernel(benchmark::State& state) {
   const std::vector<Corners> all = triangles(64, static_cast<double>(state.range(0)), 1);
   const interval::vec4 widen = {1e-4f, 1e-4f, 1e-4f, 0};
@@ -70,7 +71,7 @@ void interval_kernel(benchmark::State& state) {
 }
 BENCHMARK(interval_kernel)->Arg(1)->Arg(4)->Arg(16);
 
-// Entry and exit of a line through the middle of a solid.
+// Times where a line through the middle of a triangle enters and leaves the triangle's solid.
 void solid_kernel(benchmark::State& state, const Fattener& fattener,
                   Solid (*solid_of)(const Corners&)) {
   std::vector<Solid> solids;
@@ -96,7 +97,7 @@ Solid exact_solid(const Corners& corners) {
 BENCHMARK_CAPTURE(solid_kernel, obb, obb_fattener(), obb_solid);
 BENCHMARK_CAPTURE(solid_kernel, exact, minkowski_fattener(), exact_solid);
 
-// Making the solid of a triangle.
+// Times making the solid of a triangle.
 void fatten_kernel(benchmark::State& state, Solid (*solid_of)(const Corners&)) {
   const std::vector<Corners> all = triangles(64, 4, 3);
   std::size_t at = 0;
@@ -106,8 +107,8 @@ void fatten_kernel(benchmark::State& state, Solid (*solid_of)(const Corners&)) {
 BENCHMARK_CAPTURE(fatten_kernel, obb, obb_solid);
 BENCHMARK_CAPTURE(fatten_kernel, exact, exact_solid);
 
-// Deciding pairs whose places are `range` sizes of a triangle apart: at 0 most collide, at 4 few
-// do.
+// Times deciding pairs of triangles of about size 1 at random places in a cube of side `range`: at
+// 0 most pairs collide, at 4 few do.
 template <class Decide>
 void pair_kernel(benchmark::State& state, const Decide& decide) {
   const double half = static_cast<double>(state.range(0)) / 2;
@@ -138,8 +139,8 @@ BENCHMARK(filter_alone)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_with_filter)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_without_filter)->Arg(0)->Arg(1)->Arg(4);
 
-// far-pairs and the exact tests of one frame in one thread, of which `range` percent of the
-// vertices moved since the last one; by itself, or with what is kept of the last one.
+// Times far-pairs and the exact tests on one frame, in one thread; `range` percent of the vertices
+// moved since the previous frame. remembers: uses data kept from the previous frame.
 void frame(benchmark::State& state, const char* name, bool self, bool remembers) {
   Scene scene = make_builtin_scene(name);
   for (Object& object : scene.objects) object.self = self;

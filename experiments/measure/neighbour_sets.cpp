@@ -29,8 +29,7 @@
 namespace farcull {
 namespace {
 
-// The squares of the least and of the largest distance of a point of one box and a point of the
-// other one, both rounded.
+// The squares of the least and of the largest distance between points of two boxes, both rounded.
 struct SquaredRange {
   double least = 0, largest = 0;
 };
@@ -45,20 +44,21 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// Anything farther than this, as computed, is farther than the largest distance that was computed
-// as `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below
-// 2^-1022 is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the
-// exact ones, and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is
-// infinite on both sides, so it is kept.
+// A box whose computed least squared distance is above this limit is farther than the largest
+// distance whose square was computed as `largest`. Let u = 2^-53. A difference, a square and two
+// sums round, and a square below 2^-1022 is off by 2^-1075: both squares are within the factors
+// (1 - u)^5 and (1 + u)^5 of the exact ones, and 2^-1072. The factor 1 + 16 u covers both, and the
+// rounding of this product; 2^-1000 covers the rest. A square that overflows is infinite on both
+// sides, so its box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // An object may hold the nearest neighbour of another one if the least distance of their boxes is
-// at most the largest distance to the box of some object. The same bound chooses its triangles, by
-// their boxes.
+// at most the largest distance to the box of some object. The same bound, applied to the boxes of
+// triangles, chooses the triangles.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  std::vector<double> limit(count, -1);  // below 0: nothing is as near
+  std::vector<double> limit(count, -1);  // below 0: there is no other object
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = 0; b < count; ++b) {
       if (a == b || boxes[a].is_empty() || boxes[b].is_empty()) continue;
@@ -117,7 +117,8 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
 
 // Adds to each object how many triangles of other objects its pairs name, each once. Pairs are
 // sorted, with a < b, and triangles ascend with their objects. So all pairs of a's object come
-// together, and those of one a with b's object too: remembering the last of each finds repeats.
+// together, and so do all pairs of one a with b's object. It is enough to remember, for each b, the
+// object of its last a, and for each object of b, its last a.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -302,7 +303,7 @@ std::string numbered_name(const Scene& scene, std::uint32_t object) {
   return fmt::format("{} {}", object, scene.objects[object].name);
 }
 
-// The first of the nearest objects, and how many are as near.
+// The first of the nearest objects, and how many others are as near.
 std::string nearest_text(const Scene& scene, const PotentialNeighbours& of) {
   if (of.nearest.empty()) return "none";
   std::string text = numbered_name(scene, of.nearest.front());

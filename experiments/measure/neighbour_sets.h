@@ -1,6 +1,6 @@
 // Potential neighbour sets (PNS): for each object the objects and triangles that may hold its
-// nearest neighbour. Four methods leave such sets; their sizes are compared, and what they lose is
-// counted against exact distances.
+// nearest neighbour. Four methods compute such sets. Their sizes are compared, and exact distances
+// show which nearest neighbours they lose.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@
 
 namespace farcull {
 
-/// The other objects at the least distance of an object, by exact arithmetic.
+/// The objects nearest to one object, all at the same distance by exact arithmetic.
 struct NearestObjects {
-  std::vector<std::uint32_t> objects;   // ascending; none where there is no other one
-  std::vector<TrianglePair> triangles;  // of each of these, the first pair at that distance
+  std::vector<std::uint32_t> objects;   // ascending; empty if there is no other object
+  std::vector<TrianglePair> triangles;  // for each of `objects` the first pair at that distance
 };
 
 /// For each object: ProximityTrees (core/proximity/near_pairs.h) leave the pairs that can be
@@ -36,7 +36,7 @@ class VoronoiDevice;
 /// Voronoi diagram as published, and the form of it that loses nothing (core/voronoi/voronoi.h).
 enum class NeighbourMethod : std::uint8_t { boxes, trees, voronoi, voronoi_reliable };
 std::string to_string(NeighbourMethod method);
-/// True of the two that have a resolution.
+/// Whether the method has a resolution: true for the two diagrams.
 bool has_cells(NeighbourMethod method);
 
 /// Pairs of triangles that the reliable form may keep here: 268 MB.
@@ -50,7 +50,7 @@ struct NeighbourOptions {
   std::uint64_t most_pairs = kMostNeighbourPairs;  // VoronoiOptions::most_pairs
 };
 
-/// The sets that a method leaves. Of the two forms below, one holds the triangles.
+/// The sets that a method leaves. Either `pairs` or `left` holds the triangles.
 struct NeighbourSets {
   std::vector<ObjectPair> objects;  // sorted, each once: either may hold the other's nearest
   /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
@@ -84,21 +84,22 @@ std::uint64_t triangle_pairs_of(const NeighbourSets& sets);
 
 /// Whether the pair of objects is left, in either order.
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
-/// Whether the pair of triangles of these objects is left. Sets without pairs of triangles have it
-/// if they have the pair of objects.
+/// Whether the pair of triangles of these objects is left. If the sets hold no pairs of triangles,
+/// the pair of objects decides.
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
 
 /// Sizes of the sets, and what they lack.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
-  std::uint64_t missed = 0;          // of these, with none of the nearest ones in their sets
-  std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, each for each of its objects
+  std::uint64_t missed = 0;          // of these, objects whose sets hold no nearest one
+  std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, summed over the objects
   std::uint64_t missed_pairs = 0;    // of these, not in the sets
   std::uint64_t object_pairs = 0;    // pairs of objects that are left
   std::uint64_t triangle_pairs = 0;  // pairs of triangles that are left
-  /// The set of an object: objects, and triangles of other objects. Over the objects with a nearest
-  /// neighbour the sum, the median (of an even number the lower one of the two) and the largest.
+  /// How many objects, and triangles of other objects, the set of an object holds: the sum, the
+  /// median (the lower of the two in the middle if the number is even) and the largest, over the
+  /// objects with a nearest neighbour.
   std::uint64_t set_objects = 0, median_objects = 0, most_objects = 0;
   std::uint64_t set_triangles = 0, median_triangles = 0, most_triangles = 0;
   FARCULL_FIELDS(with_nearest, missed, nearest_pairs, missed_pairs, object_pairs, triangle_pairs,
@@ -109,17 +110,18 @@ struct NeighbourSizes {
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth);
 
-// The potential neighbours of each object by a discrete Voronoi diagram (docs/voronoi.md), beside
-// its nearest objects by exact arithmetic: how many the diagram leaves, and how many it loses.
+// Compares the potential neighbours of each object by a discrete Voronoi diagram (docs/voronoi.md)
+// with its nearest objects by exact arithmetic: how many the diagram leaves, and how many it loses.
 
-/// published: of each cell the two nearest objects. reliable: all that may be nearest.
+/// published: the diagram leaves the two nearest objects of each cell. reliable: it leaves all
+/// objects that may be nearest.
 enum class DiagramForm { published, reliable };
 
 struct DiagramOptions {
   DiagramForm form = DiagramForm::published;
   int resolution = 64;   // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   unsigned threads = 0;  // of the CPU; 0: as many as there are cores; changes no answer
-  double widening = 1;   // of VoronoiOptions; below 1 the reliable form loses nearest objects
+  double widening = 1;   // as in VoronoiOptions; below 1 the reliable form may lose objects
   /// The device that computes the cells. "", "native" or "cpu": on the cores of the CPU; else a GL
   /// device as Session takes it.
   std::string device = {};
@@ -127,33 +129,33 @@ struct DiagramOptions {
 
 /// The sets of one object.
 struct PotentialNeighbours {
-  std::vector<std::uint32_t> nearest;  // the objects at its least distance; none where there is no
-                                       // other object with triangles
-  double distance = 0;                 // that distance, in world units, rounded once
-  /// The objects that the diagram leaves, and the triangles of them: all triangles of these objects
-  /// with the published form; with the reliable form those that may be nearest.
+  std::vector<std::uint32_t> nearest;  // its nearest objects; empty if no other object has
+                                       // triangles
+  double distance = 0;                 // to them, in world units, rounded once
+  /// How many objects the diagram leaves, and how many of their triangles: all triangles with the
+  /// published form, those that may be nearest with the reliable form.
   std::uint64_t objects = 0, triangles = 0;
-  /// How many of `nearest` are not among those objects. With the reliable form also those whose
-  /// first nearest pair of triangles is not left.
+  /// How many of `nearest` the diagram does not leave. With the reliable form, an object is also
+  /// lost if its first nearest pair of triangles is not left.
   std::uint64_t lost = 0;
 };
 
 struct DiagramRecord {
   DiagramOptions options;
-  std::optional<GlInfo> gl = {};  // what answered; empty: the CPU
+  std::optional<GlInfo> gl = {};  // the device that answered; empty: the CPU
   std::string probes = {};        // what the probes of that device showed
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
-  std::vector<PotentialNeighbours> objects;  // of each object of the scene
+  std::vector<PotentialNeighbours> objects;  // one for each object of the scene
   std::uint64_t object_pairs = 0;            // that the diagram leaves, each once
-  std::uint64_t triangle_pairs = 0;          // likewise; of the published form all of these objects
+  std::uint64_t triangle_pairs = 0;          // likewise; published form: all of these objects
   VoronoiCounts work = {};
   double diagram_ms = 0, exact_ms = 0;
 };
 
-/// Throws Error as voronoi_neighbours() and reliable_neighbours() do, and where a GL device does
-/// not answer, fails, or does not pass the probes (docs/reliability.md). Precondition:
-/// the scene satisfies validate().
+/// Throws Error as voronoi_neighbours() and reliable_neighbours() do, and if a GL device does not
+/// answer, fails, or does not pass the probes (docs/reliability.md). Precondition: the scene
+/// satisfies validate().
 DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& options,
                                    const Progress& progress = {});
 
@@ -161,8 +163,8 @@ DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& opt
 struct DiagramTotals {
   std::uint64_t objects = 0;       // that have a nearest object
   std::uint64_t nearest = 0;       // their nearest objects
-  std::uint64_t lost = 0;          // of these
-  std::uint64_t objects_lost = 0;  // objects that lost all of theirs
+  std::uint64_t lost = 0;          // nearest objects that the diagram lost
+  std::uint64_t objects_lost = 0;  // objects of which all nearest objects are lost
   std::uint64_t potential_objects = 0, potential_triangles = 0;
   FARCULL_FIELDS(objects, nearest, lost, objects_lost, potential_objects, potential_triangles)
 };

@@ -1,5 +1,5 @@
-// Keeps what probes found in a JSON file: the inputs, the findings, and a checksum of both. The
-// file's name is a hash of the inputs, so each build and driver has its own.
+// Keeps the findings of probes in a JSON file: the inputs, the findings, and a checksum of both.
+// The file's name is a hash of the inputs, so each build and driver has its own file.
 #include "experiments/method/device_verdict.h"
 
 #include <fcntl.h>
@@ -35,15 +35,15 @@
 
 namespace farcull {
 
-// The probes of A4. For FAR pairs the device computes all intervals in one dispatch, and slices in
-// one for each window. For both offsets the canvas's fragment program computes intervals of
-// fattened triangles and of solids made of floats. verify/kernel_check draws the cases and counts
-// the losses.
+// The probes of A4 (docs/reliability.md). For FAR pairs the device computes all intervals in one
+// dispatch, and the slices of each window in one dispatch. For both offsets the canvas's fragment
+// program computes intervals of fattened triangles and of solids whose floats are drawn directly.
+// verify/kernel_check draws the cases and counts the losses.
 
 namespace {
 
-// Runs a probe and measures how much was lost. It fails if anything was, if answers are loose too
-// often, or if it breaks off with an Error.
+// Runs a probe and measures how much was lost. The probe fails if anything was lost, if answers are
+// loose too often, if nothing was checked, or if it breaks off with an Error.
 ProbeResult result(const std::string& name, const std::string& tried,
                    const std::function<KernelTally()>& run) {
   ProbeResult out{.assumption = "A4", .name = name, .unit = "lost", .note = {}};
@@ -65,7 +65,7 @@ ProbeResult result(const std::string& name, const std::string& tried,
   return out;
 }
 
-// Fattened triangles of every kind, then solids made of floats directly.
+// Checks fattened triangles of every kind, then solids whose floats are drawn directly.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
   SolidProgram solid = kernel.program;
@@ -88,8 +88,8 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
     const std::vector<SolidAnswer> answers = device_solids(context, solid, cases);
     for (std::size_t i = 0; i < kSolidCases; ++i)
       kernel.check(cases[i], answers[i], ordinary[i], tally);
-    // A step of the depth buffer is 0.25 px, for solids made of floats 16 px: mostly about the
-    // distance from entry to exit.
+    // A step of the depth buffer is 0.25 px, or 16 px for solids drawn directly. This is mostly
+    // about the distance from entry to exit.
     std::vector<SolidCase> stored = cases;
     if (options.late_stores) std::rotate(stored.begin(), stored.begin() + 1, stored.end());
     const std::vector<std::uint8_t> seen =
@@ -250,7 +250,7 @@ std::string processor() {
   return out.empty() ? "unknown" : out;
 }
 
-// Three digits, or "infinite".
+// The number with three digits, or "infinite".
 std::string number(double x) {
   if (!std::isfinite(x)) return "infinite";
   char out[32];
@@ -275,8 +275,8 @@ std::string file_of(const VerdictInputs& inputs) {
   return folder + "/device-" + hash_of(text_of(inputs_json(inputs))) + ".json";
 }
 
-// Reads a verdict. Returns nothing if there is no file, or if it is of no use: `problem` then says
-// why.
+// Reads a verdict. Returns nothing if there is no file, or if the file is of no use; then `problem`
+// says why.
 std::optional<DeviceVerdict> read(const std::string& file, const VerdictInputs& inputs,
                                   std::string& problem) {
   struct stat status {};
@@ -481,7 +481,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
   out.holds = out.problem.empty() && out.failed.empty();
   const VerdictInputs inputs = verdict_inputs(device, reliance);
   const std::string file = file_of(inputs);
-  // First, so that no later failure leaves an older promise that these results refute.
+  // This comes first, so that no later failure leaves an older promise that these results refute.
   if (!out.holds) out.note = forget(file);
   if (!out.holds && out.failed.empty()) return out;
   Json json = {{"farcull_verdict", kFormat},
@@ -491,7 +491,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
                {"made", out.made},
                {"ms", out.ms},
                {"probes", probes}};
-  // Parsed again, so that the checksum is of the same text that a reader will hash.
+  // Parses the text again, so that the checksum is of the same text that a reader will hash.
   json = Json::parse(text_of(json));
   json["checksum"] = hash_of(text_of(json));
   const std::string unkept = write(file, text_of(json, 2) + "\n");

@@ -1,6 +1,6 @@
-// Whether a device keeps the assumptions that a method's promise rests on (docs/reliability.md), as
-// far as probes can tell. The probes run once for a device, a driver and a build of farcull; what
-// they found is kept in a file.
+// Decides whether a device keeps the assumptions that a method's promise rests on
+// (docs/reliability.md), as far as probes can tell. The probes run once for a device, a driver and
+// a build of farcull; a file keeps their findings.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace farcull {
 
-// A4, the shipped kernels: each runs on the device as its method runs it, and its answers are
-// compared with rational bounds (verify/kernel_check.h).
+// Probes of assumption A4, on the kernels that farcull uses: each kernel runs on the device as its
+// method runs it, and its answers are compared with rational bounds (verify/kernel_check.h).
 
-/// A kernel of an offset: its program, fattened triangles and solids made of floats to ask it
-/// about, and the check of an answer.
+/// A kernel of an offset: its program, functions that make its test cases (fattened triangles, and
+/// solids whose floats are drawn directly), and the check of an answer.
 struct SolidKernel {
   const char* name;
   SolidProgram program;
@@ -30,13 +30,13 @@ struct SolidKernel {
 /// The kernels of both offsets.
 std::vector<SolidKernel> solid_kernels();
 
-/// All but the first two are deliberate defects, so that tests can see the probes fail.
+/// The members after the first two are deliberate defects, so that tests can see the probes fail.
 struct KernelProbeOptions {
   std::uint64_t seed = 1;
   bool brief = false;            // about a third of the samples
   bool bare = false;             // kernels that widen nothing
   bool reversed_slices = false;  // depth slices from far to near
-  bool late_stores = false;      // what is stored is another solid than what is asked
+  bool late_stores = false;      // another solid is stored than is asked about
 };
 
 /// Probes what FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles
@@ -48,18 +48,19 @@ std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
-/// run_probes and the kernels above, in the order of the assumptions; `started` as for run_probes.
+/// Runs run_probes() and the probes of kernels, in the order of the assumptions; `started` as for
+/// run_probes().
 std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {});
-/// Brief probes of what drawing relies on.
+/// Runs brief probes of the assumptions that drawing relies on.
 std::vector<ProbeResult> drawing_probes(const GlContext& context);
 
 // ---- the verdict ----
 
 struct ProbeResult;  // core/gl/probe/probe.h
 
-/// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7, A8,
-/// A10. drawing: far, A1 to A10.
+/// Which assumptions of a device a method relies on. pairs: those of FAR pairs on GL (A4 in compute
+/// shaders, A7, A8, A10). drawing: those of far (A1 to A10).
 enum class Reliance { pairs, drawing };
 
 /// The time now: UTC, ISO 8601, in seconds.
@@ -68,26 +69,26 @@ std::string utc_now();
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;              // which probe broke off, and why: nothing is promised
+  std::string problem;              // which probe broke off, and why; then nothing is promised
   std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
   std::size_t probes = 0;           // how many ran
   double ms = 0;                    // time of the probes
   bool remembered = false;          // read from the file; no probe ran now
-  std::string file;                 // where it is kept; empty: nowhere
+  std::string file;                 // where the verdict is kept; empty: nowhere
   std::string note;  // why the file was of no use, or could not be written or removed
 };
 
 /// One sentence without a full stop: what the probes found.
 std::string to_string(const DeviceVerdict& verdict, Reliance reliance);
 
-/// All that code generation and arithmetic on this device depend on, by name: the device, its
-/// driver, threads and limits, the sources of kernels and probes, the features of the processor (of
-/// a software device), and the variables of the environment that drivers read.
+/// Names and values of all that code generation and arithmetic on this device depend on: the
+/// device, its driver, threads and limits, the sources of kernels and probes, the features of the
+/// processor (for a software device), and the variables of the environment that drivers read.
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
 VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance);
 
-/// The folder of verdicts: $XDG_CACHE_HOME/farcull, else $HOME/.cache/farcull; "" where neither is
-/// an absolute path.
+/// The folder of verdicts: $XDG_CACHE_HOME/farcull, else $HOME/.cache/farcull; "" if neither is an
+/// absolute path.
 std::string verdict_folder();
 
 /// Runs the probes that a verdict rests on.
@@ -95,7 +96,7 @@ using Probes = std::function<std::vector<ProbeResult>()>;
 /// The brief probes of Reliance::pairs.
 std::vector<ProbeResult> pair_probes(const GlContext& context);
 
-/// Gets one line before probes run: that they run, and why.
+/// Receives one line before probes run, which says that they run, and why.
 using Say = std::function<void(const std::string& line)>;
 
 /// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by

@@ -1,5 +1,5 @@
-// Distances: what can be nearest, and which pairs can be within a distance, comes from trees of
-// boxes (core/proximity); exact arithmetic decides both.
+// Distances: trees of boxes (core/proximity) find the pairs that can be nearest, or within a
+// distance; exact arithmetic decides these pairs.
 #include "experiments/method/distances.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace {
 // A *part* of an object is a connected component of its triangles, joined where they share a vertex
 // position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
 // path between two of them never crosses the mesh, and parity changes only at a crossing. So one
-// vertex of each part decides. What lies inside a closed mesh lies in its box, so boxes settle most
-// pairs.
+// vertex of each part decides. Whatever lies inside a closed mesh also lies in the mesh's box, so
+// boxes settle most pairs.
 Box box_of(const Scene& scene, const Object& object) {
   Box box = Box::empty();
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
@@ -85,7 +85,8 @@ Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scen
 }
 Insides::~Insides() = default;
 
-// Whether all of `inner` lies inside `outer`. Sets not_closed where that has no answer.
+// Whether all of `inner` lies inside `outer`. Sets not_closed if `outer` is not closed, so that
+// there is no answer.
 bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_closed) const {
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
@@ -148,7 +149,7 @@ std::uint64_t count_of_questions(const Scene& scene) {
   return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
-// Refuses too many pairs of objects: each takes memory from the start, and more if it is answered.
+// Refuses too many pairs of objects: each takes memory from the start, and more for its answer.
 void require_few_questions(const Scene& scene, const DistanceOptions& options) {
   if (options.pairs != DistancePairs::objects) return;
   const std::uint64_t questions = count_of_questions(scene);
@@ -182,7 +183,7 @@ std::vector<NearHint> hints_of(const DistanceMemory* memory) {
   return out;
 }
 
-// The nearest pair of each question, where it is not farther than `within`.
+// The nearest pair of each question, unless it is farther apart than `within`.
 std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> near,
                                  const DistanceOptions& options) {
   struct Part {
@@ -210,7 +211,7 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
     if (k == 0 || parts[k - 1].question != parts[k].question) {
       out.push_back(std::move(found));
     } else if (found.closest.squared < out.back().closest.squared) {
-      out.back() = std::move(found);  // at equal distance the first part stays
+      out.back() = std::move(found);  // at equal distance the earlier part stays
     }
   }
   if (std::isfinite(options.within)) {
@@ -296,7 +297,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
   record.trace.push_back(stage);
 }
 
-// All pairs of triangles within the distance that are no neighbours.
+// Finds all pairs of triangles within the distance that are no neighbours.
 void between_triangles(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
@@ -423,7 +424,7 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     if (scene.objects[o].triangle_count == 0) continue;
     std::vector<std::size_t>& of = naming[o];
-    // Stable: they come sorted by the other object.
+    // A stable sort: at equal distance they stay in the order of the other object.
     std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
       return distances[x].closest.squared < distances[y].closest.squared;
     });

@@ -20,18 +20,18 @@
 
 namespace farcull {
 
-/// objects: every two objects, and one that is `self` with itself. nearest: each object and its k
-/// nearest others. all: every pair of triangles within a distance, of different objects, and of one
-/// that is `self` where they are no neighbours.
+/// objects: every two objects, and each object marked `self` with itself. nearest: each object and
+/// its k nearest other objects. all: every pair of triangles within a distance, of different
+/// objects, or of one object marked `self` if they are no neighbours.
 using DistancePairs = DistanceQuestion::Kind;
 
-/// Which of two objects that do not meet lies inside the other, with all of its points and so all
-/// of its parts. unknown: not asked, or the objects collide. not_closed: the box of one lies in
-/// that of the other, which has no inside (verify/inside.h).
+/// Which of two objects that do not meet lies inside the other, with all of its points. unknown:
+/// not asked, or the objects collide. not_closed: the box of one lies in the box of the other,
+/// which has no inside (verify/inside.h).
 using WhichInside = InsideClaim;
 
-/// Tells which object of a scene lies inside another. The scene must not change: what was found
-/// about an object is kept.
+/// Tells which object of a scene lies inside another. The scene must not change, since facts about
+/// its objects are kept.
 class Insides {
  public:
   explicit Insides(const Scene& scene);
@@ -58,13 +58,13 @@ struct DistanceOptions {
   bool inside = true;    // tells whether an object is inside another
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
-  /// The most answers; more are an error, since each takes some hundreds of bytes. With `all`:
-  /// pairs of triangles, which are counted while they are listed. With `objects`: pairs of objects,
-  /// which are counted at the start; four times as many where `within` is finite.
+  /// The most answers; more are an error, since each takes some hundreds of bytes. With `all` it
+  /// limits pairs of triangles, which are counted while they are listed. With `objects` it limits
+  /// pairs of objects, which are counted at the start; four times as many if `within` is finite.
   std::size_t most_pairs = std::size_t{1} << 22;
 };
 
-/// The distance of the surfaces of two objects, or of two triangles of them.
+/// The distance of the surfaces of two objects, or with `all` of two triangles.
 struct Distance {
   ObjectPair objects;
   TrianglePair triangles;  // the first of the nearest pairs, of objects.a and objects.b
@@ -72,11 +72,11 @@ struct Distance {
   WhichInside inside = WhichInside::unknown;
 };
 
-/// The nearest pairs of an earlier frame, as bounds for this one: they change the time that it
-/// takes, never an answer.
+/// The nearest pairs of the previous frame, as bounds for this frame. They change the time, never
+/// an answer.
 struct DistanceMemory {
   std::vector<ObjectPair> objects;    // sorted
-  std::vector<TrianglePair> nearest;  // of each of them
+  std::vector<TrianglePair> nearest;  // the nearest pair of each of `objects`
 };
 
 struct DistanceRecord {
@@ -84,20 +84,20 @@ struct DistanceRecord {
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
   std::vector<Stage> trace;
-  std::vector<Distance> distances;  // sorted by objects, then by triangles; `nearest`: each
-                                    // object's neighbours are those that name it
+  std::vector<Distance> distances;  // sorted by objects, then by triangles; with `nearest`, the
+                                    // distances that name an object include its k nearest
   ProximityCounts counts;
   std::optional<DistanceAccounting> verification;
-  double ms = 0;  // of all but the verification
+  double ms = 0;  // time without the verification
 };
 
-/// The answer of `nearest` about one object: its neighbours, the nearest first, at equal distance
-/// the lower object first; at most k, fewer if fewer are within the distance asked for.
+/// The answer of `nearest` about one object: its nearest other objects, the nearest first, at equal
+/// distance the lower object first. At most k; fewer if fewer are within the distance asked for.
 struct NearestOfObject {
   std::uint32_t object = 0;
   std::vector<std::size_t> distances;  // indices into those of the record
 };
-/// For each object with triangles, in order.
+/// The nearest objects of each object with triangles, in order.
 std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
                                                 std::span<const Distance> distances, std::size_t k);
 
@@ -107,9 +107,10 @@ std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 /// What the record claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
-/// Throws Error for options that are bad, for a scene in which nothing is asked, and where there
-/// are more answers than most_pairs allows; std::logic_error where the scene breaks validate().
-/// memory: holds the previous frame, and on return this one; may be null.
+/// Answers the question of the options. Throws Error if options are bad, if the question is about
+/// no triangles of the scene, or if there are more answers than most_pairs allows; std::logic_error
+/// if validate() would not accept the scene. memory: holds the previous frame, and on return this
+/// frame; may be null.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
 

@@ -43,16 +43,15 @@ enum class Promises { never, always, at_budget_radius };
 
 struct Traits {
   Method method;
-  const char* name;  // as --method takes it
+  const char* name;  // the value of --method
   Promises promises = Promises::never;
-  bool draws = false;    // on a canvas, in views at a resolution
-  bool fattens = false;  // what it draws, by an offset and a radius
-  bool quick = false;    // keeps visibility bits between passes
-  bool chooses_views =
-      false;                // by the scene; needs no canvas, and runs on the cores of the CPU too
-  bool culls = true;        // false: tests every pair whose boxes overlap
-  bool tests_self = false;  // can test an object's triangles against each other
-  bool tests_self_alone = false;  // and tests nothing else
+  bool draws = false;          // on a canvas, in views at a resolution
+  bool fattens = false;        // fattens what it draws, by an offset and a radius
+  bool quick = false;          // keeps visibility bits between passes
+  bool chooses_views = false;  // chosen by the scene; needs no canvas; also on the cores of the CPU
+  bool culls = true;           // false: tests every pair whose boxes overlap
+  bool tests_self = false;     // can test an object's triangles against each other
+  bool tests_self_alone = false;  // tests only an object's triangles against each other
   bool takes_clearance = false;
 
   PlanFunction* plan;
@@ -64,7 +63,7 @@ const Traits& traits(Method method);
 
 std::span<const Method> all_methods();
 std::string to_string(Method method);
-/// Throws Error naming `option` for an unknown one.
+/// The method with this name. Throws Error naming `option` for an unknown name.
 Method parse_method(const std::string& name, const std::string& option = "{method}");
 /// "far, cullide, ... or exact": the methods for which `can` is true; without `can`, all.
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
@@ -73,9 +72,9 @@ inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool chooses_views(Method method) { return traits(method).chooses_views; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
-/// Whether boxes of objects or of triangles decide what it draws.
+/// Whether boxes of objects or of triangles decide what the method draws.
 inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
-/// Whether it looks along views, on a canvas or without one.
+/// Whether the method looks along views, on a canvas or without one.
 inline bool looks(Method method) { return draws(method) || chooses_views(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }

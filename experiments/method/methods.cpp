@@ -1,5 +1,5 @@
-// The table of methods, and those methods that draw nothing on a canvas; cullide.cpp has the
-// others.
+// The table of methods, and the methods that draw nothing on a canvas; cullide.cpp has the other
+// methods.
 #include "experiments/method/methods.h"
 
 #include <array>
@@ -76,7 +76,7 @@ constexpr auto kMethods = [] {
   return methods;
 }();
 
-// traits() looks an entry up by the value of its method.
+// traits() uses the value of a method as an index into the table.
 static_assert([] {
   for (std::size_t i = 0; i < kTable.size(); ++i) {
     if (static_cast<std::size_t>(kTable[i].method) != i) return false;
@@ -110,7 +110,8 @@ std::string method_names(const std::function<bool(const Traits&)>& can) {
   return text;
 }
 
-// Exact: all pairs whose boxes overlap, each decided as the join finds it; nothing is culled.
+// Exact: takes all pairs whose boxes overlap, and decides each when the join finds it. Culls
+// nothing.
 
 void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back({.kind = StageKind::join,
@@ -157,11 +158,12 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   return out;
 }
 
-// I-collide: sweep and prune on the boxes of objects, then of their triangles (I-COLLIDE, 1995).
+// I-collide: sweep and prune on the boxes of objects, then on the boxes of their triangles
+// (I-COLLIDE, 1995).
 
 namespace {
 
-// Triangles of the objects in a pair, and of those that are tested against themselves.
+// The number of triangles of all objects that are in a pair or tested against themselves.
 std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
   std::vector<std::uint8_t> in(scene.objects.size(), 0);
   for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
@@ -224,7 +226,7 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         .resolution = resolution_of(options),
                         .clearance = options.clearance,
                         .full = options.full,
-                        // Who names a GL device wants it to look.
+                        // If the user names a GL device, views are looked at and no boxes decide.
                         .blocks = options.device.empty() || is_cpu(options.device),
                         .neighbours = options.neighbours,
                         .ignored = options.ignored};

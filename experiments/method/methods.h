@@ -1,4 +1,4 @@
-// The functions that the table of methods names: Traits::plan and Traits::find (method.h) of each.
+// The functions in the table of methods: Traits::plan and Traits::find (method.h) of each method.
 #pragma once
 
 #include "experiments/method/plan.h"

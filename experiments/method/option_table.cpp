@@ -1,4 +1,4 @@
-// The table of options: how each is read, and which values it takes.
+// The table of options: how each option is read, and which values it takes.
 #include "experiments/method/options.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string number(double value) {
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
-// Checks the form alone; the device is looked for when it is needed.
+// Checks only the form of the text; the device is looked for when it is needed.
 bool is_device(const std::string& device) {
   return device.empty() || is_cpu(device) || device == "gl" || device == "hardware" ||
          device == "software" || device.find_first_not_of("0123456789") == std::string::npos;
@@ -47,7 +47,7 @@ Error empty_value(const char* option, const char* remedy) {
   return {option, "its value is empty", remedy};
 }
 
-// A number that is `least` or more.
+// Reads a number that is `least` or more.
 template <class T>
 bool take_number_from(T least, const std::string& text, T& value) {
   const std::optional<T> number = parse_number<T>(text);
@@ -56,7 +56,7 @@ bool take_number_from(T least, const std::string& text, T& value) {
   return true;
 }
 
-// One of two words.
+// Reads one of two words.
 template <class Out, class Value>
 bool take_word(const std::string& text, const char* first, Value of_first, const char* second,
                Value of_second, Out& value) {
@@ -70,7 +70,7 @@ void copy_value(const RunOptions& from, RunOptions& to) {
   to.*Member = from.*Member;
 }
 
-// "none", or sizes by commas, each below the one before.
+// Reads "none", or sizes with commas between, each below the one before.
 bool take_clusters(const std::string& text, RunOptions& options) {
   std::vector<std::uint32_t> sizes;
   for (const std::string& part : text == "none" ? std::vector<std::string>() : split_list(text)) {
@@ -418,7 +418,7 @@ const Option& run_option(std::string_view name) {
 }
 
 std::string option_word(const std::string& name) {
-  // Options of single commands, which messages name too.
+  // Messages name these options of single commands, too.
   static constexpr std::string_view kOthers[] = {"compare", "inside", "no_verify",
                                                  "pairs",   "repeat", "within"};
   if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&

@@ -11,7 +11,7 @@ namespace {
 constexpr int kUsualResolution = 512;
 constexpr const char* kUsualViews = "x,y,z";
 
-// Refuses an option that the method does not have, so that no result lacks what was asked for.
+// Refuses an option that the method does not have, so that no request of the user is ignored.
 void refuse_idle(const RunOptions& options, const GivenOptions& given) {
   const Traits& method = traits(options.method);
   for (const Option& option : run_options()) {
@@ -31,7 +31,7 @@ void refuse_idle(const RunOptions& options, const GivenOptions& given) {
 
 RunOptions read_options(const GivenOptions& given, RunOptions options) {
   options.method_is_default = !given.contains("method");
-  for (const Option& option : run_options()) {  // the method first
+  for (const Option& option : run_options()) {  // the method is the first option
     const auto found = given.find(option.name);
     if (found != given.end() && option.take) take_option(option.name, found->second, options);
   }
@@ -82,15 +82,16 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 BoxLevel boxes_of(const RunOptions& options) {
-  // Without a promise the published form is used. `full` leaves nothing out, and where objects
-  // alone are culled only their boxes matter.
+  // `enough` is the usual level only if the method promises; else it is the published form. `full`
+  // leaves nothing out, and if only objects are culled, only their boxes matter.
   const bool usual =
       fattens(options.method) && promises(options) && !options.full && !options.objects_alone;
   return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
 }
 
 QueryMode query_of(const RunOptions& options) {
-  // These methods draw one step for each triangle, and flags would wait for every step.
+  // Methods that test only an object against itself draw one step for each triangle, and flags
+  // would wait for every step.
   const bool steps = tests_self_alone(options.method);
   const bool flags = options.depth_format == DepthFormat::float32 && !steps;
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);

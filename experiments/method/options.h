@@ -1,4 +1,4 @@
-// What a run is asked to do: the options of the methods, as one table and as one struct.
+// The options of a run: as one table and as one struct.
 #pragma once
 
 #include <cstdint>
@@ -18,22 +18,23 @@
 
 namespace farcull {
 
-/// The method where none is named, on every device. It misses nothing, and on most scenes it is the
-/// fastest (docs/bench.md).
+/// The method if the user names none, on every device. It misses nothing, and on most scenes it is
+/// the fastest (docs/bench.md).
 inline constexpr Method kDefaultMethod = Method::far_pairs;
 
-/// How much contact detail to report (verify/contact.h). segments: with the points that the
+/// How much contact detail to report (verify/contact.h). segments: kinds, and the points that the
 /// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 
 /// What boxes decide before anything is drawn. objects: which triangles meet the box of another
-/// object, as published. triangles: which meet the box of a triangle of one. enough: the same, and
-/// nothing is drawn if exact tests of the pairs that are left take less time.
+/// object, as published. triangles: which triangles meet the box of a triangle of another object.
+/// enough: as `triangles`, and nothing is drawn if exact tests of the pairs that are left take less
+/// time.
 enum class BoxLevel : std::uint8_t { objects, triangles, enough };
 
 struct RunOptions {
   Method method = kDefaultMethod;
-  bool method_is_default = false;  // not named by the user; the record says why it is this one
+  bool method_is_default = false;  // the user named no method; the record says why it is this one
   int resolution = 0;      // px along the larger side of a view's window; 0: 512, but chosen by the
                            // scene for far-pairs
   RadiusRule radius = {};  // far only
@@ -43,38 +44,39 @@ struct RunOptions {
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
-  int rounds = 0;                      // at most; 0: until one changes nothing, or far's rule
+  int rounds = 0;                      // the most rounds; 0: until a round changes nothing, or
+                                       // far's rule
   ClearRule clear = ClearRule::any;    // how many views have to clear a triangle
-  bool objects_alone = false;          // objects are culled, their triangles are not; not s-cullide
+  bool objects_alone = false;          // culls only objects, not triangles; not s-cullide
   bool conservative = false;           // a fragment in each pixel touched; not far
-  std::optional<BoxLevel> boxes = {};  // default: enough where far promises, else objects
+  std::optional<BoxLevel> boxes = {};  // default: enough if far promises, else objects
   std::string views = {};              // "": x,y,z, but chosen by the scene for far-pairs
-  std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even where a software
+  std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even if only a software
                             // renderer answers; hardware, software or a number: that GL device;
-                            // "": GL where hardware answers, else the cores of the CPU
+                            // "": GL if a hardware device answers, else the cores of the CPU
   double clearance = 0;     // world units, finite, >= 0; far-pairs and exact only
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
                            // candidates of far and far-pairs nor decided
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
                                          // in_order() gives them
-  std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours among them; 0: all
+  std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
   bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
-  std::optional<std::uint64_t> seed = {};  // what the scene was drawn with; empty: it is not random
+  std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: it is not random
   // The value of a new option goes here.
 };
 
 /// A value as records hold it; empty: null.
 using OptionValue = std::variant<std::monostate, bool, int, double, std::string>;
 
-/// An option that a user gives by name. The table of them makes the command line with its help,
+/// An option that a user gives by name. The table of these makes the command line with its help,
 /// completion and manual, the refusals, Python's keywords, and the options in records.
 struct Option {
-  const char* name;  // of the parameter, as in depth_format, which is --depth-format as a word
+  const char* name;  // of the parameter, as in depth_format (--depth-format on a command line)
   const char* type;  // stands for the value in a help, as in "fragment|fixed"; "" for a flag
   std::string help;  // lines of a help
-  bool (*serves)(const Traits&);  // which methods have it
+  bool (*serves)(const Traits&);  // which methods have the option
   /// Reads a value; a flag's is "". Returns false if the text is no value of the option, or throws
   /// Error if another message says more. Precondition: options.method is set. Null: the option is
   /// about the scene, and the caller reads it.
@@ -85,21 +87,21 @@ struct Option {
   /// the option refuse such a value. Null: they refuse only a value that the user gave, and ignore
   /// others.
   std::optional<std::string> (*unusual)(const RunOptions&) = nullptr;
-  /// Why a method does not have it; null: it "has no meaning" for the method.
+  /// Why a method does not have the option; null: it "has no meaning" for the method.
   const char* (*why_not)(const Traits&) = nullptr;
   /// Copies the value; only for options of a form (docs/methods.md, "Forms of CULLIDE").
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
-  /// What records hold; null: the table of the record says it elsewhere.
+  /// The value for records; null: the record has it elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
-  std::vector<std::string> words = {};  // what a shell completes, where `type` does not list it
+  std::vector<std::string> words = {};  // words that a shell completes, if not listed by `type`
 };
 
 /// All options, in the order of the help.
 std::span<const Option> run_options();
-/// Precondition: there is such an option.
+/// The option with this name. Precondition: there is one.
 const Option& run_option(std::string_view name);
-/// The option as a word of a command line, as in --depth-format; empty: no command has it. For
-/// spell_parameters().
+/// The option as a word of a command line, as in --depth-format; empty if no command has the
+/// option. For spell_parameters().
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".
@@ -112,8 +114,8 @@ void take_option(std::string_view name, const std::string& text, RunOptions& opt
 RunOptions read_options(const GivenOptions& given, RunOptions options = {});
 /// Throws Error naming an option whose value is out of its range.
 void require_range(const RunOptions& options);
-/// Throws Error as require_range(), for options that do not go together, and for an option that the
-/// method does not have but that was given or has an unusual value. Opens no device.
+/// Throws Error as require_range(), for options that do not go together, and for an option that was
+/// given or has an unusual value but that the method does not have. Opens no device.
 void validate(const RunOptions& options, const GivenOptions& given = {});
 
 /// A whole number of pixels, 1 or more. Throws Error naming `option`.
@@ -124,12 +126,13 @@ RadiusRule parse_radius(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming repeat.
 int parse_repeat(const std::string& text);
 
-/// The largest resolution of far-pairs, in px. It limits time alone: a window has its square.
+/// The largest resolution of far-pairs, in px. It only limits time, since a window has up to its
+/// square of pixels.
 constexpr int kMostPairResolution = 16384;
-/// Throws Error naming `option` for more.
+/// Throws Error naming `option` if the resolution is above kMostPairResolution.
 void require_pair_resolution(int resolution, const std::string& option = "{resolution}");
 
-/// Whether a device is the cores of the CPU: "native" or, as far-pairs has called it, "cpu".
+/// Whether a device is the cores of the CPU: "native", or "cpu" as far-pairs calls it.
 inline bool is_cpu(const std::string& device) { return device == "native" || device == "cpu"; }
 inline constexpr const char* kDeviceHelp =
     "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
@@ -137,8 +140,8 @@ inline constexpr const char* kDeviceHelp =
     "lists; default GL where hardware answers and keeps the\n"
     "assumptions, else native";
 
-/// The value given, else the default that applies. resolution_of: 0 and views_of: "" if the scene
-/// chooses.
+/// The value that was given, else the default. If the scene chooses, resolution_of() returns 0, and
+/// views_of() returns "".
 int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
@@ -147,8 +150,8 @@ BoxLevel boxes_of(const RunOptions& options);
 /// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);
-/// The options of a form that are not as usual, as on the command line: "--rounds 1 --clear all";
-/// empty where all are.
+/// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
+/// command line: "--rounds 1 --clear all"; empty if there are none.
 std::string form_text(const RunOptions& options);
 /// The options without those of a form that the method cannot take, so that one choice serves
 /// several methods.

@@ -1,4 +1,5 @@
-// Everything about a run that needs no pixels. `farcull plan` prints it, find() executes it.
+// The plan of a run: all decisions that need no pixels. `farcull plan` prints a plan, find()
+// executes it.
 #pragma once
 
 #include <optional>
@@ -18,11 +19,11 @@ namespace farcull {
 struct DrawPlan {
   Regions regions;
   std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
-  CullSettings settings;            // but for the fattener
+  CullSettings settings;            // without the fattener
   bool self = false;                // triangles of marked objects are owners
-  Patches patches;                  // of far, where an object is tested against itself; else empty
-  /// All pairs whose boxes overlap, if boxes of triangles come before drawing; the owners of
-  /// `patches` are then set. Empty: only boxes of objects come before it.
+  Patches patches;                  // for far, if an object is tested against itself; else empty
+  /// All pairs whose boxes overlap, if boxes of triangles are compared before drawing; then the
+  /// owners of `patches` are set. Empty: only boxes of objects are compared before drawing.
   std::optional<PairsToDraw> pairs = {};
 };
 
@@ -31,10 +32,10 @@ struct Plan {
   std::variant<std::monostate, DrawPlan, PairPlan> work;
   std::vector<Stage> trace;  // the stages of planning itself: they have run
   std::vector<Stage> ahead;  // the stages to come, in order; those that pixels decide are marked
-  double ms = 0;             // that planning took
+  double ms = 0;             // time of planning
   PairMemory* memory = nullptr;  // of the scene's last frame, for far-pairs
 
-  /// trace and ahead.
+  /// The stages of `trace`, then those of `ahead`.
   std::vector<Stage> stages() const;
 };
 

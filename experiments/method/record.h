@@ -1,4 +1,4 @@
-// The record of a run: what was asked and planned, what each stage found, and how long it took.
+// The record of a run: what was asked and planned, what each stage found, and how long each took.
 #pragma once
 
 #include <cstdint>
@@ -26,22 +26,22 @@ namespace farcull {
 
 /// The device that answered.
 struct UsedDevice {
-  std::optional<GlInfo> gl;        // empty: none, or the cores of the CPU
-  bool cpu = false;                // on the cores of the CPU
+  std::optional<GlInfo> gl;        // the GL device; empty: none, or the cores of the CPU
+  bool cpu = false;                // the cores of the CPU answered
   std::string lanes = {};          // the instruction set of the native canvas; empty for others
   int depth_bits = 0;              // of the canvas
   std::string note;                // why no device was used; for far-pairs, why this one
-  std::optional<Reliance> relies;  // on a GL device, for the promise
+  std::optional<Reliance> relies;  // what the promise relies on; empty: on no GL device
 };
 
-/// For sweep and prune: how many triangles the objects have that their boxes leave, which is the
-/// result of I-COLLIDE as published.
+/// For sweep and prune: the number of triangles of the objects that are left after comparing boxes
+/// of objects. This is the result of I-COLLIDE as published.
 struct SweptObjects {
   std::uint64_t triangles = 0;
 };
 
 struct Candidates {
-  std::vector<TrianglePair> pairs;       // sorted; empty where `decided` is set
+  std::vector<TrianglePair> pairs;       // sorted; empty if `decided` is set
   std::uint64_t count = 0;               // of candidate pairs
   std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
   std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for far-pairs
@@ -49,16 +49,16 @@ struct Candidates {
                                          // is set, as all are kept
   std::uint64_t triangle_count = 0;      // of the potentially colliding set
   std::uint64_t object_count = 0;
-  std::optional<Collisions> decided;  // of a method that decides each candidate as it comes
+  std::optional<Collisions> decided;  // set by a method that decides candidates as it finds them
   /// The views of a drawing method, or of far-pairs; or the objects of a sweep.
   std::variant<std::monostate, std::vector<ViewReport>, std::vector<PairView>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
   UsedDevice device;
   CanvasWork asked;  // work of the GL device in drawing; all 0 for other methods
   std::vector<Stage> trace;
-  double setup_ms = 0;    // context, shaders; 0 where an earlier run had made them
+  double setup_ms = 0;    // context, shaders; 0 if an earlier run had made them
   double ms = 0;          // of finding, without setup
-  double decided_ms = 0;  // of deciding, where `decided` is set; not part of ms
+  double decided_ms = 0;  // of deciding, if `decided` is set; not part of ms
 
   /// The views in `by`; empty if it holds another kind.
   const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }
@@ -80,8 +80,8 @@ struct Candidates {
 // ---- the record ----
 
 struct RunTimes {
-  double setup = 0;     // context, shaders; 0 where an earlier run of the process had made them
-  double cull = 0;      // plan, fattening, passes, box join of what is kept
+  double setup = 0;     // context, shaders; 0 if an earlier run of the process had made them
+  double cull = 0;      // plan, fattening, passes, box join of the kept triangles
   double exact = 0;     // exact predicates on the candidates
   double total = 0;     // of all stages but the verification and the kinds of contact
   double contacts = 0;  // kinds of contact
@@ -93,27 +93,27 @@ struct Promise {
   bool holds = false;  // the method promises (see promises()), and the device that it used keeps
                        // what the promise rests on
   std::string reason;  // why, or why not
-  std::optional<DeviceVerdict> verdict;  // of that device; empty where the promise rests on none
+  std::optional<DeviceVerdict> verdict;  // of that device; empty if the promise rests on no device
 };
 
 struct Record {
   RunOptions options;
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
-  std::vector<Stage> plan;   // as it was before anything ran
-  std::vector<Stage> trace;  // as it went
+  std::vector<Stage> plan;   // the stages as planned, before anything ran
+  std::vector<Stage> trace;  // the stages as they ran
   Promise promise;
   Candidates found;
   Collisions collisions;
   std::uint64_t decided = 0;  // candidates that exact predicates decided
   bool complete = true;       // false: the limit was reached, so candidates were left undecided, or
                               // colliding ones behind the last were left out
-  std::vector<ContactShape> contacts;            // of collisions.pairs, where they are asked for;
+  std::vector<ContactShape> contacts;            // of collisions.pairs, if they are asked for;
   std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs. Without segments
-                                                 // the kinds alone are set
+                                                 // only the kinds are set
   std::optional<Accounting> verification;        // with kExamples examples
-  std::optional<ContactCounts> missed;  // by the kind of contact; with a verification, without a
-                                        // clearance
+  std::optional<ContactCounts> missed;  // how many missed pairs touch, and how many penetrate; with
+                                        // a verification, without a clearance
   RunTimes ms;
   FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
 };

@@ -1,4 +1,4 @@
-// Each stage fills its part of the record; run() at the end says in which order.
+// Each stage fills its part of the record; run(), at the end of this file, calls them in order.
 #include "experiments/method/run.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace farcull {
 namespace {
 
-// Sets which triangles and how many objects are in a candidate pair.
+// Sets the triangles that are in a candidate pair, and the number of their objects.
 void count_kept(const Scene& scene, Candidates& found) {
   found.triangles = members_of(found.pairs, scene.triangles.size());
   found.triangle_count = found.triangles.size();
@@ -31,8 +31,8 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress, 
   record.ms.cull = planned.ms + record.found.ms;
 }
 
-// Decides the candidates, or takes the answers of a method that decides as it finds, whose stage is
-// in the trace already.
+// Decides the candidates, or takes the answers of a method that decides each candidate when it
+// finds it. The stage of such a method is in the trace already.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   bool decide_neighbours, Record& record) {
   const RunOptions& options = record.options;
@@ -91,7 +91,7 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
-// The kinds of contact, if the options ask for them.
+// Finds the kinds of contact, if the options ask for them.
 void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const ContactDetail asked = record.options.contacts;
   if (asked == ContactDetail::none) return;
@@ -162,7 +162,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   decide_stage(scene, session, progress, use.decide_neighbours, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
-  // A method that decides as it finds has all pairs; decide() has kept to the limit already.
+  // A method that decides each candidate when it finds it has given all pairs, also those beyond
+  // the limit. For other methods decide() has kept the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too

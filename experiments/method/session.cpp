@@ -38,8 +38,8 @@ const CanvasDevice& Session::canvas_device() {
   return *canvas_device_;
 }
 
-// `open` makes what is needed on the GL device. Where no device was named, a failure is a reason to
-// take the CPU.
+// Chooses GL or the CPU. `open` makes what is needed on the GL device. If it fails and no device
+// was named, the CPU is taken.
 CanvasDevice Session::choose_device(const std::function<void()>& open, bool probe) {
   const std::string named = spelled("{device} ") + device_;
   if (is_cpu(device_)) return {true, named};

@@ -1,4 +1,5 @@
-// What runs of one process share: the GL context, canvases, the device of FAR pairs, workspaces.
+// The session: the GL context, canvases, device of FAR pairs and workspaces that the runs of one
+// process share.
 #pragma once
 
 #include <functional>
@@ -30,52 +31,54 @@ struct CanvasDevice {
   std::string reason;
 };
 
-/// Where FAR pairs runs.
+/// The device of FAR pairs.
 struct PairDevice {
   std::unique_ptr<PairBackend> backend;  // keeps its buffers from call to call
-  std::optional<GlInfo> gl;              // what answered; empty: the CPU
-  std::string reason;                    // why this one
+  std::optional<GlInfo> gl;              // the GL device; empty: the CPU
+  std::string reason;                    // why this device
 };
 
 /// Each part is made when first needed, and kept from run to run. Not to be used by two threads at
 /// once.
 class Session {
  public:
-  /// device: as RunOptions::device. Without one a fixed rule decides: GL where a hardware device
-  /// answers, and for canvases keeps the assumptions; else the cores of the CPU (a software
-  /// renderer is the same CPU by a longer way). threads: of the CPU, for far-pairs; 0: as many as
-  /// there are cores. say: told in one line that the device is probed, and why; may be empty.
+  /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers (and,
+  /// for canvases, keeps the assumptions); else the cores of the CPU are used, since a software
+  /// renderer would use the same cores more slowly. threads: of the CPU, for far-pairs; 0: as many
+  /// as there are cores. say: receives one line if the device is probed, which says why; may be
+  /// empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
-  /// The same as a number of threads.
+  /// The number of threads, the number of cores in place of 0.
   unsigned cpu_threads() const {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
   const GlContext& context();
-  /// Whether the context's device keeps the assumptions; probed if no verdict is kept. GL state is
-  /// not restored.
+  /// Whether the context's device keeps the assumptions; probes the device if no verdict is kept.
+  /// Does not restore the GL state.
   const DeviceVerdict& verdict(Reliance reliance);
-  /// Where the canvases are: on the cores of the CPU, or on the GL device of context().
+  /// Where canvases draw: on the cores of the CPU, or on the GL device of context().
   const CanvasDevice& canvas_device();
-  /// The canvas for the drawables of this fattener, by its name. Only GL has query modes.
+  /// The canvas for the drawables of this fattener. There is one for each name of a fattener. Only
+  /// GL has query modes.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
-  /// The largest resolution of its canvases, in px.
+  /// The largest resolution of the session's canvases, in px.
   int max_resolution();
-  /// Throws Error where a device that was named does not answer.
+  /// The device of FAR pairs. Throws Error if a device that was named does not answer.
   PairDevice& pairs();
   PairWorkspace& pair_workspace() { return pair_workspace_; }
   /// From now on runs are frames of a scene, one after the other: far-pairs and the exact tests
-  /// keep what did not move. Answers stay the same.
+  /// reuse their results about triangles that did not move. Answers stay the same.
   void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
-  /// Null where frames are not remembered.
+  /// Null if frames are not remembered.
   PairMemory* pair_memory() { return frames_ ? &pair_workspace_.memory : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases, the pair device and the context, since after a failure nothing on a device
-  /// is trusted; also what was kept of the last frame, which a device helped to find. Each is made
-  /// again when it is next needed.
+  /// Drops the canvases, the pair device and the context, since nothing on a device is trusted
+  /// after a failure. Also drops the results of the last frame, which a device helped to find. Each
+  /// is made again when it is next needed.
   void forget_device();
 
  private:
@@ -89,7 +92,7 @@ class Session {
   std::optional<CanvasDevice> canvas_device_;
   std::map<std::tuple<std::string, DepthFormat, QueryMode, bool>, std::unique_ptr<Canvas>>
       canvases_;
-  std::optional<PairDevice> pairs_;  // destroyed before context_, as canvases_
+  std::optional<PairDevice> pairs_;  // destroyed before context_, as canvases_ are
   PairWorkspace pair_workspace_;
   std::unique_ptr<FrameDecider> frames_;
   SweepPrune sweep_;

@@ -1,10 +1,10 @@
-// Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, with the boxes that it is given.
-// Bullet's own test of two triangles rounds, so the leaves are candidates here.
+// Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, over boxes that are made here.
+// Bullet's own test of two triangles rounds, so it is not used: the leaves are candidates.
 //
-// Bullet's find_collision() is not called. It compares centres and extents that it rounds, with a
-// tolerance relative to the extents, so that it can lose small boxes that touch far from the
-// origin. It also stores all pairs, and has one thread. search_trees() visits the nodes instead,
-// with btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
+// Bullet's find_collision() is not called. It compares rounded centres and extents, with a
+// tolerance relative to the extents, so it can lose small boxes that touch far from the origin. It
+// also stores all pairs, and has one thread. Instead search_trees() visits the nodes with
+// btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
 // rounds boxes to the nearest of 65,535 steps, inward as well as outward.
 #include <BulletCollision/Gimpact/btGImpactBvh.h>
 
@@ -25,7 +25,7 @@ std::string library() {
          std::to_string(BT_BULLET_VERSION % 100);
 }
 
-/// Boxes, as Bullet asks for them while it builds a tree.
+/// Gives Bullet the boxes while it builds a tree.
 class Boxes : public btPrimitiveManagerBase {
  public:
   explicit Boxes(std::span<const Box> boxes) : boxes_(boxes) {}
@@ -43,7 +43,7 @@ class Boxes : public btPrimitiveManagerBase {
   std::span<const Box> boxes_;
 };
 
-/// A tree of boxes, as search_trees() takes it; primitive i is called first + i.
+/// A tree of boxes with the interface for search_trees(). Primitive i is triangle first + i.
 class BulletTree {
  public:
   /// Precondition: at least one box. The boxes are not kept.
@@ -76,7 +76,7 @@ class BulletTree {
   std::uint32_t first_;
 };
 
-/// The pairs of boxes that overlap, by a tree of them.
+/// The pairs of boxes that overlap, found by a tree over the boxes.
 std::vector<TrianglePair> overlapping(std::span<const Box> boxes) {
   std::vector<TrianglePair> pairs;
   if (boxes.size() < 2) return pairs;

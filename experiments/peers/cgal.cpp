@@ -1,7 +1,9 @@
-// CGAL, in three ways. Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software
-// for box intersections, 2002) and AABB_tree, of which only the boxes are CGAL's; what they find is
-// decided as everyone's candidates are. self_intersections(), which decides exactly by itself. And
-// distances, by AABB_tree.
+// CGAL, in three ways.
+// - Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software for box
+//   intersections, 2002) and AABB_tree. CGAL only compares boxes; the candidates are decided as for
+//   all peers.
+// - self_intersections(), which decides exactly by itself.
+// - Distances, by AABB_tree.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -51,7 +53,7 @@ std::function<BenchRun(unsigned)> sequential(Runner run) {
   };
 }
 #ifdef CGAL_LINKED_WITH_TBB
-// TBB's threads start with the first run, the cold one, which counts for nothing else.
+// TBB's threads start in the first run, which is the cold run and is not used for anything else.
 std::function<BenchRun(unsigned)> parallel(Runner run) {
   return [run](unsigned threads) -> BenchRun {
     const auto limit = std::make_shared<tbb::global_control>(
@@ -100,7 +102,7 @@ std::vector<PeerBox> numbered(const std::vector<Box>& boxes) {
   return all;
 }
 
-/// All boxes at once, as the manual calls it.
+/// Joins all boxes at once, as the manual calls box_intersection_d.
 template <class Tag, std::ptrdiff_t cutoff>
 BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
   constexpr bool kParallel = !std::is_same_v<Tag, CGAL::Sequential_tag>;
@@ -142,12 +144,12 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
 /// Joins the boxes of one pair of objects after the other, or of an object with itself, clipped to
 /// the common part of the objects' boxes.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
-  // With one pair of objects there is nothing to divide but the decisions.
+  // With one pair of objects only the decisions can be divided over threads.
   const bool parallel = threads > 1 && raw.objects.size() > 2;
   PeerCandidates candidates(raw, threads, parallel);
   const PeerScene scene(raw);
   const std::vector<Box> regions = object_boxes(raw, scene.boxes);
-  std::vector<TrianglePair> meeting;  // of objects; one with itself where it is self
+  std::vector<TrianglePair> meeting;  // pairs of objects; an object with itself if it is `self`
   for (std::uint32_t o = 0; o < raw.objects.size(); ++o) {
     if (raw.objects[o].self) meeting.push_back({o, o});
   }
@@ -187,8 +189,8 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   return candidates.finish();
 }
 
-/// Finds the triangles whose boxes meet the box of a query. Nodes are tested against that box; if
-/// the query is a triangle, against the triangle too.
+/// Finds the triangles whose boxes meet the box of a query. Nodes are tested against the query: its
+/// box, or a triangle.
 template <class Query, class Found>
 struct Walk {
   CGAL::Bbox_3 box;
@@ -207,14 +209,14 @@ struct Walk {
   }
 };
 
-/// With two sides, searches a tree of the smaller one for each triangle of the other; else a tree
-/// of all triangles for each of them.
+/// If two objects are tested against each other (PeerScene::two_sides), searches a tree of the
+/// smaller one for each triangle of the other; else a tree of all triangles for each triangle.
 template <bool by_triangle>
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
   const auto count = static_cast<std::uint32_t>(raw.triangles.size());
-  std::uint32_t begin = 0, end = count;  // of the tree
+  std::uint32_t begin = 0, end = count;  // the triangles in the tree
   if (scene.two_sides) {
     if (scene.second < count - scene.second) {
       end = scene.second;
@@ -243,7 +245,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
     };
     const Triangle query = scene.two_sides ? triangle(raw.corners(t)) : triangles[i];
     const CGAL::Bbox_3 box = query.bbox();
-    // The test of a triangle against a box takes no degenerate ones.
+    // The test of a triangle against a box takes no degenerate triangles.
     if (by_triangle && shape(raw.corners(t)) == Shape::triangle) {
       Walk<Triangle, decltype(found)> walk{box, found};
       tree->traversal(query, walk);
@@ -258,13 +260,13 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   return answer;
 }
 
-// Polygon_mesh_processing::self_intersections(): the pairs of a mesh with itself, found by
-// box_intersection_d with cutoff 2000 and decided at once by CGAL's exact predicates. So there are
-// no candidates to be counted but the pairs reported.
+// Polygon_mesh_processing::self_intersections() finds the pairs of a mesh with itself by
+// box_intersection_d with cutoff 2000, and decides each at once by CGAL's exact predicates. So only
+// the reported pairs can be counted as candidates.
 
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// The only object with triangles, where it is tested against itself; else null.
+/// The object, if it is the only one with triangles and is tested against itself; else null.
 const Object* only_self(const Scene& scene) {
   const Object* only = nullptr;
   for (const Object& object : scene.objects) {
@@ -275,8 +277,9 @@ const Object* only_self(const Scene& scene) {
   return only;
 }
 
-/// A mesh whose face i is triangle i of the object. A triangle that would make the mesh no manifold
-/// gets corners of its own. Its neighbours are then reported as pairs, and dropped by position.
+/// A mesh whose face i is triangle i of the object. A triangle that would make the mesh
+/// non-manifold gets its own vertices. CGAL then reports it with its neighbours, and these pairs
+/// are dropped by position.
 Mesh mesh_of(const Scene& scene, const Object& object) {
   Mesh mesh;
   mesh.reserve(static_cast<Mesh::size_type>(scene.vertices.size()),
@@ -298,7 +301,7 @@ Mesh mesh_of(const Scene& scene, const Object& object) {
   return mesh;
 }
 
-/// self_intersections() writes here, from one thread.
+/// Receives the pairs of self_intersections(), which writes from one thread.
 struct Collector {
   const Scene& scene;
   std::uint32_t first;
@@ -329,7 +332,8 @@ BenchAnswer self_intersections(const Scene& scene, unsigned) {
   return answer;
 }
 
-/// self_intersections() makes no box for a degenerate triangle, and so reports none of its pairs.
+/// Why self_intersections() is not exact for the scene; empty if it is. It makes no box for a
+/// degenerate triangle, so it reports no pairs of such a triangle.
 std::string refuses_self(const Scene& scene) {
   if (!only_self(scene)) return "it takes one object, tested against itself";
   if (degenerate_triangles(scene) > 0) return "it leaves degenerate triangles out";
@@ -337,8 +341,8 @@ std::string refuses_self(const Scene& scene) {
 }
 
 // Distances: the triangles of one object against the AABB_tree of another. The tree's own functions
-// measure from a point alone, so its traversal is given a triangle and the least distance so far,
-// and leaves out the nodes whose boxes are farther away.
+// measure only from a point. So the tree's traversal is called with a triangle and the least
+// distance so far, and leaves out nodes whose boxes are farther away.
 
 double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
   double sum = 0;
@@ -349,7 +353,8 @@ double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
   return sum;
 }
 
-/// Tells AABB_tree::traversal() where to descend, and what to do at a triangle.
+/// Controls AABB_tree::traversal(): decides where to descend, and measures the distance to a
+/// triangle.
 class NearerTriangle {
  public:
   NearerTriangle(const Triangle& triangle, double& least)
@@ -374,19 +379,19 @@ class NearerTriangle {
 };
 
 struct TreeOfObject {
-  std::uint32_t number = 0;  // of the object
+  std::uint32_t number = 0;  // the object's number
   Triangles triangles;
   CGAL::Bbox_3 box;
   Tree tree;
 };
 
-/// The square of the distance where it is below `most`; else `most`.
+/// The square of the distance if it is below `most`; else `most`.
 double squared_distance_of(const TreeOfObject& a, const TreeOfObject& b, double most) {
   if (squared_gap(a.box, b.box) >= most) return most;
   const TreeOfObject& asked = a.triangles.size() < b.triangles.size() ? a : b;
   const TreeOfObject& tree = &asked == &a ? b : a;
   double least = most;
-  // A first bound: from one corner, by the tree's own function.
+  // A first bound: the distance from one corner, by the tree's own function.
   const double first = tree.tree.squared_distance(asked.triangles.front()[0]);
   if (first < least) least = std::nextafter(first, HUGE_VAL);
   for (const Triangle& triangle : asked.triangles) {

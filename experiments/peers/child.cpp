@@ -1,5 +1,5 @@
-// Starts, feeds, times and ends a process, which cannot block the caller: pipes do not block, and a
-// process that is late is killed with its group.
+// Starts, feeds, times and ends a process. The process cannot block the caller: pipes do not block,
+// and a process that exceeds a time limit is killed with its group.
 #include "experiments/peers/runner.h"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
               "end other programs, or raise the limits of the shell (ulimit)");
 }
 
-/// A file descriptor that is closed at the end.
+/// A file descriptor that the destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -66,8 +66,9 @@ void limit(int resource, std::uint64_t soft, std::uint64_t hard) {
 
 constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
 
-/// Runs between fork and exec, so it calls only async-signal-safe functions: the process has
-/// threads. `failed` gets the error if there is no such program.
+/// Runs the program in the new process. Between fork and exec only async-signal-safe functions may
+/// be called, since the process has threads. Writes the error to the pipe `failed` if there is no
+/// such program.
 [[noreturn]] void become(char* const* argv, const ChildLimits& limits, int in, int out, int err,
                          int failed) {
   ::setpgid(0, 0);
@@ -87,7 +88,7 @@ constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
   ::_exit(127);
 }
 
-/// The end of what was printed, on one line.
+/// The last text in the file (standard error of the process), on one line.
 std::string last_words(int file, off_t most = 400) {
   const off_t size = ::lseek(file, 0, SEEK_END);
   std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, most)), '\0');
@@ -107,7 +108,8 @@ bool says_no_memory(const std::string& words) {
   return false;
 }
 
-/// While it lives, a pipe that nobody reads gives an error instead of a signal.
+/// While this object exists, writing to a pipe that nobody reads gives an error instead of a
+/// signal.
 class NoPipeSignal {
  public:
   NoPipeSignal() {
@@ -139,7 +141,7 @@ class Child {
     if (pid_ < 0) refuse(command.front(), "no process");
     if (pid_ == 0)
       become(argv.data(), limits, its_in.get(), its_out.get(), errors_.get(), its_failed.get());
-    ::setpgid(pid_, pid_);  // here too, so that the group is there whoever comes first
+    ::setpgid(pid_, pid_);  // called in both processes, so that the group exists in time
     its_failed.close();
     check_started(command.front(), failed.get());
     for (const Descriptor* end : {&in_, &out_}) ::fcntl(end->get(), F_SETFL, O_NONBLOCK);
@@ -164,7 +166,8 @@ class Child {
   }
 
  private:
-  /// The pipe closes when the program begins; before that, it may bring the error.
+  /// Throws if the program did not start. The pipe `failed` closes when the program starts; if it
+  /// does not start, the pipe holds the error.
   void check_started(const std::string& program, int failed) {
     int error = 0;
     ssize_t got = 0;
@@ -181,7 +184,7 @@ class Child {
                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
-  /// Writes as much as the pipe takes.
+  /// Writes as much input as the pipe takes.
   void fill(const std::function<std::string()>& more) {
     while (in_.get() >= 0) {
       if (sent_ == input_.size()) {
@@ -195,7 +198,7 @@ class Child {
       const ssize_t wrote = ::write(in_.get(), input_.data() + sent_, input_.size() - sent_);
       if (wrote < 0) {
         if (errno == EINTR) continue;
-        if (errno != EAGAIN) in_.close();  // it does not read any more
+        if (errno != EAGAIN) in_.close();  // the process no longer reads
         return;
       }
       sent_ += static_cast<std::size_t>(wrote);
@@ -209,7 +212,7 @@ class Child {
     ::poll(on.data(), in_.get() >= 0 ? 2 : 1, static_cast<int>(std::clamp<long>(left, 0, 1000)));
   }
 
-  /// False at the end of its output.
+  /// Reads the output of the process. False at the end of the output.
   bool read(const std::function<bool(std::string_view)>& line) {
     std::array<char, 1 << 16> buffer;
     const ssize_t got = ::read(out_.get(), buffer.data(), buffer.size());
@@ -241,7 +244,7 @@ class Child {
     pid_ = -1;
     return true;
   }
-  /// Called at the end of its output: gives it some time to end by itself.
+  /// Called at the end of the output: gives the process some time to end by itself.
   void finish() {
     wait_until(limits_.line_s);
     const pid_t group = pid_;
@@ -253,7 +256,7 @@ class Child {
       }
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
-    if (group > 0) ::kill(-group, SIGKILL);  // whatever it had started itself
+    if (group > 0) ::kill(-group, SIGKILL);  // ends processes that the program started, too
   }
 
   ChildEnd ending() const {
@@ -272,7 +275,8 @@ class Child {
     const double used = static_cast<double>(usage_.ru_utime.tv_sec + usage_.ru_stime.tv_sec);
     if (signal == SIGXCPU || (signal == SIGKILL && used >= static_cast<double>(limits_.cpu_s)))
       return used_up(end(How::time, "CPU time beyond the limit"));
-    // A process begins with the peak of its parent, which says nothing about its own memory.
+    // A process begins with the peak of its parent, so only a larger peak tells about its own
+    // memory.
     const bool nearly_all =
         limits_.memory_mib > 0 && usage_.ru_maxrss > parents_peak_ &&
         static_cast<std::uint64_t>(usage_.ru_maxrss) / 1024 * 4 >= limits_.memory_mib * 3;

@@ -1,10 +1,11 @@
-// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(): its trees of boxes and its own
-// test of two triangles. The file is compiled twice, for Bullet in float and in double.
+// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(), which uses Bullet's trees of
+// boxes and its test of two triangles. The file is compiled twice, for Bullet in float and in
+// double.
 //
-// Contacts are a list of points, each with the triangles that it is between. Bullet adds a margin
-// to every shape, so that it reports triangles that are apart. It is asked twice: with the margin
-// that it has by default, as its manual advises, and with a margin of 0, which the manual advises
-// against and which is the only one that could tell triangles that meet from those that do not.
+// Contacts are a list of points, each with the two triangles that touch there. Bullet adds a margin
+// to every shape, so it reports triangles that are apart. Bullet is asked twice: with its default
+// margin, as its manual advises, and with a margin of 0. The manual advises against 0, but only
+// this margin could distinguish triangles that meet from those that do not.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
@@ -26,7 +27,7 @@ constexpr const char* kType = "float";
 
 enum class Margin { none, by_default };
 
-/// An object as Bullet holds it, which keeps the vertices and triangles of its maker.
+/// An object in Bullet. Bullet refers to the vertices and triangles of this class.
 class Body {
  public:
   Body(const Scene& scene, const Object& object, Margin margin) {
@@ -66,7 +67,7 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int,
                            int triangle_a, const btCollisionObjectWrapper*, int,
                            int triangle_b) override {
-    if (point.getDistance() > 0) return 0;  // near, and no contact
+    if (point.getDistance() > 0) return 0;  // the triangles are near, but not in contact
     if (a->getCollisionObject() != first) std::swap(triangle_a, triangle_b);
     pairs.emplace_back(triangle_a, triangle_b);
     return 0;
@@ -76,8 +77,8 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
 class World {
  public:
   World() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
-    // registerAlgorithm() is for the steps of a simulation; contactPairTest() looks up the
-    // algorithm in a table of its own.
+    // registerAlgorithm() serves only the steps of a simulation; contactPairTest() looks the
+    // algorithm up in another table.
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE,
                                                 &create_);
@@ -166,7 +167,7 @@ int main(int argc, char** argv) {
            "might "
            "introduce problems\"; of degenerate triangles and slivers that they \"can better be "
            "avoided\""),
-       // Two shapes, each of which has 0.04 by the manual.
+       // 0.08: there are two shapes, and by the manual each has a margin of 0.04.
        contestant<Margin::by_default>(
            "bullet-gimpact-margin-", "the margin that it has by default", 0.08,
            "nothing of exact answers; triangles closer than two margins may be reported, since "

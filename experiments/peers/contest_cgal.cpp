@@ -1,8 +1,8 @@
-// CGAL's test of two triangles, with the kernel whose predicates are exact and with plain doubles;
-// and its self-intersections of a mesh, intersections of meshes, and tree of boxes.
+// CGAL's test of two triangles, with the kernel whose predicates are exact and with plain doubles.
+// Also CGAL's self-intersections of a mesh, intersections of meshes, and tree of boxes.
 //
-// The checks of CGAL stay on here (they are off where NDEBUG is defined): a broken precondition is
-// then an error, and not an answer.
+// CGAL's checks are on here, by undefining NDEBUG: a broken precondition then gives an error, not
+// an answer.
 #undef NDEBUG
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -45,8 +45,8 @@ bool do_intersect(const SuitePair& pair) {
   return CGAL::do_intersect(triangle<Kernel>(pair.a), triangle<Kernel>(pair.b));
 }
 
-/// Adds a face. A triangle that is turned the other way than its neighbours is turned. Throws
-/// Refusal where more than two triangles would have an edge in common.
+/// Adds a face. A triangle that is oriented unlike its neighbours is reversed. Throws Refusal if
+/// more than two triangles would have an edge in common.
 void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
   const auto& [a, b, c] = corners;
   if (a == b || b == c || c == a)
@@ -55,7 +55,7 @@ void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
     throw Refusal("Surface_mesh holds no mesh that is not manifold");
 }
 
-/// The self-intersections of one mesh of all objects, whose face i is triangle i.
+/// The self-intersections of one mesh that holds all objects; face i is triangle i.
 std::vector<TrianglePair> self_scene(const Scene& scene) {
   Mesh mesh;
   std::vector<Mesh::Vertex_index> at;
@@ -65,7 +65,7 @@ std::vector<TrianglePair> self_scene(const Scene& scene) {
   PMP::self_intersections(mesh, std::back_inserter(pairs));
   std::vector<TrianglePair> out;
   for (const auto& [a, b] : pairs) out.push_back({a.idx(), b.idx()});
-  leave_out_untested(scene, out);  // a face with itself only says that it is degenerate
+  leave_out_untested(scene, out);  // a pair of a face with itself says that it is degenerate
   return out;
 }
 
@@ -82,7 +82,7 @@ bool mesh_pair(const SuitePair& pair) {
   return PMP::do_intersect(meshes[0], meshes[1]);
 }
 
-/// A tree of the second object of each pair, asked with the triangles of the first.
+/// For each pair of objects, searches a tree of the second for the triangles of the first.
 std::vector<TrianglePair> tree_scene(const Scene& scene) {
   using Triangles = std::vector<Exact::Triangle_3>;
   using Primitive = CGAL::AABB_triangle_primitive<Exact, Triangles::const_iterator>;

@@ -1,6 +1,5 @@
-// GTS: the faces of one surface that intersect, by gts_surface_foreach_intersecting_face(), which
-// leaves out what faces have in common by an edge or a vertex. The only test of two triangles that
-// it has for its users is this one.
+// GTS: the faces of one surface that intersect, by gts_surface_foreach_intersecting_face(). Common
+// edges and vertices of faces do not count. GTS has no other public test of two triangles.
 #include <gts.h>
 
 #include <array>
@@ -11,7 +10,7 @@
 namespace farcull {
 namespace {
 
-/// One surface of all objects.
+/// One surface that holds all objects.
 class Surface {
  public:
   explicit Surface(std::size_t vertices)
@@ -38,7 +37,7 @@ class Surface {
   }
 
  private:
-  /// Makes a vertex only with its first face: the surface destroys only what belongs to a face.
+  /// Makes a vertex only with its first face, since the surface destroys only vertices of faces.
   GtsVertex* vertex(const Scene& scene, std::uint32_t v) {
     const Vec3& p = scene.vertices[v];
     if (vertices_[v] == nullptr)
@@ -57,7 +56,7 @@ class Surface {
 
   GtsSurface* surface_;
   std::vector<GtsVertex*> vertices_;
-  std::unordered_map<void*, std::uint32_t> number_;  // of triangles
+  std::unordered_map<void*, std::uint32_t> number_;  // the triangle of each face
   std::vector<TrianglePair> found_;
 };
 

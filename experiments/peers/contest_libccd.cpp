@@ -1,5 +1,5 @@
-// libccd's tests of convex bodies, GJK and MPR, on triangles as the hulls of their corners. It is
-// what FCL calls for shapes.
+// libccd's tests of convex bodies, GJK and MPR, on triangles as the hulls of their corners. FCL
+// calls libccd for shapes.
 #include <ccd/ccd.h>
 
 #include "experiments/peers/contestant.h"

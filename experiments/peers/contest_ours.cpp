@@ -1,6 +1,6 @@
 // farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
-// names, or on the cores of the CPU. Methods run as by `farcull run`, but for far-pairs on the
-// cores of the CPU, which runs by the library.
+// names, else on the cores of the CPU. Methods run as by `farcull run`, except that far-pairs on
+// the cores of the CPU runs by the library.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -18,9 +18,9 @@ std::string device() {
   return named != nullptr && *named != '\0' ? named : "native";
 }
 
-/// Pairs of triangles of one object that have a position in common, but no index. farcull calls
-/// them neighbours, which it reports only where they meet in more than that. A suite goes by the
-/// indices: to it they are two triangles that touch. Sorted.
+/// Pairs of triangles of one object that have a vertex position in common, but no vertex index;
+/// sorted. farcull calls them neighbours, and reports them only if they share more than that. A
+/// suite compares indices, so in a suite they are two triangles that touch.
 std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> at;
   for (const Object& object : scene.objects) {
@@ -49,7 +49,7 @@ std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   return out;
 }
 
-/// The pairs that a method reports, neighbours in the sense of a suite among them.
+/// The pairs that a method reports, as a suite counts them: with touching_strangers().
 std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
   static Session session(device(), 1, {});
   RunOptions options{.method = method};
@@ -62,7 +62,7 @@ std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
     const auto is_kept = [&](std::uint32_t t) {
       return std::binary_search(kept.begin(), kept.end(), t);
     };
-    // A method that culls triangles has to keep both; others have no such set.
+    // If a method culls triangles, it has to keep both; other methods keep no set of triangles.
     if (!draws(method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
   }
   return out;
@@ -89,7 +89,7 @@ std::vector<TrianglePair> pairs_by_library(const Scene& scene) {
 
 using Finder = std::function<std::vector<TrianglePair>(const Scene&)>;
 
-/// S-CULLIDE tests triangles of one object.
+/// The scene as one object, since S-CULLIDE tests triangles of one object.
 Scene as_one_object(Scene scene) {
   scene.objects = {{.name = "0",
                     .first_triangle = 0,

@@ -1,6 +1,6 @@
 // The libraries of `farcull bench` as contestants: FCL and ODE with their own tests of two
-// triangles, and broad phases followed by exact tests. A pair that is lost in spite of exact tests
-// is lost by the broad phase.
+// triangles, and broad phases followed by exact tests. If a pair is lost although the tests are
+// exact, the broad phase has lost it.
 #include "experiments/peers/peer.h"
 
 #include <memory>
@@ -30,7 +30,7 @@ Contestant contestant(const Peer& peer, ContestantCard card) {
           .mesh = found};
 }
 
-/// Each triangle twice: ODE 0.16.2 crashes where both meshes are of one triangle.
+/// A scene with each triangle twice: ODE 0.16.2 crashes if both meshes have one triangle.
 Scene doubled(const SuitePair& pair) {
   Scene out = two_objects(pair);
   const auto a = out.triangles[0], b = out.triangles[1];

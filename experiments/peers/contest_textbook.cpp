@@ -1,6 +1,6 @@
 // The tests of two triangles that textbooks have, written here from the papers, in float and in
-// double. They are what many programs do, and the baseline of the study. All compute with rounding
-// in T, and round their input to it.
+// double. Many programs use these tests, so they are the baseline of the study. All compute in T
+// with rounding, and round their input to T.
 //   T. Moeller: A Fast Triangle-Triangle Intersection Test. Journal of Graphics Tools 2(2), 1997.
 //   P. Guigue, O. Devillers: Fast and Robust Triangle-Triangle Overlap Test Using Orientation
 //   Predicates. Journal of Graphics Tools 8(1), 2003.
@@ -91,8 +91,9 @@ std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corner
   return {dot(n, points[0]) + d, dot(n, points[1]) + d, dot(n, points[2]) + d};
 }
 
-/// The part of the line of both planes in a triangle: p are its corners along the line, d their
-/// distances from the other plane, which are not all of one strict sign nor all 0.
+/// The part of the common line of both planes that lies in a triangle. p: the corners along the
+/// line; d: their distances from the other plane. Precondition: not all of d are above 0, not all
+/// below 0, not all 0.
 template <class T>
 std::array<T, 2> interval(const std::array<T, 3>& p, const std::array<T, 3>& d) {
   // The corner that is alone on its side.
@@ -121,8 +122,8 @@ bool all_zero(const std::array<T, 3>& d) {
   return d[0] == 0 && d[1] == 0 && d[2] == 0;
 }
 
-/// Moeller 1997. Distances below epsilon count as 0, so that nearly coplanar triangles are treated
-/// as coplanar.
+/// The test of Moeller 1997. Distances below epsilon count as 0, so that nearly coplanar triangles
+/// are treated as coplanar.
 template <class T>
 bool moeller(const SuitePair& pair, T epsilon) {
   const Corners<T> a = rounded_to<T>(pair.a), b = rounded_to<T>(pair.b);
@@ -138,21 +139,22 @@ bool moeller(const SuitePair& pair, T epsilon) {
   const std::array<T, 3> da = snapped(distances(n2, b, a));
   if (one_strict_sign(da)) return false;
   if (all_zero(da) || all_zero(db)) return coplanar_overlap(n1, a, b);
-  // The line of both planes, projected on the axis along which it is longest.
+  // Projects the common line of both planes on the axis along which it is longest.
   const int axis = longest_axis(cross(n1, n2));
   const std::array<T, 2> first = interval<T>({a[0][axis], a[1][axis], a[2][axis]}, da);
   const std::array<T, 2> second = interval<T>({b[0][axis], b[1][axis], b[2][axis]}, db);
   return !(first[1] < second[0] || second[1] < first[0]);
 }
 
-/// The side of d of the plane through a, b and c.
+/// The side of the plane through a, b and c on which d lies: a determinant, whose sign counts.
 template <class T>
 T side(const Point<T>& a, const Point<T>& b, const Point<T>& c, const Point<T>& d) {
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// The corner that is alone on its side of the other plane, or apart from the two on it; and
-/// whether it is on the negative side.
+/// The corner that is alone on its side of the other plane, and whether that is the negative side.
+/// If one corner is on the plane and the other two are on one side, it is the one on the plane, and
+/// `negative` says that the others are on the positive side.
 struct Alone {
   int corner = 0;
   bool negative = false;
@@ -177,7 +179,7 @@ Corners<T> begun_at(const Corners<T>& t, int corner) {
   return {t[corner], t[(corner + 1) % 3], t[(corner + 2) % 3]};
 }
 
-/// Guigue and Devillers 2003.
+/// The test of Guigue and Devillers 2003.
 template <class T>
 bool guigue_devillers(const SuitePair& pair) {
   Corners<T> a = rounded_to<T>(pair.a), b = rounded_to<T>(pair.b);
@@ -199,8 +201,8 @@ bool guigue_devillers(const SuitePair& pair) {
   return side(a[0], a[1], b[0], b[1]) <= 0 && side(a[0], a[2], b[2], b[0]) <= 0;
 }
 
-/// Whether a segment meets a triangle in a point, by Moeller and Trumbore; a segment parallel to
-/// the triangle does not.
+/// Whether a segment meets a triangle in a point, by Moeller and Trumbore. False if the segment is
+/// parallel to the triangle.
 template <class T>
 bool edge_meets_face(const Point<T>& from, const Point<T>& to, const Corners<T>& face) {
   const Point<T> along = to - from, e1 = face[1] - face[0], e2 = face[2] - face[0];

@@ -1,8 +1,8 @@
 #!/usr/bin/env -S node --max-old-space-size=2048
 // three-mesh-bvh as a contestant (experiments/peers/contestant.h has the protocol): its test
-// of two triangles, and its trees searched against each other by bvhcast(). It computes in double,
-// but a geometry of three.js holds the vertices of a mesh in float by default; a Float64Array is
-// given here, which it takes as well.
+// of two triangles, and its trees searched against each other by bvhcast(). It computes in double.
+// A geometry of three.js holds the vertices of a mesh in float by default, but also takes a
+// Float64Array, which is used here.
 'use strict';
 
 const fs = require('fs');
@@ -60,8 +60,8 @@ function askMesh(fields, { three, bvh }) {
   const self = fields[1] === '1';
   const geometries = fields.slice(2).map((file) => readObj(file, three));
   const since = process.hrtime.bigint();
-  // The tree orders triangles anew; `indirect` leaves the geometry as it is, and the tree says which
-  // triangle stands at a place of its order.
+  // The tree reorders triangles. With `indirect` it leaves the geometry as it is, and says which
+  // triangle is at each place of its order.
   const trees = geometries.map((geometry) => new bvh.MeshBVH(geometry, { indirect: true }));
   const identity = new three.Matrix4();
   let out = '';

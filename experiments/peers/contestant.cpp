@@ -1,6 +1,6 @@
 // The loop of a contestant's program: reads questions, times the library, writes answers. Standard
-// output is kept for the answers: what a library prints there goes to standard error. And cards, a
-// line for each field.
+// output is kept for the answers: text that a library prints there goes to standard error. Also
+// writes and reads cards (descriptions of contestants, ContestantCard), one line for each field.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
@@ -30,7 +30,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// The shortest decimal number that is read back as this one.
+/// The shortest decimal text that is read back as this number.
 std::string shortest(double number) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
@@ -42,7 +42,7 @@ std::optional<bool> yes_or_no(const std::string& text) {
   return {};
 }
 
-/// Sets a field of a card; false: the key is unknown, or has no such value.
+/// Sets a field of a card. False: the key is unknown, or the value is not allowed for it.
 bool set(ContestantCard& card, const std::string& key, const std::string& value) {
   const std::map<std::string, std::string*> texts = {
       {"name", &card.name}, {"library", &card.library}, {"call", &card.call},
@@ -157,11 +157,12 @@ Scene read_scene(const std::vector<std::string_view>& fields) {
   return out;
 }
 
-/// Writes all of it at once, so that it is there if the next question ends the program.
+/// Writes the whole text at once, so that the answer is there even if the next question ends the
+/// program.
 void answer(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
-    if (wrote <= 0) std::_Exit(kWrongCall);  // nobody listens
+    if (wrote <= 0) std::_Exit(kWrongCall);  // nobody reads the output
     done += static_cast<std::size_t>(wrote);
   }
 }

@@ -32,7 +32,8 @@ void require_no_error(RTCDevice device) {
   throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
 }
 
-/// Embree leaves out, without a word, what has a coordinate of 1.844e18 or more.
+/// Why Embree cannot take the scene; empty if it can. Embree silently leaves out geometry with a
+/// coordinate of 1.844e18 or more.
 std::string refuses_large(const Scene& scene) {
   for (const Vec3& p : scene.vertices) {
     if (p.cwiseAbs().maxCoeff() > 1e18) return "Embree leaves out coordinates beyond 1e18";
@@ -42,9 +43,9 @@ std::string refuses_large(const Scene& scene) {
 
 // The broad phase: hierarchies of user geometries, whose boxes in float are rounded outward.
 
-// Outward by more than the rounding to float: the step is at least an ulp of f, f -+ an ulp is a
-// float, and rounding is monotone; kTiny is more than half an ulp of the subnormal ones. For
-// |x| < 2^127. (This is faster than the nearest float beyond x, and as good.)
+// These functions move x outward by more than its rounding to float: the step is at least an ulp of
+// f, f -+ an ulp is a float, and rounding is monotone; kTiny is more than half an ulp of subnormal
+// floats. For |x| < 2^127. (This is faster than finding the nearest float beyond x, and as good.)
 constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);
@@ -64,7 +65,7 @@ bool meet(const FloatBox& a, const FloatBox& b) {
   return true;
 }
 
-/// The boxes of all triangles. A vertex is rounded once, for all its triangles.
+/// The boxes of all triangles. Each vertex is rounded once for all triangles that use it.
 std::vector<FloatBox> float_boxes(const Scene& scene, unsigned threads) {
   std::vector<FloatBox> points(scene.vertices.size());
   for_chunks(points.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -93,7 +94,7 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
 }
 
-/// A device with two hierarchies that are built anew in each run, in memory that they keep.
+/// A device with two hierarchies. Each run builds them anew, in memory that is kept between runs.
 class Embree {
  public:
   Embree(RTCBuildQuality quality, unsigned threads) : device_(new_device(threads)) {
@@ -138,11 +139,11 @@ struct Found {
   const PeerScene& scene;
   const std::vector<FloatBox>& boxes;
   PeerCandidates& candidates;
-  std::uint32_t second;  // added to what the second hierarchy calls its primitives
+  std::uint32_t second;  // added to the second hierarchy's numbers of primitives
 };
 
-/// Called from any of Embree's threads, with all pairs of two leaves that meet. A hierarchy with
-/// itself gives both orders of every pair whose boxes overlap.
+/// Adds candidates. Embree calls this from any of its threads with all pairs of two leaves that
+/// meet. A hierarchy with itself gives both orders of every pair whose boxes overlap.
 void collect(void* data, RTCCollision* collisions, unsigned count) {
   const Found& found = *static_cast<const Found*>(data);
   PeerCandidates::Part& part = found.candidates.part();
@@ -186,12 +187,12 @@ Peer peer(const std::string& name, RTCBuildQuality quality) {
           refuses_large};
 }
 
-// Distances, as Embree's documentation and its tutorial closest_point use rtcPointQuery: from each
-// vertex of one object the nearest point of the other one's triangles, and the reverse.
+// Distances, as Embree's documentation and its tutorial closest_point use rtcPointQuery: find the
+// nearest point of the other object's triangles from each vertex of one object, and the reverse.
 //
-// Two triangles that are apart can be nearest at inner points of two edges, which no vertex asks
-// about, and two that cross have all vertices apart. So the answer is a bound from above, but for
-// rounding; it is the distance where the nearest points are a vertex and any point.
+// Two triangles that are apart can be nearest at inner points of two edges, and the vertices of two
+// triangles that cross are all apart from the other one. So, apart from rounding, the answer is an
+// upper bound. It is the distance if one of the nearest points is a vertex.
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
@@ -204,8 +205,8 @@ Point operator*(float s, const Point& a) { return {s * a.x, s * a.y, s * a.z}; }
 float dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 float distance(const Point& a, const Point& b) { return std::sqrt(dot(a - b, a - b)); }
 
-/// The point of the triangle that is nearest to p, by regions: Ericson, Real-Time Collision
-/// Detection (2005), section 5.1.5, as in the tutorial.
+/// The point of the triangle that is nearest to p, found by regions as in the tutorial: Ericson,
+/// Real-Time Collision Detection (2005), section 5.1.5.
 Point nearest_of(const Point& p, const Point& a, const Point& b, const Point& c) {
   const Point ab = b - a, ac = c - a, ap = p - a;
   const float d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -227,9 +228,9 @@ Point nearest_of(const Point& p, const Point& a, const Point& b, const Point& c)
   return a + (vb / whole) * ab + (vc / whole) * ac;
 }
 
-/// One object: its hierarchy, and what Embree keeps of its geometry. Each vertex has a triangle.
+/// One object: its hierarchy, and its geometry in Embree's buffers. A triangle uses each vertex.
 struct TreeOfObject {
-  std::uint32_t number = 0;  // of the object
+  std::uint32_t number = 0;  // the object's number
   RTCScene scene = nullptr;
   const Point* points = nullptr;
   const std::array<unsigned, 3>* corners = nullptr;  // of each triangle
@@ -252,7 +253,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   return static_cast<const TreeOfObject*>(arguments->userPtr)->nearer(arguments);
 }
 
-/// The least distance of a vertex of `from` to `to` where it is below `most`; else `most`.
+/// The least distance of a vertex of `from` to `to` if it is below `most`; else `most`.
 float from_vertices(const TreeOfObject& from, const TreeOfObject& to, float most) {
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
@@ -318,7 +319,7 @@ class Trees {
                                 sizeof(std::array<unsigned, 3>), object.triangle_count));
     if (points == nullptr || corners == nullptr) {
       rtcReleaseGeometry(geometry);
-      return;  // check() names the error
+      return;  // the error is reported by check()
     }
     for (std::size_t v = 0; v < used.size(); ++v) {
       const Vec3& at = scene.vertices[used[v]];
@@ -344,7 +345,7 @@ class Trees {
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(out.scene, geometry);
-    rtcReleaseGeometry(geometry);  // the scene keeps it, and its buffers
+    rtcReleaseGeometry(geometry);  // the scene keeps the geometry and its buffers
     rtcCommitScene(out.scene);
   }
 
@@ -352,7 +353,8 @@ class Trees {
   std::vector<TreeOfObject> all_;
 };
 
-/// A query finds what is nearer than its radius: with this one anything that is at most `within`.
+/// The radius for a query that finds points at most `within` away. A query finds only points nearer
+/// than its radius, so the radius is larger than `within`.
 float radius_of(double within) {
   constexpr float kMost = std::numeric_limits<float>::max();
   if (!(within < static_cast<double>(kMost))) return kInfinite;
@@ -383,7 +385,8 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   return answer;
 }
 
-/// The nearest point of a degenerate triangle divides by zero.
+/// Why distances cannot be asked for; empty if they can. nearest_of() divides by zero for a
+/// degenerate triangle.
 std::string refuses_distances(const Scene& scene) {
   const std::string large = refuses_large(scene);
   if (!large.empty()) return large;

@@ -1,7 +1,7 @@
-// FCL, in three ways: its hierarchies with exact decisions behind them (broad), as its users run it
-// with its own test of two triangles, which rounds (narrow), and its distances.
+// FCL, in three ways: its hierarchies followed by exact decisions (broad); as its users run it,
+// with its own test of two triangles, which rounds (narrow); and its distances.
 //
-// FCL's headers declare the templates that its library holds, all of them in double; the rest is
+// FCL's library holds only the templates in double, which its headers declare. Those in float are
 // instantiated here.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
@@ -43,8 +43,9 @@ struct Model {
   std::uint32_t first = 0;
 };
 
-/// Coordinates are rounded to the scalar of the volume, each by itself and to the nearest. The
-/// object has triangles. Throws Error where FCL builds nothing.
+/// Builds the hierarchy of an object. Each coordinate is rounded to the nearest value of the
+/// volume's scalar type. Precondition: the object has triangles. Throws Error if FCL builds
+/// nothing.
 template <class Volume>
 Model<Volume> model_of(const Scene& scene, const Object& object) {
   const auto triangles =
@@ -93,7 +94,7 @@ struct Objects {
     for (const auto& object : placed) manager.registerObject(object.get());
     manager.setup();
   }
-  /// The objects whose boxes meet.
+  /// The pairs of objects whose boxes meet.
   std::vector<IndexPair> meeting() const {
     std::vector<IndexPair> pairs;
     if (placed.size() < 2) return pairs;
@@ -101,18 +102,18 @@ struct Objects {
     register_in(manager);
     manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
       static_cast<std::vector<IndexPair>*>(data)->emplace_back(index_of(a), index_of(b));
-      return false;  // there may be more
+      return false;  // go on: there may be more pairs
     });
     return pairs;
   }
 
-  std::vector<std::uint32_t> numbers;  // of the objects
+  std::vector<std::uint32_t> numbers;  // numbers of the objects
   std::vector<Model<Volume>> models;
   std::vector<std::unique_ptr<Placed>> placed;
 };
 
-/// The hierarchy of an object, as search_trees() takes it. The larger node is divided first, as in
-/// FCL.
+/// The hierarchy of an object with the interface for search_trees(). The larger node is divided
+/// first, as in FCL.
 template <class Volume>
 class FclTree {
  public:
@@ -135,8 +136,9 @@ class FclTree {
   std::uint32_t first_;
 };
 
-/// FCL's hierarchies and overlap tests; its leaves are candidates. FCL's traversal has one thread
-/// and takes no model with itself, so that search_trees() takes its place.
+/// Finds candidates by FCL's hierarchies and overlap tests of volumes: pairs of leaves that
+/// overlap. FCL's traversal has one thread and does not test a model with itself, so search_trees()
+/// is used in its place.
 template <class Volume>
 BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
   const Stopwatch building;
@@ -169,8 +171,9 @@ void initialize(Node& node, const Model<Volume>& a, const Model<Volume>& b, cons
 }
 
 /// The pairs of triangles that fcl::collide() finds between two models. This calls the function
-/// that fcl::collide() calls once it has looked up the kinds of the two; calling fcl::collide()
-/// would compile its table for all kinds of shapes in float, which Debian's library is without.
+/// that fcl::collide() calls after it has looked up the kinds of the two models. Calling
+/// fcl::collide() would compile its table for all kinds of shapes in float, which Debian's library
+/// does not have.
 template <class Scalar>
 void collide_two(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
                  std::vector<TrianglePair>& pairs) {
@@ -188,7 +191,7 @@ void collide_two(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Sc
   }
 }
 
-/// FCL's own broad phase, hierarchies and test of two triangles.
+/// Finds pairs by FCL's own broad phase, hierarchies and test of two triangles.
 template <class Scalar>
 BenchAnswer collide(const Scene& scene, unsigned threads) {
   const Stopwatch building;
@@ -205,8 +208,8 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
     const auto [a, b] = tasks[i];
     collide_two<Scalar>(objects.models[a], objects.models[b], found[i]);
     if (a != b) return;
-    // FCL reports of a model with itself every pair in both orders, and every triangle with itself
-    // and with its neighbours.
+    // For a model with itself, FCL reports every pair in both orders, and every triangle with
+    // itself and with its neighbours.
     std::erase_if(found[i], [&scene](const TrianglePair& pair) {
       return pair.a >= pair.b || share_position(scene.corners(pair.a), scene.corners(pair.b));
     });
@@ -222,8 +225,8 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   return answer;
 }
 
-/// The distance that fcl::distance() gives two models; infinity where it finds none below `most`.
-/// This calls the function that fcl::distance() calls, as collide_two() does.
+/// The distance of two models by fcl::distance(); infinity if it finds none below `most`. This
+/// calls the function that fcl::distance() calls, for the reason that collide_two() gives.
 template <class Scalar>
 Scalar distance_of(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
                    Scalar most) {
@@ -234,10 +237,11 @@ Scalar distance_of(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<
   fcl::detail::distance(&node);
   if (result.b1 == fcl::DistanceResult<Scalar>::NONE)
     return std::numeric_limits<Scalar>::infinity();
-  return std::max(result.min_distance, Scalar(0));  // below 0: they meet
+  return std::max(result.min_distance, Scalar(0));  // below 0 means that the models meet
 }
 
-/// FCL finds what is nearer than this: anything that is at most `within`.
+/// The limit for queries of distances up to `within`. FCL finds only distances below the limit, so
+/// the limit is larger than `within`.
 template <class Scalar>
 Scalar most_of(double within) {
   constexpr auto kMost = std::numeric_limits<Scalar>::max();
@@ -245,7 +249,7 @@ Scalar most_of(double within) {
   return std::nextafter(static_cast<Scalar>(within), kMost);
 }
 
-/// The nearest other object of one, by FCL's dynamic tree of boxes.
+/// Finds the nearest other object of one object, by FCL's dynamic tree of boxes.
 template <class Scalar>
 struct Search {
   using Of = Objects<fcl::OBBRSS<Scalar>>;
@@ -253,7 +257,8 @@ struct Search {
   std::size_t of, nearest;
   Scalar least;
 
-  /// Called with the object of the search and another one; true ends the search.
+  /// FCL calls this with the object of the search and another object. Returning true ends the
+  /// search.
   static bool visit(typename Of::Placed* a, typename Of::Placed* b, void* data, Scalar& least) {
     auto& search = *static_cast<Search*>(data);
     const std::size_t i = Of::index_of(a), k = Of::index_of(b);
@@ -315,7 +320,8 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   return answer;
 }
 
-/// The oriented box of a segment or a point has no axes.
+/// Why FCL is not asked about the scene; empty if it is. A degenerate triangle has no oriented box,
+/// since its box would have no axes.
 std::string refuses(const Scene& scene) {
   return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
 }

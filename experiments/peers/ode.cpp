@@ -1,10 +1,11 @@
 // ODE as its users run it: its sweep and prune, its trees (OPCODE, in float) and its contacts of
-// two triangles, which round. The public interface has no candidates, so no exact test can follow.
+// two triangles, which round. The public interface gives no candidates, so no exact test can
+// follow.
 //
-// Contacts are no list of pairs. Each names its two triangles, but ODE merges contacts that are
-// within 1e-4 units: at equal depth it asks a callback, which notes both pairs here; else it keeps
-// the deeper one only. It also reports 65,535 contacts of two objects at most, and none of an
-// object with itself. What is lost that way counts as missed.
+// Contacts are not a list of pairs. Each contact names its two triangles, but ODE merges contacts
+// that are within 1e-4 units: at equal depth it calls a callback, which notes both pairs here; else
+// it keeps only the deeper contact. It also reports at most 65,535 contacts of two objects, and
+// none of an object with itself. Pairs that are lost in these ways count as missed.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ namespace {
 static_assert(std::is_same_v<dReal, double> && sizeof(Vec3) == 3 * sizeof(double));
 
 constexpr const char* kLibrary = "ODE " dODE_VERSION;
-constexpr int kMostContacts = 65535;  // what dCollide() can be asked for
+constexpr int kMostContacts = 65535;  // the most that dCollide() can be asked for
 
 [[noreturn]] void refuse(int, const char* message, std::va_list arguments) {
   char text[400];
@@ -48,16 +49,17 @@ void start_ode() {
   }
 }
 
-/// The merged contacts of two objects. For each merge ODE names the triangles of the contact that
-/// it has and of the one that it merges into it: those of the first object, then of the second.
+/// The merged contacts of two objects. For each merge ODE calls back twice: for the first object
+/// and then for the second. Each call names this object's triangle in the contact that ODE already
+/// has (`had`) and in the contact that is merged into it (`merged`).
 struct Merged {
   dGeomID first = nullptr;
   int had = 0;
   int merged = 0;
-  std::vector<std::pair<int, int>> pairs;  // of triangles: of the first, of the second object
+  std::vector<std::pair<int, int>> pairs;  // a triangle of the first object and one of the second
 };
 
-/// An object in ODE, with a tree. ODE keeps pointers to the scene's vertices and to the faces.
+/// An object in ODE, with a tree. ODE keeps pointers to the scene's vertices and to faces_.
 class Model {
  public:
   Model(const Scene& scene, const Object& object, Merged& merged)
@@ -104,12 +106,12 @@ class Model {
   dGeomID geom_;
 };
 
-/// The objects whose boxes meet, by ODE's sweep and prune.
+/// The pairs of objects whose boxes meet, by ODE's sweep and prune.
 std::vector<std::pair<const Model*, const Model*>> meeting(
     const std::vector<std::unique_ptr<Model>>& models) {
   std::vector<std::pair<const Model*, const Model*>> pairs;
   const dSpaceID space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
-  dSpaceSetCleanup(space, 0);  // it does not own what is in it
+  dSpaceSetCleanup(space, 0);  // the space does not own its geometries
   for (const auto& model : models) dSpaceAdd(space, model->geom());
   dSpaceCollide(space, &pairs, [](void* data, dGeomID a, dGeomID b) {
     static_cast<decltype(pairs)*>(data)->emplace_back(&Model::of(a), &Model::of(b));
@@ -172,7 +174,7 @@ std::string refuses_self(const Scene& scene) {
 }  // namespace
 
 LibraryPeers ode_library() {
-  // Its collider keeps its state in one place for all threads, so it runs on one.
+  // ODE's collider has one state for all threads, so it runs on one thread.
   return {.narrow = {{"ode-trimesh", kLibrary, "", [](unsigned) -> BenchRun { return collide; },
                       refuses_self}}};
 }

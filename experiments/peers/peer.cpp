@@ -1,5 +1,5 @@
-// The lists of peers, in the order of tables. An entry that no adapter of this build gives says why
-// it is missing.
+// The lists of peers, in the order of tables. If no adapter of this build gives a peer, its entry
+// says why it is missing.
 #include "experiments/peers/peer.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 struct Known {
   const char* name;
   const char* library;
-  const char* package;  // of Debian
+  const char* package;  // Debian's package
 };
 
 constexpr Known kBroad[] = {{"cgal-boxes", "CGAL", "libcgal-dev"},
@@ -65,7 +65,7 @@ std::string why_missing(const Known& known) {
   return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
 }
 
-/// The peers of a list, from one part of what the adapters give.
+/// The peers of a list, taken from one member (`part`) of what the adapters give.
 template <class PeerKind>
 std::vector<PeerKind> listed(std::span<const Known> list, std::vector<PeerKind> LibraryPeers::*part,
                              unsigned threads) {

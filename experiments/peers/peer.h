@@ -1,5 +1,6 @@
-// Other libraries, which a user would take instead of farcull: what `farcull bench` and the studies
-// compare with, in the process. One file per library adapts it; peer.cpp lists what they give.
+// Peers: other libraries that a user could take instead of farcull. `farcull bench` and the studies
+// compare farcull with them in one process. One file per library adapts it; peer.cpp lists the
+// peers.
 #pragma once
 
 #include <algorithm>
@@ -23,30 +24,31 @@
 namespace farcull {
 
 struct BenchAnswer {
-  double build_ms = 0;       // of a hierarchy, where there is one
+  double build_ms = 0;       // building a hierarchy, if there is one
   double candidates_ms = 0;  // finding the candidates
-  double exact_ms = 0;  // deciding them; where several threads do so between finding, their sum
-                        // divided by the threads
-  std::uint64_t candidate_pairs = 0;     // given to the exact decision
+  double exact_ms = 0;  // deciding the candidates; if several threads alternate between finding and
+                        // deciding, the sum of their times for deciding, divided by their number
+  std::uint64_t candidate_pairs = 0;     // candidates given to the exact decision
   std::vector<TrianglePair> pairs = {};  // sorted, each once
 };
 
-/// Goes from the triangles to the pairs. Throws Error where it cannot vouch for its answer.
+/// Computes the pairs from the triangles of a scene. Throws Error if it cannot guarantee its
+/// answer.
 using BenchRun = std::function<BenchAnswer(const Scene&)>;
 
-/// Goes from the triangles of a scene to pairs of triangles of different objects, and of one object
-/// where it is `self`, that collide and are not neighbours (verify/exact.h).
+/// A library that finds all pairs of triangles that collide and are not neighbours
+/// (verify/exact.h), of different objects, or of one object marked `self`.
 struct Peer {
   std::string name;     // as in --peers
   std::string library;  // with its version, such as "CGAL 5.5.1"
   std::string
-      missing;  // why this build or this number of threads is without it; empty: it is there
+      missing;  // why it cannot run in this build or with this number of threads; empty: it can
   std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
-  std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on such a scene;
-                                                          // empty: it is. Null: on all
+  std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on this scene;
+                                                          // empty: it is. Null: exact on all
 };
 
-/// objects: every two objects that have triangles. nearest: each of them and the nearest other one.
+/// objects: every two objects that have triangles. nearest: each such object and its nearest other.
 enum class DistanceTask : std::uint8_t { objects, nearest };
 
 struct PeerQuestion {
@@ -55,61 +57,62 @@ struct PeerQuestion {
                                                             // out
 };
 
-/// With `objects` a < b; with `nearest` b is the object that is nearest to a.
+/// A distance of two objects. With `objects` a < b; with `nearest` b is the object nearest to a.
 struct PeerDistance {
   std::uint32_t a = 0, b = 0;
-  double distance = 0;  // as the library gives it, but 0 where it says that they meet
+  double distance = 0;  // as the library gives it, but 0 if the library says that they meet
   bool operator==(const PeerDistance&) const = default;
 };
 
 struct PeerDistances {
-  double build_ms = 0;                       // of hierarchies
-  double query_ms = 0;                       // of everything behind it
+  double build_ms = 0;                       // building hierarchies
+  double query_ms = 0;                       // everything after building
   std::vector<PeerDistance> distances = {};  // sorted by a, then b
 };
 
-/// Goes from the triangles of a scene to distances between its objects. All libraries round, so
-/// their distances may be off, which `farcull bench --distances` measures too. Pairs of objects are
-/// divided over the threads; one query has one thread.
+/// A library that computes distances between the objects of a scene. All libraries round, so their
+/// distances may be off; `farcull bench --distances` measures by how much. Pairs of objects are
+/// divided over the threads; one query runs on one thread.
 struct DistancePeer {
   std::string name;          // as in --peers
   std::string library;       // with its version
-  std::string missing = {};  // why this build is without it; empty: it is there
-  /// False: it answers in floats, or bounds distances from above alone, so it is no measure of how
-  /// fast distances can be had.
+  std::string missing = {};  // why it cannot run in this build; empty: it can
+  /// False: the library answers in floats, or gives only upper bounds, so its time does not tell
+  /// how fast distances can be computed.
   bool comparable = true;
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
-  std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about such a
+  std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about this
                                                           // scene; empty: it can. Null: about all
 };
 
-/// Broad phases, each followed by the exact decisions of verify/exact.h, but for CGAL's
-/// self_intersections(), which decides exactly by itself. They run at their best settings. Whatever
-/// can be divided runs on the threads of the bench, and candidates are decided in bounded parts, so
-/// that tens of millions of overlapping boxes are never stored. The list has those too that this
-/// build was made without. `threads` >= 1.
+/// Broad phases, each followed by the exact decisions of verify/exact.h, except CGAL's
+/// self_intersections(), which decides exactly by itself. They run at their best settings. All work
+/// that can be divided runs on the threads of the bench. Candidates are decided in bounded parts,
+/// so that tens of millions of overlapping boxes are never stored. The list includes peers that
+/// this build does not have. `threads` >= 1.
 std::vector<Peer> all_peers(unsigned threads);
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
 /// may be missed or wrong. fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
 /// on coordinates rounded to that type. ode-trimesh is the contacts of ODE's dCollide().
-/// BenchAnswer::pairs is what the library reports, without neighbours (verify/exact.h) inside an
-/// object that is `self`; candidate_pairs is their number. One traversal has one thread; FCL's
-/// pairs of objects are divided over the threads. Not among all_peers(), whose answers are exact;
-/// `refuses` names what a library does not do at all, since they vouch for nothing.
+/// BenchAnswer::pairs has the pairs that the library reports, without neighbours (verify/exact.h)
+/// inside an object that is `self`; candidate_pairs is their number. One traversal runs on one
+/// thread; FCL's pairs of objects are divided over the threads. These peers are not among
+/// all_peers(), whose answers are exact. They guarantee nothing, so here `refuses` names scenes
+/// that a library cannot take at all.
 std::vector<Peer> narrow_peers();
 
-/// Peers for distances, those too that this build was made without.
-///   fcl-double, fcl-float  FCL's distance() of two OBBRSS hierarchies; with `nearest` behind its
-///                          dynamic tree of boxes
+/// Peers for distances, including those that this build does not have.
+///   fcl-double, fcl-float  FCL's distance() of two OBBRSS hierarchies; with `nearest`, for objects
+///                          that its dynamic tree of boxes finds
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
 ///                          squared_distance() of two triangles in doubles
 ///   embree-points          Embree's rtcPointQuery from every vertex of each object to the other
-///                          one's triangles, in floats. Edges are not asked against edges, so it
-///                          bounds the distance from above, and objects that cross are not 0
+///                          object's triangles, in floats. Edges are not compared with edges, so
+///                          it gives an upper bound, and the bound of objects that cross is not 0
 std::vector<DistancePeer> distance_peers();
 
-/// The adapter of one library gives parts of the three lists above.
+/// The peers that the adapter of one library adds to the three lists above.
 struct LibraryPeers {
   std::vector<Peer> broad = {}, narrow = {};
   std::vector<DistancePeer> distances = {};
@@ -120,14 +123,15 @@ LibraryPeers embree_library();
 LibraryPeers bullet_library();
 LibraryPeers ode_library();
 
-/// CGAL's exact predicate by itself, as its users call it: what decide() falls back to.
-/// Precondition: neither triangle is degenerate.
+/// CGAL's exact predicate by itself, as its users call it. decide() calls it if its filter does not
+/// know the answer. Precondition: neither triangle is degenerate.
 bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 // For the files that adapt a library: which triangles are tested with which, the exact decision of
 // candidates, the search of two trees, and the distances that a task asks for.
 
-/// Neighbours by index. (Those by position alone are left to the exact decision.)
+/// True if the triangles are neighbours by index. (The exact decision finds neighbours by
+/// position.)
 inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   return share_index(scene.triangles[a], scene.triangles[b]);
 }
@@ -135,8 +139,7 @@ inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
 /// The numbers of the objects that have triangles, ascending.
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 
-/// The vertices that an object with triangles uses: all are among first .. last, and objects mostly
-/// own that range.
+/// The range of vertices that an object with triangles uses. Mostly no other object uses the range.
 struct VertexRange {
   std::uint32_t first = 0, last = 0;
 };
@@ -155,36 +158,36 @@ inline VertexRange vertices_of(const Scene& scene, const Object& object) {
 /// Why a peer does not take a scene: `reason` if it has degenerate triangles, else nothing.
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 
-/// A scene as a peer prepares it, in its own time: the boxes of the triangles, and which of them
-/// are tested with which.
+/// A scene as a peer prepares it, which counts to the peer's time: the boxes of the triangles, and
+/// which triangles are tested with which.
 struct PeerScene {
-  /// with_boxes: false for a peer that makes its own.
+  /// with_boxes: false for a peer that makes its own boxes.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
 
   const Scene& scene;
   std::vector<Box> boxes;            // per triangle
   std::vector<std::uint32_t> owner;  // per triangle
   bool two_sides = false;            // exactly two objects have triangles, and neither is self
-  std::uint32_t second = 0;          // the first triangle of the second of them; else 0
+  std::uint32_t second = 0;          // with two_sides, the second object's first triangle; else 0
 
   /// Whether a pair of these triangles counts; neighbours by index do not.
   bool counts(std::uint32_t a, std::uint32_t b) const {
     return owner[a] != owner[b] || (scene.objects[owner[a]].self && !share_vertex(scene, a, b));
   }
-  /// Whether there can be a pair at all.
+  /// Whether any pair of triangles counts.
   bool has_pairs() const;
 };
 
-/// Takes candidates from one thread or several and decides them, in parts while they come, the rest
-/// on all threads at the end.
+/// Takes candidates from one thread or several and decides them: full parts while candidates come,
+/// the rest on all threads at the end.
 class PeerCandidates {
  public:
-  /// `parallel`: candidates come from several threads, and each decides its own full parts. Else
-  /// they come from one, and full parts are decided on all threads.
+  /// parallel: candidates come from several threads, and each thread decides its own full parts.
+  /// Else candidates come from one thread, and full parts are decided on all threads.
   PeerCandidates(const Scene& scene, unsigned threads, bool parallel);
   ~PeerCandidates();
 
-  /// The part of the calling thread; valid until finish(). A call of add() on it is not locked.
+  /// The candidates of one thread; valid until finish(). add() takes no lock.
   class Part {
    public:
     void add(std::uint32_t a, std::uint32_t b) {
@@ -213,9 +216,9 @@ class PeerCandidates {
   const Scene& scene_;
   const unsigned threads_;
   const bool parallel_;
-  const std::uint64_t id_;  // no two collectors of a process have the same
+  const std::uint64_t id_;  // different for every collector of a process
   const Stopwatch since_;
-  std::mutex mutex_;  // of parts_
+  std::mutex mutex_;  // protects parts_
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
@@ -231,25 +234,25 @@ void for_each_taken(std::size_t count, std::size_t block, unsigned threads, cons
   });
 }
 
-// Two trees searched at once for leaves whose volumes meet, on all threads: for libraries that have
-// trees, but a traversal of one thread only.
+// Searches two trees at once for leaves whose volumes meet, on all threads. For libraries that have
+// trees, but only a traversal on one thread.
 
-/// A node of each of two trees, whose leaves are to be compared.
+/// A node of each of two trees; the leaves below them are to be compared.
 ///
-/// A Tree has, for nodes that are numbered by int with the root 0: is_leaf(node), left(node),
-/// right(node), triangle(leaf), size(node) of which only the order matters, and
-/// meets(node, other, node of other), which is true wherever triangles of the two could meet.
+/// Nodes are numbered by int, the root is 0. A Tree has the functions is_leaf(node), left(node),
+/// right(node), triangle(leaf), size(node), of which only the order matters, and
+/// meets(node, other, node of other), which is true if triangles of the two nodes could meet.
 template <class Tree>
 struct TreeTask {
   const Tree* first;
   const Tree* second;
   int a = 0;
   int b = 0;
-  bool inner = false;  // the leaves below a with each other; then first is second and a is b
+  bool inner = false;  // compare the leaves below a with each other; first == second and a == b
 };
 
-/// One step of a search: the larger node is divided (next), two leaves are given to `found`, and
-/// disjoint volumes end it.
+/// One step of a search. Two leaves are given to `found`; of other nodes the larger is divided, and
+/// the new tasks are given to `next`. Disjoint volumes end the search.
 template <class Tree, class Found, class Next>
 void step(const TreeTask<Tree>& task, const Found& found, const Next& next) {
   const Tree& first = *task.first;
@@ -283,12 +286,12 @@ void descend(const TreeTask<Tree>& task, const Found& found) {
   step(task, found, [&found](const TreeTask<Tree>& next) { descend(next, found); });
 }
 
-/// Gives the candidates of all tasks to `candidates`; of a tree with itself, without neighbours by
-/// index. `candidates` is parallel iff threads > 1.
+/// Gives the candidates of all tasks to `candidates`. For a tree with itself, leaves out neighbours
+/// by index. Precondition: `candidates` is parallel iff threads > 1.
 template <class Tree>
 void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigned threads,
                   PeerCandidates& candidates) {
-  // Divided until there is enough for all threads.
+  // Divides tasks until there are enough for all threads.
   const std::size_t enough = threads > 1 ? 64 * threads : 1;
   const auto with = [&](const TreeTask<Tree>& task, PeerCandidates::Part& part) {
     return [&scene, &part, self = task.first == task.second](std::uint32_t a, std::uint32_t b) {
@@ -307,12 +310,12 @@ void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigne
                  [&](std::size_t i) { descend(tasks[i], with(tasks[i], candidates.part())); });
 }
 
-/// The distances that a task asks for, sorted; tasks are divided over the threads.
-/// numbers: of the objects that have triangles, ascending; the functions take indices into it.
-/// most: the bound to begin with. gap(i, k): at most what bound() can find, and cheap.
-/// bound(i, k, least): what the peer finds, if that is below `least`; otherwise `least` or more.
-/// distance(found): the distance in world units, or infinity where the question does not ask for
-/// it.
+/// The distances that a task asks for, sorted; the work is divided over the threads.
+/// numbers: numbers of the objects that have triangles, ascending; the functions take indices into
+/// it. most: the first bound. bound(i, k, least): the peer's result for two objects if it is below
+/// `least`; else any value that is `least` or more. gap(i, k): a cheap lower bound of that result.
+/// distance(found): the result as a distance in world units, or infinity if the question does not
+/// ask for it.
 template <class Scalar, class Gap, class Bound, class Distance>
 std::vector<PeerDistance> distances_of_trees(const std::vector<std::uint32_t>& numbers,
                                              DistanceTask task, Scalar most, unsigned threads,
@@ -337,7 +340,7 @@ std::vector<PeerDistance> distances_of_trees(const std::vector<std::uint32_t>& n
       for (std::size_t k = 0; k < count; ++k) {
         if (k != i) others.emplace_back(gap(i, k), k);
       }
-      std::sort(others.begin(), others.end());  // the nearest boxes first
+      std::sort(others.begin(), others.end());  // by gap, so that near objects come first
       Scalar least = most;
       std::size_t nearest = i;
       for (const auto& [apart, k] : others) {

@@ -1,5 +1,5 @@
 // Turns questions into lines and lines into answers (contestant.h has the protocol), and starts a
-// new process where one ended. And the list of contestants that the study knows.
+// new process after one ended. Also lists the contestants that the study knows.
 #include "experiments/peers/runner.h"
 
 #include <fmt/format.h>
@@ -53,7 +53,7 @@ std::string question(std::size_t number, const SuitePair& pair) {
   return out + "\n";
 }
 
-/// The field up to the next tabulator, which is removed with it.
+/// Removes the field up to the next tabulator, and the tabulator; returns the field.
 std::string_view take_field(std::string_view& line) {
   const std::size_t at = std::min(line.find('\t'), line.size());
   const std::string_view out = line.substr(0, at);
@@ -61,7 +61,7 @@ std::string_view take_field(std::string_view& line) {
   return out;
 }
 
-/// The answer that stands after the number; empty: no answer.
+/// Reads the answer that comes after the number; empty if there is none.
 std::optional<ContestAnswer> read_answer(std::string_view line) {
   const std::string_view word = take_field(line);
   if (word == "refused") return ContestAnswer{ContestOutcome::refused, 0, std::string(line)};
@@ -84,10 +84,10 @@ class PairAsker {
       const std::size_t first = next;
       const ChildEnd end = ask_from(next, order, answers);
       if (next == order.size()) break;
-      // A process that answered others may have used its limit up with them: this question is asked
-      // again, as the first of a new one.
+      // A process that answered other questions may have used its limit up with them. So this
+      // question is asked again, as the first of a new process.
       if (end.used_up && next > first) continue;
-      // Later questions may have been in its pipe; a new process gets them.
+      // The process may not have read all questions in its pipe; a new process gets the later ones.
       answers[next++] = {outcome_of(end.how), 0, end.reason};
       ++deaths;
     }
@@ -97,7 +97,7 @@ class PairAsker {
   std::size_t processes = 0;
 
  private:
-  /// One process. `next`: the first position that is not answered, before and after.
+  /// Asks one process. `next` is the first position that is not answered, before and after.
   ChildEnd ask_from(std::size_t& next, const std::vector<std::size_t>& order,
                     std::vector<ContestAnswer>& answers) const {
     std::size_t sent = next;
@@ -129,7 +129,7 @@ class PairAsker {
   const ContestLimits& limits_;
 };
 
-/// A pair of the scene by object and triangle; empty where there is no such.
+/// Reads a pair, given by objects and triangles; empty if the scene has no such pair.
 std::optional<TrianglePair> read_found(std::string_view line, const Scene& scene) {
   std::array<std::uint32_t, 2> out;
   for (std::uint32_t& t : out) {
@@ -169,7 +169,8 @@ MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const st
     if (ns) out.ns = *ns;
     return done;
   };
-  // The whole answer of a scene may come at its end, so it has the time of a start.
+  // The whole answer about a scene may come at the end, so the first line may take the time of a
+  // line.
   ChildLimits child = child_limits(invited, limits);
   child.start_s = std::max(child.start_s, child.line_s);
   const ChildEnd end = run_child(
@@ -230,7 +231,7 @@ std::string folder() {
   return (self.parent_path() / "contestants").string();
 }
 
-/// The cards of a program, read once; or why there are none.
+/// The contestants of a program, asked for once; or why there are none.
 struct Cards {
   std::vector<Invited> invited;
   std::string missing;

@@ -1,5 +1,5 @@
-// Counts misses and wrong answers by kind and parameter. To minimize a fault it tries simpler
-// pairs, all of one round in one process, and goes on from the simplest that keeps the fault.
+// Counts misses and wrong answers by kind and parameter. To minimize a fault, tries simpler pairs,
+// all of one round in one process, and goes on with the simplest pair that has the same fault.
 #include "experiments/peers/score.h"
 
 #include <fmt/format.h>
@@ -58,7 +58,8 @@ void count_pair(const ContestantCard& card, const SuitePair& pair, const Contest
   score.own_wrong += own == false && meets;
 }
 
-/// Whether the documentation speaks of such a pair of a mesh that collides or was reported.
+/// Whether the documentation promises an answer about such a pair of a mesh (a pair that collides
+/// or was reported).
 bool speaks_of(const ContestantCard& card, const Scene& scene, const TrianglePair& pair,
                bool collides) {
   const std::array<Vec3, 3> a = scene.corners(pair.a), b = scene.corners(pair.b);
@@ -189,7 +190,7 @@ namespace {
 
 using Change = std::function<double(double)>;
 
-/// Coordinate i of 18, of the first triangle and then of the second.
+/// Coordinate i of 18: those of the first triangle, then those of the second.
 double& coordinate(SuitePair& pair, std::size_t i) {
   return (i < 9 ? pair.a : pair.b)[i / 3 % 3][static_cast<Eigen::Index>(i % 3)];
 }
@@ -201,13 +202,13 @@ void change_all(SuitePair& pair, const Change& change) {
   for (std::size_t i = 0; i < 18; ++i) coordinate(pair, i) = change(coordinate(pair, i));
 }
 
-/// Rounded to so many bits.
+/// The value rounded to so many bits.
 double to_bits(double value, int bits) {
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
   return std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
 }
-/// Rounded to so many significant decimal digits.
+/// The value rounded to so many significant decimal digits.
 double to_digits(double value, int digits) {
   if (value == 0) return 0;
   char text[40];
@@ -215,7 +216,7 @@ double to_digits(double value, int digits) {
   return std::strtod(text, nullptr);
 }
 
-/// A shared corner is one vertex: the second takes what the first has.
+/// Sets shared corners of the second triangle to those of the first, since they are one vertex.
 void keep_shared(SuitePair& pair) {
   for (const SharedCorner& corner : pair.shared) pair.b[corner.b] = pair.a[corner.a];
 }
@@ -237,7 +238,7 @@ std::vector<SuitePair> simpler(const SuitePair& from) {
     all([bits](double x) { return to_bits(x, bits); });
   for (int digits = 1; digits <= 16; ++digits)
     all([digits](double x) { return to_digits(x, digits); });
-  // As integers, at the scale of the largest coordinate.
+  // Tries integers, at the scale of the largest coordinate.
   double most = 0;
   for (std::size_t i = 0; i < 18; ++i) most = std::max(most, std::abs(coordinate(from, i)));
   if (most > 0) {
@@ -268,10 +269,10 @@ std::vector<SuitePair> simpler(const SuitePair& from) {
   return out;
 }
 
-/// Whether a simpler pair is of the same sort: it meets or not as before, and what the
-/// documentation promises of it is the same.
+/// Whether a simpler pair is of the same sort: it meets iff `before` meets, and the documentation
+/// promises the same of it. Sets its kind.
 bool like(const ContestantCard& card, const SuitePair& before, SuitePair& pair) {
-  // Corners that came together by rounding would be shared by place and not by index.
+  // Corners that became equal by rounding would share a position, but no index.
   if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) return false;
   pair.kind = decide(pair, "a smaller pair");
   return collides(pair.kind) == collides(before.kind) &&
@@ -292,11 +293,11 @@ std::string coordinates_text(const SuitePair& pair) {
 std::optional<SuitePair> minimized(const Invited& invited, const PairFault& fault,
                                    const ContestLimits& limits, int rounds) {
   ContestLimits hasty = limits;
-  if (is_death(fault.outcome)) {  // each costs a process, and a hang its whole limit
+  if (is_death(fault.outcome)) {  // each death costs a process, and a hang its whole time limit
     hasty.start_s = limits.answer_s;
     rounds = std::min(rounds, 3);
   }
-  // Twice, each time alone in a new process.
+  // True if the pair has the fault twice, each time alone in a new process.
   const auto errs_alone = [&](const SuitePair& pair) {
     for (int time = 0; time < 2; ++time) {
       if (ask_pairs(invited, std::span(&pair, 1), hasty, 0).answers[0].outcome != fault.outcome)

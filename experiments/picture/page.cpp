@@ -159,7 +159,7 @@ class PageMaker {
       a.push_back(pair.a);
       b.push_back(pair.b);
     }
-    // One byte per pair: its index in `contacts` of finish().
+    // One byte per pair: the index of its kind in the array `contacts` of finish().
     std::string contacts;
     for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
     entry["pairs"] = pairs.size();
@@ -240,14 +240,14 @@ class PageMaker {
                       [&] { return source_->at(*frame); });
   }
 
-  // The box of all frames, in which coordinates are rounded alike. It reads the frames from a
-  // source of its own.
+  // Sets box_ to the box of all frames, so that all frames round coordinates alike. Reads the
+  // frames from a second FrameSource.
   void measure(const FrameRange& range) {
     FrameSource source(arguments_.picture.scene, range, arguments_.picture.self);
     for (long frame = range.first; frame <= range.last; ++frame) box_.add(box_of(source.at(frame)));
   }
 
-  // Corners and triangles; triangles only if they differ from those of the previous frame.
+  // The vertices; also objects and triangles if they differ from those of the previous frame.
   json geometry(const Scene& scene) {
     json out = {{"vertices", scene.vertices.size()},
                 {"positions", blocks_.add(packed_numbers(quantized(scene.vertices, box_)))}};

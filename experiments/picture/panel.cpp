@@ -22,8 +22,9 @@ namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of 2 sqrt(2) px contains a whole pixel wherever it lies: half a diagonal from its middle
-// to that of the pixel, half a diagonal to its corners. So one pixel has the pure colour.
+// A disc of diameter 2 sqrt(2) px contains a whole pixel wherever it lies: the middle of the disc
+// is at most half a diagonal from the middle of a pixel, and the pixel's corners are another half
+// from there. So one pixel has the pure colour.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.
@@ -194,7 +195,7 @@ ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Se
   options.depth_format = DepthFormat::float32;
   if (takes_boxes(options.method)) options.boxes = BoxLevel::objects;  // the published form
   Plan planned = plan(scene, options);
-  // Only the method's own offset, to the end, without clusters: the picture shows this view.
+  // Runs only the method's own offset, to the end, without clusters: the picture shows its depth.
   auto& work = std::get<DrawPlan>(planned.work);
   work.settings.enough = 0;
   work.settings.clusters = {};
@@ -241,7 +242,7 @@ Image depth_image(const ViewRun& run, int width, int height, double scale, bool 
   const int w = run.window.width, h = run.window.height;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      // Offsets from the middle, which is the middle of the canvas's window.
+      // Counts from the middle of the image, which shows the middle of the canvas's window.
       const int dx = static_cast<int>(std::floor(0.5 * w + (x + 0.5 - 0.5 * width) / scale));
       const int j = static_cast<int>(std::floor(0.5 * h - (y + 0.5 - 0.5 * height) / scale));
       const int i = mirrored ? w - 1 - dx : dx;

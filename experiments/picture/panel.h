@@ -1,5 +1,5 @@
-// Images with text, and panels: a panel of a picture and its contents, the parts of every panel,
-// and the panel of --view-depth, the depth that a method stores in one of its views.
+// Images with text, and the panels of a picture: the parts that every panel has, and the panel of
+// --view-depth, which shows the depth that a method stores in one of its views.
 #pragma once
 
 #include <array>
@@ -25,14 +25,14 @@ struct PictureArguments {
   bool self = false;               // every object is tested against itself as well
   std::optional<long> frame;       // of a scene that moves; empty: the scene without frames
   std::optional<FrameRange>
-      frames;  // of the motion; default 30 frames, or the one of numbered meshes
+      frames;  // of the motion; default 30 frames, or only `frame` for numbered meshes
   std::vector<RunOptions> panels;  // one panel each, side by side; verify and device are ignored
   std::string view;                // direction that the eye looks along, as parse_view(); "":
                                    // obliquely down on the side that +z points to
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
   bool zoom = false;               // only the colliding triangles
-  std::optional<std::string> depth_view;  // instead: the depth stored in this view of the method,
-                                          // and what the view culls, over it
+  std::optional<std::string> depth_view;  // shows instead the depth stored in this view, and over
+                                          // it the triangles that the view culls
   int width = 900, height = 760;          // px of a panel's picture, 64 to kMostPicture
 };
 
@@ -105,7 +105,7 @@ void lay_over(Image& below, const Image& above, double opacity);
 /// A circle around (x, y), px from the left and the top, with a light line on both sides of it.
 void draw_ring(Image& image, double x, double y, double radius, double line, const Rgba& colour);
 
-/// Height of the letters for a panel of this width, px: legible at half of it.
+/// Height of the letters for a panel of this width, px. They stay legible at half the size.
 double letter_height(int panel_width);
 
 /// The sheet: title and subtitle, the panels (at least one), a line of small print. Truncates texts
@@ -135,7 +135,7 @@ struct ThreeJs {
 };
 ThreeJs three_js();
 
-/// The colour of missed pairs, opaque and unshaded; nothing else has it.
+/// The colour of missed pairs, opaque and unshaded; nothing else has this colour.
 constexpr Rgba kMissedColour = {220, 0, 90};
 /// Colours of colliding triangles, and of triangles that a method kept in vain.
 constexpr Rgba kFoundColour = {0, 128, 116}, kIdleColour = {240, 176, 32};

@@ -1,6 +1,6 @@
-// Figures of one pixel and one triangle: its ball, its proxy, its solid, its depth interval. SVG
-// elements are appended to a text. Coordinates have two decimals, so that a drawing is the same
-// text on every machine.
+// Draws the figures of the paper: a triangle at a pixel, its proxy, solid and depth interval, and
+// the two passes. Appends SVG elements to a text. Coordinates have two decimals, so that a drawing
+// is the same text on every machine.
 #include "experiments/picture/paper.h"
 
 #include <fmt/format.h>
@@ -193,7 +193,7 @@ struct Followed {
     return out;
   }
 };
-// The lines at x = i / per_px + shift with -5 <= x <= 4.
+// Follows the lines at x = i / per_px + shift with -5 <= x <= 4.
 Followed follow(const SolidProgram& by, const Solid& solid, int per_px, float shift) {
   Followed out;
   for (int i = -5 * per_px; i <= 4 * per_px; ++i) {
@@ -252,7 +252,7 @@ PaperFigure coverage_figure() {
   d.pixels();
   const std::vector<DrawnPoint> exact = on.proxy_of(kReaching);
   std::vector<DrawnPoint> moved = exact;
-  // Inward along the diagonals, the worst direction for the area near the corners.
+  // Moves each corner inward along its diagonal: the worst direction for the area near the corners.
   for (std::size_t i = 0; i < 4; ++i) {
     const DrawnPoint &p = exact[i], &over = exact[(i + 2) % 4];
     const double length = std::hypot(over[0] - p[0], over[1] - p[1]);
@@ -427,7 +427,7 @@ void draw_bits(Drawing& d, double top, const std::string& heading,
   }
 }
 
-// What the published path draws for two triangles, in pixel space: the origin is a corner shared by
+// Two triangles as the published path draws them, in pixel space: the origin is a corner shared by
 // four pixels.
 constexpr double kGrid = 256;  // of a device with 8 subpixel bits
 struct Pair {
@@ -446,7 +446,7 @@ struct Pair {
       out.push_back({{at(t[0]), at(t[1])}, {at(t[4]), at(t[5])}, {at(t[8]), at(t[9])}});
     return out;
   }
-  // The largest depth of a pixel centre c inside the drawing of `which`.
+  // How deep the pixel centre c lies inside the triangle of `which` that it is deepest in, in px.
   double inside(int which, const DrawnPoint& c) const {
     double out = -HUGE_VAL;
     for (const auto& t : surface(which, radius, true)) {
@@ -480,7 +480,7 @@ Pair pair_of(const std::string& path) {
 
 constexpr std::array<const char*, 2> kPairColours = {"#07a", "#b30"};
 constexpr std::array<const char*, 2> kPairNames = {"rising", "falling"};
-// Words over lines.
+// The style of words that stand over lines.
 constexpr const char* kHalo =
     R"(fill="{}" font-size="13" stroke="#fff" stroke-width="4" paint-order="stroke")";
 

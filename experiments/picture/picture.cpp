@@ -30,7 +30,7 @@ namespace {
 constexpr long kUsualFrames = 30;
 constexpr const char* kUsualView = "-0.45:-0.35:-0.82";
 
-// Runs `parse`; errors name an option of this command instead.
+// Runs `parse`; its errors then name `option`, an option of this command.
 template <class Parse>
 void as_option(const std::string& option, Parse parse) {
   try {
@@ -206,7 +206,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
   result.missed_triangles = answer.lost.size();
   result.kept = kept.size();
   result.idle = answer.idle.size();
-  // As in run: regardless of the probes of the device.
+  // As in `farcull run`, this does not depend on the probes of the device.
   result.broken = promises(record.options) && !answer.missed.empty();
   result.device = device_of(record);
   result.headline = headline_of(result, "missed");

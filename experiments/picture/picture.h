@@ -62,12 +62,12 @@ std::string packed_numbers(std::span<const std::uint32_t> numbers);
 /// Base64 of gzip of the bytes.
 std::string packed_bytes(std::string_view bytes);
 
-/// `count` bits, of which those at the numbers are 1; eight in a byte, the lowest first.
+/// `count` bits: those at the positions `numbers` are 1. Eight in a byte, the lowest first.
 /// Precondition: every number is below `count`.
 std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
 
 /// The coordinates as steps of 1/65535 of the box: all x, then all y, then all z. Points outside
-/// the box are moved to its border. 0 in a direction in which the box has no extent.
+/// the box are moved to its border. A coordinate is 0 if the box has no extent along its axis.
 std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
 
 /// Limits of a page: triangles in a frame, triangles in all frames, colliding pairs in a frame, and

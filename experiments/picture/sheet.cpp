@@ -59,7 +59,7 @@ ThreeJs three_js() {
 
 namespace {
 
-constexpr double kUnits = 64;  // of FreeType's coordinates per px
+constexpr double kUnits = 64;  // units of FreeType's coordinates per px
 constexpr const char* kEllipsis = "\xe2\x80\xa6";
 
 void require(FT_Error error, const char* what) {
@@ -104,7 +104,7 @@ class Font {
                                static_cast<FT_Long>(file.size()), 0, &face),
             "cannot read the font");
     face_.reset(face);
-    // FreeType's size is that of the em square; the H gives a capital's part of it.
+    // FreeType's size is the height of the em square; the letter H gives the part of a capital.
     require(FT_Load_Char(face, 'H', FT_LOAD_NO_SCALE), "has no letter H");
     const double part = static_cast<double>(face->glyph->metrics.height) / face->units_per_EM;
     require(FT_Set_Char_Size(face, 0, std::lround(capital / part * kUnits), 72, 72),
@@ -126,7 +126,7 @@ class Font {
         left += static_cast<double>(kern.x) / kUnits;
       require(FT_Load_Glyph(face_.get(), glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP),
               "cannot load a letter");
-      // Read before rendering, which rounds the other advance to whole pixels.
+      // Reads the advance before rendering, which rounds the glyph's other one to whole pixels.
       const double advance = static_cast<double>(face_->glyph->linearHoriAdvance) / 65536;
       at(face_->glyph, left);
       left += advance;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kStopEvery = std::size_t{1} << 20;     // rows between checks for a stop
 constexpr std::size_t kBlock = 256;                          // rows that are converted together
-constexpr std::size_t kRowsOfThread = std::size_t{1} << 15;  // at least
+constexpr std::size_t kRowsOfThread = std::size_t{1} << 15;  // least rows of a thread
 static_assert(kStopEvery % kBlock == 0);
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason,

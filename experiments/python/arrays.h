@@ -33,7 +33,7 @@ namespace py = pybind11;
 /// exceptions are thrown here. Precondition: the lock is held.
 void beside(const std::function<void()>& work);
 
-/// The same; returns the value of the work.
+/// Runs `work` as beside() does, and returns its value.
 template <class Work>
 auto answer_beside(const Work& work) {
   std::optional<decltype(work())> out;

@@ -165,9 +165,9 @@ void add_distances(py::module_& module) { module.def("distances", &distances_of)
 
 namespace {
 
-// A stream for one thread at a time, and for one process, as a collider. Python must take the part
-// of each call. If a signal or a lack of memory prevents that, there is no next part, since nobody
-// would notice the gap.
+// A stream for one thread at a time and for one process, like KeptCollider. After each next()
+// Python must call take(). If a signal or a lack of memory prevents that, the following next()
+// throws, since nobody would notice the gap.
 class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
@@ -180,7 +180,7 @@ class KeptStream {
     });
   }
 
-  // The pairs that follow, perhaps none; None after the last.
+  // The next part of the pairs, perhaps empty; None after the last part.
   py::object next() {
     require_process(process_, "Stream");
     const Turn turn(used_, "Stream");
@@ -214,7 +214,7 @@ class KeptStream {
 
   void take() { given_ = false; }
 
-  // As of the last call, so that they can be read while another thread calls.
+  // The values after the last next(), so that they can be read while another thread calls it.
   std::uint64_t decided() const { return decided_; }
   bool complete() const { return complete_; }
 

@@ -98,7 +98,7 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   return out;
 }
 
-// The objects that two patterns of names select, as in the program. what: for errors.
+// The pairs of objects that two patterns of names select, as in the program. Errors call it `what`.
 std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
                                                       const std::string& first,
                                                       const std::string& second,

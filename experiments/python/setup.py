@@ -45,7 +45,7 @@ class Build(build_py):
 
 
 class Compiled(Distribution):
-    """So that the wheel is one of this Python and machine."""
+    """Marks the wheel as one for this Python and this kind of machine."""
 
     def has_ext_modules(self):
         return True

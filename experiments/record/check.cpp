@@ -1,5 +1,5 @@
-// Checks a certificate, a list of pairs, or both against a scene, and turns what the checkers of
-// verify/certificate found, of pairs and of distances, into text and JSON.
+// Checks a certificate, a list of pairs, or both against a scene. Turns the findings of the
+// checkers of verify/certificate, about pairs and about distances, into text and JSON.
 #include "experiments/record/check.h"
 
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ std::string differences_text(const ListDifferences& differ) {
                           : "a pair is missing";
 }
 
-// The evidence for a list is made here. The checker trusts it no more than any other.
+// Checks a list without a certificate: makes the evidence, which the checker does not trust either.
 CheckResult check_list(const Scene& scene, const std::string& name,
                        std::span<const ListedPair> rows, double clearance) {
   const Stopwatch start;
@@ -96,7 +96,7 @@ CheckResult check_list(const Scene& scene, const std::string& name,
   return result;
 }
 
-// Takes the list into account: the verdict is about both.
+// Compares the list with the pairs that meet, and makes the verdict one about certificate and list.
 void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
                   SceneCheck& check) {
   CheckResult& result = check.result;
@@ -122,7 +122,7 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
 
 using Pairs = DistanceCertificate::Pairs;
 
-// A fraction may have thousands of digits.
+// Shortens a fraction for printing, since it may have thousands of digits.
 std::string shortened(const std::string& fraction) {
   constexpr std::size_t kMost = 120;
   if (fraction.size() <= kMost) return fraction;
@@ -140,7 +140,7 @@ std::string pair_text(const Scene& scene, const TrianglePair& pair) {
   return place_text(scene, pair.a) + " and " + place_text(scene, pair.b);
 }
 
-// A proof is about the scene, not about the run.
+// The text names the scene and not the run, since a proof is about the scene.
 std::string proved_text(const Scene& scene, const SceneCheck& check) {
   const std::size_t pairs = check.result.meeting.size();
   const std::string near =

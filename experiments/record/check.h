@@ -1,4 +1,4 @@
-// `farcull check`: what it does with one scene, and the outcome as text for people and as JSON.
+// `farcull check`: checks one scene, and gives the outcome as text for people and as JSON.
 #pragma once
 
 #include <array>
@@ -17,42 +17,43 @@ namespace farcull {
 
 /// A check of one scene: of a certificate, of a list of pairs, or of both.
 struct SceneCheck {
-  std::string certificate;  // a file; empty where a list was checked without one
-  std::string list;         // a file; empty where none was given
+  std::string certificate;  // a file; empty if a list was checked without a certificate
+  std::string list;         // a file; empty if no list was given
   double clearance = 0;
-  std::string claimed_sha256;  // of the certificate, and what it claims
+  std::string claimed_sha256;  // the hash of the list that the certificate names
   Certificate::Claims claimed;
-  CheckResult result;                          // with the list taken into account
-  std::optional<ListDifferences> differences;  // where a list was given and the pairs were decided
-  std::vector<std::string> not_looked_at;      // columns of the list
+  CheckResult result;                          // if there is a list, its verdict is also about it
+  std::optional<ListDifferences> differences;  // set if a list was given and pairs were decided
+  std::vector<std::string> not_looked_at;      // columns of the list that were not read
 };
 
 /// "bunny triangle 3 and floor triangle 0".
 std::string pair_text(const Scene& scene, const TrianglePair& pair);
-/// null without a pair.
+/// The pair as JSON; null if there is none.
 nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair);
 
-/// "these 12 pairs of the scene meet, and no others": what is proved where everything is.
+/// The statement that the check has proved if its verdict is `proved`: "these 12 pairs of the scene
+/// meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
 /// The verdict with its reason, and the pair that it is about: one line or two.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 /// The verdict and everything else.
 std::string check_text(const Scene& scene, const SceneCheck& check);
-/// Lines about what no check attests and about the arithmetic; empty where there are none.
+/// Lines about claims that no check can prove, and about the arithmetic; empty if there are none.
 std::string unattested_text(const SceneCheck& check);
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check);
 
-/// The verdicts of several frames, and the one in all: refuted if one is, else not proved if one
-/// is.
+/// The verdicts of several frames, and the verdict about all of them: refuted if one frame is
+/// refuted, else not proved if one frame is not proved.
 class FrameVerdicts {
  public:
-  /// listed: how many pairs it is about.
+  /// listed: how many pairs the verdict is about.
   void add(long frame, Verdict verdict, std::uint64_t listed);
   Verdict in_all() const;
   /// wanted: how many frames were asked for.
   nlohmann::ordered_json json(long wanted) const;
-  /// proved: what is proved of each frame where all are.
+  /// proved: the statement that is proved of each frame if all frames are proved.
   std::string text(const std::string& proved) const;
 
  private:
@@ -64,26 +65,26 @@ class FrameVerdicts {
   std::uint64_t listed_ = 0;
 };
 
-/// Checks what is given: a certificate, a list of pairs, or both. clearance: that is asked about;
-/// file: the name of the certificate, as it is printed, "" for none; rows: of the list, those that
-/// are about this scene. With a list the verdict is about both: a list alone is proved or refuted.
-/// Throws Error if the list names objects or triangles that the scene does not have.
-/// Precondition: certificate or list is there.
+/// Checks a certificate, a list of pairs, or both. clearance: the one that is asked about; file:
+/// the printed name of the certificate, "" for none; rows: the rows of the list that are about this
+/// scene. If both are given, the verdict is about both. A list alone is proved or refuted. Throws
+/// Error if the list names objects or triangles that the scene does not have. Precondition: a
+/// certificate or a list is given.
 SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows);
 
-/// A certificate of distances with what its check found.
+/// A certificate of distances with the result of its check.
 struct CheckedDistances {
   std::string file;
   DistanceCertificate certificate;
   DistanceCheck result;
 };
 
-/// "these 3 pairs of objects are at exactly these distances, ...": what is proved where everything
-/// is.
+/// The statement that the check has proved if its verdict is `proved`: "these 3 pairs of objects
+/// are at exactly these distances, ...".
 std::string proved_text(const CheckedDistances& check);
-/// The verdict with its reason, and the pair that it is about.
+/// The verdict with its reason, and the pair that the verdict is about.
 std::string verdict_text(const Scene& scene, const CheckedDistances& check);
 /// The verdict and everything else.
 std::string check_text(const Scene& scene, const CheckedDistances& check);

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
 
-/// Triangles as numbers within their objects, from 0.
+/// The numbers of the triangles within their objects, from 0.
 std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
   return {d.triangles.a - scene.objects[d.objects.a].first_triangle,
           d.triangles.b - scene.objects[d.objects.b].first_triangle};
@@ -73,14 +73,14 @@ std::string place_text(const Scene& scene, const Distance& d, int side) {
 
 std::string inside_cell(const Distance& d) {
   constexpr std::array kTexts = {"-", "no", "a in b", "b in a",
-                                 "not closed"};  // unknown: they meet
+                                 "not closed"};  // unknown: the objects meet
   return kTexts.at(static_cast<std::size_t>(d.inside));
 }
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
-/// The least distance of all answers, and its objects; empty for a single answer, which the table
-/// shows.
+/// A line with the least distance of all answers, and its objects; empty if there is only one
+/// answer, since the table shows it.
 std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
   if (distances.size() < 2) return "";
   const auto least = std::min_element(
@@ -251,7 +251,8 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
   return out + accounting_lines(scene, record);
 }
 
-// The code of certificates is independent of the rest, so its enumeration has to be of equal order.
+// The code of certificates shares nothing with other code, so its enumeration has to be in the same
+// order.
 static_assert(static_cast<int>(DistancePairs::objects) ==
                   static_cast<int>(DistanceCertificate::Pairs::objects) &&
               static_cast<int>(DistancePairs::nearest) ==

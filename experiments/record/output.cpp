@@ -1,5 +1,5 @@
-// Turns a record into JSON, its colliding pairs into CSV, what a certificate claims of its run into
-// the certificate, and a plan into a table and JSON.
+// Turns a record into JSON, its colliding pairs into CSV, its claims into a certificate, and a plan
+// into a table and JSON.
 #include "experiments/record/output.h"
 
 #include <fmt/format.h>
@@ -125,7 +125,7 @@ Json ignored_json(const Record& record) {
   return {{"object_pairs", record.options.ignored.size()}, {"candidates", record.found.ignored}};
 }
 
-// Six cells: the ends of a segment, or a point twice.
+// Appends six cells: the ends of a segment, or a point twice.
 void append_ends(const ContactShape& shape, std::string& out) {
   for (const Vec3& end : shape.ends) {
     for (const double x : end) {
@@ -136,7 +136,7 @@ void append_ends(const ContactShape& shape, std::string& out) {
   }
 }
 
-// As docs/reliability.md names them.
+// The assumptions about the device, with their names in docs/reliability.md.
 std::vector<std::string> assumptions_about(const GlInfo& device) {
   std::vector<std::string> lines = {
       "A1: vertex arithmetic through the viewport transform errs by no more than its term of the "
@@ -346,7 +346,7 @@ Certificate certificate_of(const Scene& scene, const Record& record) {
   return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance);
 }
 
-// A plan is printed stage by stage, with the words that the record of the run uses as well.
+// Prints a plan stage by stage, in the words of the record of a run.
 
 std::string decision_of(const Stage& stage) {
   return stage.depends ? "depends" : stage.ran ? "runs" : "left out";

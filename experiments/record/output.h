@@ -1,4 +1,5 @@
-// A record for other programs, as JSON, CSV and certificate, and a plan for all.
+// Writes a record for other programs, as JSON, CSV and certificate, and a plan for people and
+// programs.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,8 +23,8 @@ namespace farcull {
 
 // ---- JSON and CSV of a struct that has fields (core/base/fields.h) ----
 
-/// A value of a record: an object of its fields, the word of an enumeration, null where there is
-/// nothing, else the value itself. A number that is not finite is written as null.
+/// A value of a record as JSON: an object of its fields, the word of an enumeration, null for an
+/// empty optional, else the value itself. A number that is not finite is written as null.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -46,7 +47,8 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   return out;
 }
 
-/// The fields of a struct, with commas between; numbers in full, nothing for an empty value.
+/// The fields of a struct, with commas between; numbers with all digits, an empty cell for an empty
+/// value.
 template <HasFields Value>
 std::string csv_of(const Value& row) {
   std::string out;
@@ -61,7 +63,7 @@ std::string csv_of(const Value& row) {
   return out;
 }
 
-/// An object of these members of a struct, by their names and in this order.
+/// A JSON object with these members of a struct, by their names and in this order.
 #define FARCULL_JSON(value, ...)                                                \
   [&] {                                                                         \
     nlohmann::ordered_json out;                                                 \
@@ -71,7 +73,7 @@ std::string csv_of(const Value& row) {
   }()
 #define FARCULL_JSON_MEMBER(name) out[#name] = ::farcull::json_of(of.name);
 
-/// A list of one(value) for each value.
+/// A JSON list with one(value) for each value.
 template <class Values, class One>
 nlohmann::ordered_json json_list(const Values& values, const One& one) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
@@ -92,10 +94,11 @@ inline nlohmann::ordered_json text_json(const std::string& text) {
 
 // ---- records ----
 
-/// Keys keep their order, so that the same run gives the same text.
+/// The record as JSON. Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
-/// Names and versions of a GL device; the threads of a software device, null for others.
+/// gl_json: names and versions of a GL device. threads_json: the threads of a software device, null
+/// for others.
 nlohmann::ordered_json gl_json(const GlInfo& gl);
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
@@ -110,52 +113,53 @@ nlohmann::ordered_json not_asked_json(const Scene& scene);
 nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
                                   const std::string& hash);
 nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
-/// Each triangle as a person finds it again: its object, its place there and the face of the file
-/// it came from.
+/// Each triangle as a person can find it: its object, its number there and the face of the file
+/// that it comes from.
 nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
-/// Columns of pairs_csv() besides those that every list has, and which rows there are.
+/// Columns of pairs_csv() besides those that every list has, and which rows it writes.
 struct PairColumns {
   bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
   bool contacts = false;  // contact: the kind; the record must have the kinds
-  bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of what the triangles have in common, world
+  bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of the common segment or point, in world
                           // units; empty for a polygon or nothing. The record must have them
-  std::vector<ContactKind> kinds = {};   // pairs of these kinds alone; empty: all
-  const ListNumbers* numbers = nullptr;  // where the scene is a part of another one; else null
+  std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
+  const ListNumbers* numbers = nullptr;  // set if the scene is a part of another scene; else null
 };
 
-/// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
-/// among them where an object of the scene is tested against itself. More columns come at the end:
-/// contact, the segment, the faces.
+/// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; with
+/// colliding neighbours if an object of the scene is tested against itself. More columns come at
+/// the end: contact, the segment, the faces.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
-/// The parts of pairs_csv(); `before` comes at the start of each row.
+/// The header and the rows of pairs_csv(); `before` comes at the start of each row.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
 
-/// The claims of the run about every pair of the scene, with their evidence. Times are left out, so
-/// the same run gives the same text.
+/// The certificate of the run: its claims about every pair of the scene, with evidence. Times are
+/// left out, so the same run gives the same text.
 Certificate certificate_of(const Scene& scene, const Record& record);
 
 // `farcull plan`: a plan as a table and as JSON.
 
-/// One line a stage: whether it runs, is left out or depends on pixels, and why.
+/// One line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
-/// docs/record.md, "Plans".
+/// The plan as JSON (docs/record.md, "Plans").
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan);
 
-/// "runs", "left out" or "depends": of a planned stage.
+/// What the plan says about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
 // Distances (docs/proximity.md).
 
-/// Keys keep their order, so that the same answers give the same text. seed: what the scene was
-/// drawn with, where it is random.
+/// The distances as JSON. Keys keep their order, so that the same answers give the same text. seed:
+/// the seed of a random scene.
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// The names of the columns; a row for each pair, with `before` at its start.
+/// The distances as CSV: the names of the columns, and a row for each pair with `before` at its
+/// start.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
@@ -163,13 +167,13 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
 /// The distances (only the first of many), the stages and the accounting.
 std::string distances_table(const Scene& scene, const DistanceRecord& record);
 
-/// The verdict of an accounting, in one line without its end.
+/// The verdict of an accounting, in one line without a newline.
 std::string verdict_text(const DistanceAccounting& accounting);
-/// The pairs, and the classes that they are in.
+/// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
 
-/// The answers of the record in the form that a stranger can check, without times and without which
-/// object is inside another.
+/// The certificate of the answers of the record, which a stranger can check. It has no times, and
+/// does not say which object is inside another.
 DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record);
 
 }  // namespace farcull

@@ -32,7 +32,8 @@ TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
   const auto after = std::upper_bound(
       scene.objects.begin(), scene.objects.end(), triangle,
       [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // Objects without triangles start where the next one does, so the last one there is the owner.
+  // An object without triangles starts where the next object does, so the last one there is the
+  // owner.
   const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
   return {owner, triangle - scene.objects[owner].first_triangle};
 }
@@ -72,7 +73,7 @@ std::string device_text(const Record& record) {
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
 
-// Empty unless the promise of the method rests on a device.
+// A line about the device's verdict; empty unless the promise of the method rests on a device.
 std::string promise_line(const Record& record) {
   if (!record.promise.verdict) return "";
   return fmt::format("promise    {}{}\n",
@@ -111,7 +112,7 @@ std::string views_text(const std::vector<PairView>& views) {
   return text + " px";
 }
 
-// The radius of the view with the largest budget, and what the budget is made of.
+// The radius of the view with the largest budget, and the terms of the budget.
 std::string radius_line(const Record& record) {
   const ViewReport* view = widest_budget(record.found.views());
   if (!fattens(record.options.method) || view == nullptr) return "";
@@ -130,24 +131,25 @@ std::string radius_line(const Record& record) {
   return line + "\n";
 }
 
-// A row of the stage table: one stage, or those of one view in the first round, or all of the
-// rounds after it, where little happens.
+// A row of the stage table: one stage, the stages of one view in the first round, or the stages of
+// all later rounds, in which little happens.
 struct Row {
-  std::string key;  // what stages are folded by; empty: nothing joins this row
+  std::string key;  // stages with the same key are folded into the row; empty: none is
   std::string name;
   std::string note;
-  std::vector<std::string> views;  // of later rounds; for a row of left-out stages, their names
-  Stage sum;                       // ms of all, in of the first, out of the last
+  std::vector<std::string> views;  // views of later rounds; or the names of left-out stages
+  Stage sum;                       // ms is the sum, `in` that of the first, `out` of the last
 };
 
-// The row that a stage is folded into: that of its view, or of all later rounds; empty: its own.
+// The key of the row that a stage is folded into: its view, or "later rounds"; empty: its own row.
 std::string key_of(const Stage& stage) {
   if (stage.round == 0) return "";
   if (stage.round == 1 && stage.kind == StageKind::agreement) return "";
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
-// A row for a stage that was left out; those that follow for the same reason join it.
+// Adds a row for a stage that was left out, or adds the stage to the row before if the reason is
+// the same.
 void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
   if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
@@ -260,7 +262,7 @@ std::string missed_text(const Record& record) {
   return record.verification ? grouped(record.verification->false_negatives) : "not verified";
 }
 
-// The kinds that there are, as in "12 crossing + 3 touch-vertex"; empty where nobody asked.
+// The kinds of contact that occur, as in "12 crossing + 3 touch-vertex"; empty if not asked for.
 std::string contacts_line(const Record& record) {
   if (record.options.contacts == ContactDetail::none) return "";
   std::string text;

@@ -9,10 +9,10 @@
 
 namespace farcull {
 
-/// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
+/// The view with the largest budget, which a reader should quote. Null if no view was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
-/// A triangle as a person finds it again: its object, and its number there.
+/// A triangle as a person can find it: its object, and its number there.
 struct TrianglePlace {
   std::uint32_t object = 0, triangle = 0;
 };
@@ -22,48 +22,49 @@ std::string place_text(const Scene& scene, std::uint32_t triangle);
 
 /// Why a scene has no pair of triangles to test.
 struct NothingToTest {
-  std::string reason;      // such as "the scene is one object, and ..."; empty: it has one
-  bool with_self = false;  // with --self it would have
+  std::string reason;      // such as "the scene is one object, and ..."; empty: it has a pair
+  bool with_self = false;  // with --self the scene would have a pair
 };
 NothingToTest nothing_to_test(const Scene& scene);
 
-/// The line that says which method is the default and what else there is; empty where the method
-/// was named.
+/// The line that says which method is the default and names the others; empty if the user named a
+/// method.
 std::string default_method_line(const RunOptions& options);
 
-/// "298 pairs"; where `self`, an object is tested against itself, "1,643 pairs = 1,581 + 62 of
+/// "298 pairs", or with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62 of
 /// neighbours".
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);
 
 /// Pairs that the scene leaves out (verify/certificate/certificate.h): "12 pairs of triangles
-/// inside a and b"; empty where it leaves out nothing.
+/// inside a and b"; empty if it leaves out none.
 std::string not_asked_text(const Scene& scene);
-/// The same as a line of its own, with the options that ask it; empty where there is nothing.
+/// A whole line with this text and with `options`, which would ask about these pairs; empty if the
+/// scene leaves out none.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
 
-/// ", 2 polygons folded: face 7 of fin, face 9 of fin": faces of a file that are not simple; empty
-/// where there are none.
+/// ", 2 polygons folded: face 7 of fin, face 9 of fin": polygons of a file that are not simple;
+/// empty if there are none.
 std::string folded_text(const Scene& scene);
 
 /// The lines that say what was run, on what, and what was not asked.
 std::string run_heading(const Scene& scene, const Record& record);
 
-/// A row for each stage: its time, what entered and what was left, and why.
+/// A row for each stage: its time, how many items entered and how many were left, and why.
 std::string stage_table(const std::vector<Stage>& stages);
 
-/// One run. The stages of a view are folded into one row, and so are all rounds after the first.
-/// The accounting is at the end; `verdict`, lines of the caller, comes before it.
+/// The table of one run. The stages of a view are folded into one row, and so are all rounds after
+/// the first. The accounting is at the end; `verdict`, lines of the caller, comes before it.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
-/// The verdict of an accounting, in one line without its end: "verified: no colliding pair was
+/// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was
 /// culled, 26,214,400 pairs accounted for".
 std::string verdict_text(const Accounting& accounting);
 
-/// The pairs, and the classes that they are in: two lines.
+/// The number of pairs, and how many are in each class: two lines.
 std::string accounting_sum(const Accounting& accounting);
 
-/// Several runs of one scene, a line each. `repeat` > 1: times are medians, the spread is in the
-/// JSON.
+/// Several runs of one scene, one line for each. If a run was repeated, its times are medians, and
+/// the spread is in the JSON.
 std::string comparison_table(const Scene& scene, const std::vector<Record>& records);
 
 }  // namespace farcull

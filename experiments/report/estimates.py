@@ -77,7 +77,7 @@ def coverage(n):
 
 
 def ratio_estimate(over, under):
-    """The median of the first over that of the second, both resampled; n: of the smaller sample."""
+    """The median of `over` divided by that of `under`, both resampled; n: the size of the smaller sample."""
     one, other = resampled_medians(over, under)
     return with_interval(median(over) / median(under), min(len(over), len(under)), one / other)
 

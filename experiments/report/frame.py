@@ -329,7 +329,7 @@ def series_of(name, rows, x, y, **look):
 
 
 def times_of(name, rows, x, **look):
-    """The same over the time from triangles to pairs, in ms, with its intervals."""
+    """series_of() over the time from triangles to pairs, in ms, with the intervals of the time."""
     none = Estimate(NONE, NONE, NONE, 0)
     out = series_of(name, rows, x, lambda row: (estimate(row) or none).value, **look)
     for row in rows.itertuples():

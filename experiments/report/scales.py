@@ -12,7 +12,7 @@ DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 @dataclass
 class Scale:
     log: bool = False
-    low: float = 0.0   # low < high; of a logarithmic one 0 < low
+    low: float = 0.0   # low < high; on a logarithmic axis also 0 < low
     high: float = 1.0
     zero: float = 0.0  # where zeros are drawn on a logarithmic axis; 0: nowhere
     linear_to: float = 0.0  # with zeros: the axis is linear from 0 to this value
@@ -91,7 +91,7 @@ def even_ticks(low, high, step):
 
 
 def log_ticks(scale, lowest):
-    if scale.high < 5 * lowest:  # powers mean nothing if there is hardly one
+    if scale.high < 5 * lowest:  # powers of ten are of no use if there is hardly one
         return even_ticks(lowest, scale.high, round_up((scale.high - lowest) / 4))
     first = math.ceil(math.log10(lowest) - 1e-9)
     last = math.floor(math.log10(scale.high) + 1e-9)

@@ -127,8 +127,8 @@ FrameNotes FrameSource::notes() const {
   return {.values = built_in_->notes(), .warning = built_in_->warning()};
 }
 
-// Objects that are not tested against each other, by their names; and writing scenes: a mesh for
-// each object, and a scene file that names them.
+// Finds by their names the objects that are not tested against each other. Writes scenes: a mesh
+// for each object, and a scene file that names the meshes.
 
 namespace {
 
@@ -187,7 +187,7 @@ std::string some_names(const Scene& scene) {
   return out + (scene.objects.size() > kShown ? ", ..." : "");
 }
 
-/// All pairs of different objects of the groups.
+/// All pairs of an object of `first` and a different object of `second`.
 std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
                                  const std::vector<std::uint32_t>& second) {
   std::vector<ObjectPair> out;
@@ -201,7 +201,7 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
 
 constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
 
-/// Appends the pairs that one text names.
+/// Appends the pairs of objects that names.text stands for.
 void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
@@ -303,7 +303,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
 
-// A folder and the files that this call put there, removed again unless keep() is called.
+// Writes files to a folder. The destructor removes what is new unless keep() was called.
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -376,7 +376,7 @@ MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
   return parts.take();
 }
 
-// All objects as groups.
+// An OBJ file with all objects as groups.
 std::string obj_text(const Scene& scene) {
   std::string out;
   const std::vector<std::string> names = file_names(scene);
@@ -432,7 +432,7 @@ WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRang
   return out.keep("scene.json");
 }
 
-// The objects of frames, each with a file for every frame, or one file if it never moves.
+// Writes the objects of frames: one file for every frame, or one in all if the object never moves.
 class FrameFiles {
  public:
   FrameFiles(const std::string& folder, FrameRange range) : out_(folder), range_(range) {}
@@ -459,7 +459,7 @@ class FrameFiles {
   }
 
   WrittenScene finish() {
-    // A scene file of frames has to name a numbered mesh.
+    // A scene file of frames must name at least one numbered mesh.
     const bool none =
         std::none_of(meshes_.begin(), meshes_.end(), [](const Mesh& m) { return m.moves; });
     std::vector<SceneFileObject> list;
@@ -476,9 +476,8 @@ class FrameFiles {
   }
 
  private:
-  // The text of the first frame; dropped once another frame differs.
   struct Mesh {
-    std::string first;
+    std::string first;  // text of the first frame; dropped once another frame differs
     bool moves = false;
   };
 

@@ -41,7 +41,7 @@ class Reading {
   using pointer = const char*;
   using reference = const char&;
 
-  // line: set at each step.
+  // line: increased at each newline.
   Reading(const char* at, long* line) : at_(at), line_(line) {}
   reference operator*() const { return *at_; }
   Reading& operator++() {
@@ -62,11 +62,11 @@ class Reading {
 };
 
 // Reads only the syntax of a text. Finds what json::parse does not report: the place of the first
-// error, keys that occur twice, of which json::parse silently keeps the last, and the lines of the
+// error, keys that occur twice (json::parse silently keeps the last one), and the lines of the
 // pairs of ignored objects.
 class Syntax : public nlohmann::json_sax<json> {
  public:
-  // line: of the character that was read last.
+  // line: the line of the character that was read last.
   explicit Syntax(const long& line) : line_(line) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -114,12 +114,12 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string twice;   // a key that occurs twice in one object
   std::size_t at = 0;  // bytes read when the error was found, the offending one included
   std::string reason;
-  std::vector<long> ignore_lines;  // of the arrays in the array "ignore" of the file's object
+  std::vector<long> ignore_lines;  // line of each array in the array "ignore" of the file's object
 
  private:
   const long& line_;
   std::vector<std::set<std::string>> keys_;
-  int arrays_ = 0;    // that are open
+  int arrays_ = 0;    // number of open arrays
   std::string last_;  // the last key of the file's object
 };
 
@@ -180,7 +180,7 @@ class SceneFile {
     require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
     require(mesh.size() <= kMaxPathBytes, place + ".mesh",
             fmt::format("is a path of {} bytes", mesh.size()), "name a mesh file");
-    // The system would end the path there and open another file.
+    // The system would end the path at a NUL byte and open another file.
     require(mesh.find('\0') == std::string::npos, place + ".mesh", "contains a NUL byte",
             "name a mesh file");
     std::string name = mesh_stem(mesh);
@@ -288,13 +288,13 @@ class SceneFile {
   MeshCache& meshes_;
 };
 
-/// The text as JSON, and the lines of its ignored pairs.
+// The text as JSON, and the lines of its ignored pairs.
 struct Parsed {
   json root;
   std::vector<long> ignore_lines;
 };
 
-// Throws Error if the syntax is wrong.
+// Throws Error if the syntax is wrong or if a key occurs twice in one object.
 Parsed parsed(const std::string& text, const std::string& path) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
@@ -316,7 +316,7 @@ Parsed parsed(const std::string& text, const std::string& path) {
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const Parsed file = parsed(text, path);
   SceneFile reader(path, file.ignore_lines, meshes);
-  const bool later_frame = !meshes.numbered_paths().empty();  // the first one has read them
+  const bool later_frame = !meshes.numbered_paths().empty();  // the first frame has read them
   Scene scene = reader.read(file.root).finish();
   if (file.root.contains("ignore")) {
     scene.ignored = reader.read_ignored(file.root["ignore"], scene,
@@ -330,10 +330,11 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& take) {
   MeshCache meshes;
-  std::size_t bytes = 0;  // of the parts since the cache was emptied; an upper bound of its meshes
+  // Size of the parts since the cache was emptied: an upper bound on the size of its meshes.
+  std::size_t bytes = 0;
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
-  Scene names;  // of the whole scene
+  Scene names;  // the names of all objects of the whole scene
   SceneFile reader(path, file.ignore_lines, meshes);
   reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
@@ -376,7 +377,7 @@ SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& m
 void stream_meshes(const std::vector<std::string>& paths, const TakePart& take) {
   MeshCache meshes;
   scene_of_meshes(paths, meshes, [&](SceneBuilder& builder) {
-    meshes = MeshCache();  // to make room
+    meshes = MeshCache();  // frees the mesh: the builder has a copy
     Scene part = builder.take_part();
     take(part);
   });

@@ -24,11 +24,11 @@ namespace farcull {
 /// and go, and an absent object need not be ignored.
 enum class Lacking { refused, passed_over };
 
-/// The pairs of different objects where one has a name of the first pattern and the other one a
-/// name of the second. A * in a pattern stands for any characters. Errors name `where`, `line` and
-/// the pair as `what`. Throws Error if a pattern is ambiguous; and, unless `lacking` passes it
-/// over, if no object has a name of a pattern, or if both patterns name one and the same object
-/// alone.
+/// The pairs of an object that the pattern `first` matches and a different object that `second`
+/// matches. A * in a pattern stands for any characters. Errors name `where`, `line` and the pair as
+/// `what`. Throws Error if a pattern is the name of an object and matches others, too. Unless
+/// `lacking` is passed_over, also throws Error if a pattern matches no object, or if both match one
+/// and the same object alone.
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
                                       const std::string& what, long line = 0,
@@ -41,17 +41,17 @@ struct IgnoredNames {
   long line = 0;      // of the file, from 1; 0 without one
 };
 
-/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore where one is empty.
+/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore if a pair is empty.
 std::vector<IgnoredNames> parse_ignored(const std::string& list);
 /// The pairs of a text file, one a line. Empty lines, lines that begin with # and a byte order mark
 /// are passed over. Throws Error naming the file if it cannot be read or names no pair.
 std::vector<IgnoredNames> read_ignored(const std::string& path);
 
-/// The pairs of different objects where one is of the first group and the other one of the second,
-/// as in_order() gives them. A name may hold colons: each place where both sides name objects is
-/// tried. Throws Error naming `where` and the line for a text without a colon and if two places
-/// fit; and, unless `lacking` passes it over, for a name that no object has and if the two groups
-/// are one object.
+/// The pairs of an object of the first group and a different one of the second, as in_order() gives
+/// them. A name may hold colons: each colon is tried as the one between the groups. Throws Error
+/// naming `where` and the line if a text has no colon, if both groups have objects at two of its
+/// colons, or if a name is ambiguous as in pairs_between(). Unless `lacking` is passed_over, also
+/// throws Error if no object has a name, or if both groups are one and the same object.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         Lacking lacking = Lacking::refused);
 
@@ -68,22 +68,23 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 ///      "ignore": [["a", "bunny00"], ["link*", "base"]]}
 ///   Only `objects` and `mesh` must be there. `mesh` is relative to the scene file. `scale` is a
 ///   number or an array of 3, none of them 0; negative ones mirror. Angles are in radians about an
-///   axis through the origin. Scale, then rotate, then translate, in double; what is absent is left
-///   out, so that the doubles of the mesh stay as they are. `split` is "none", "groups" (the groups
-///   of an OBJ) or "components" (what is connected through shared vertices). `self` is true or
-///   false (the default): whether the object's own triangles are tested against each other as well;
-///   with a split, each part's own. Triangles of different parts always are. `ignore` are pairs of
-///   objects that are not tested against each other, by the names that the scene gives them; a *
-///   stands for any characters, and then every object of such a name is meant (Scene::ignored).
+///   axis through the origin. A mesh is scaled, then rotated, then translated, in double; absent
+///   steps are skipped, so that the doubles of the mesh stay as they are. `split` is "none",
+///   "groups" (the groups of an OBJ) or "components" (triangles connected through shared vertices).
+///   `self` is true or false (the default): whether the object is tested against itself as well;
+///   with a split, each part is. Different parts are always tested against each other. `ignore`
+///   lists pairs of objects that are not tested against each other, by their names in the scene; a
+///   * stands for any characters, and the pattern for every object that it matches
+///   (Scene::ignored).
 /// A mesh that is named several times is read once. Names are completed as SceneBuilder says.
-/// Throws Error for what cannot be read or is not of this form, naming the file and, in a scene
-/// file, the line (syntax, and names of ignored objects) or the place as in
+/// Throws Error if an argument cannot be read or is not of this form. The Error names the file and,
+/// in a scene file, the line (syntax, and names of ignored objects) or the place as in
 /// objects[1].rotate.axis (contents).
 Scene load_scene(const std::vector<std::string>& arguments);
-/// The same; meshes come from `meshes` and stay there.
+/// load_scene() that takes meshes from the cache `meshes`, where they stay.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 
-/// Whether load_scene() takes the name for that of a scene file.
+/// Whether load_scene() treats the name as that of a scene file.
 bool is_scene_file(const std::string& name);
 /// The paths of the meshes that a scene file names, each as often as it is named. Returns what
 /// could be read if the file cannot be read or is not of the form above.
@@ -128,8 +129,8 @@ std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
 // same memory, which tells a backend what it has to send again. If the topology changes, nothing of
 // the previous frame is reused.
 
-/// Frames first to last, both included; 0 <= first <= last. Of a built-in motion that is a path
-/// they are the end of last + 1 frames, so that 30:59 is the second half of 60 frames.
+/// Frames first to last, both included; 0 <= first <= last. A built-in motion that is a path has
+/// last + 1 frames, of which these are the end: 30:59 is the second half of 60 frames.
 struct FrameRange {
   long first = 0;
   long last = 0;
@@ -147,7 +148,7 @@ class FrameSource {
   /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
   /// frame.
   FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
-  /// A given scene without arguments. The range must be that of its frames.
+  /// A scene that moves, in place of arguments.
   explicit FrameSource(MovingScene moving);
 
   /// The scene at a frame of the range. Returns the same object each time, and the same memory of
@@ -155,8 +156,8 @@ class FrameSource {
   /// cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
-  /// The error that at() will throw for the first frame of the range with a missing file, as of
-  /// now.
+  /// The Error that at() would throw for the first frame of the range that lacks a file now; empty
+  /// if no file is missing.
   std::optional<Error> missing() const;
 
   /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
@@ -166,7 +167,7 @@ class FrameSource {
   FrameNotes notes() const;
 
  private:
-  // The error of at() if a mesh file of the frame is missing now.
+  // The Error that at(frame) would throw if a mesh file of the frame is missing now.
   std::optional<Error> missing_at(long frame) const;
 
   std::vector<std::string> arguments_;
@@ -174,7 +175,7 @@ class FrameSource {
   bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
-  Scene scene_;  // of meshes, as it is now
+  Scene scene_;  // of meshes, at the current frame
   // The topology in the previous call.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;

@@ -107,7 +107,7 @@ struct LemmaCounts {
 struct PlacementCounts {
   std::uint64_t placements = 0;
   std::uint64_t colliding_placements = 0;   // with at least one colliding pair
-  std::uint64_t missed_placements = 0;      // of these, with at least one missed pair
+  std::uint64_t missed_placements = 0;      // of these, those with at least one missed pair
   std::uint64_t colliding = 0, missed = 0;  // pairs
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
@@ -119,7 +119,7 @@ struct PlacementCounts {
 /// Counts of a frame of the cloth with every pair of triangles accounted for (verify/accounting.h),
 /// and results of the step to this frame (scenes/cloth/cloth.h).
 struct ClothCounts {
-  std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; neighbours of the colliding
+  std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; the first includes the others
   std::uint64_t candidates = 0;                             // pairs given to exact tests
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
@@ -148,7 +148,7 @@ struct PixelCounts {
 struct SceneCounts {
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t self_objects = 0;               // that are tested against themselves
-  std::uint64_t colliding = 0, neighbours = 0;  // pairs, apart from each other
+  std::uint64_t colliding = 0, neighbours = 0;  // pairs; `colliding` without neighbours
   std::string scene_hash;
   std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
   FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)

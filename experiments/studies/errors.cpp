@@ -1,8 +1,9 @@
-// The studies "accuracy" and "error-time": what every method misses, by the number of pixels and by
-// the form of CULLIDE, and against its time, beside libraries. Also "stability" and "cloth": which
-// methods still find all collisions in extreme scenes; and every frame of a falling cloth, at four
-// stiffnesses, with every pair of triangles accounted for. The simulation of a fine and stiff cloth
-// takes hours, so its states are kept (scenes/cloth/cloth.h), and the stiffnesses take turns.
+// The study "accuracy" counts what every method misses at each number of pixels and with each form
+// of CULLIDE; "error-time" shows misses against time, and adds libraries. "stability" asks which
+// methods still find all collisions in extreme scenes. "cloth" runs every frame of a falling cloth,
+// at four stiffnesses, with every pair of triangles accounted for. The simulation of a fine and
+// stiff cloth takes hours, so its states are kept (scenes/cloth/cloth.h), and the stiffnesses take
+// turns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,16 +48,16 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   return out;
 }
 
-// The published radius has no guarantee, so no view can be skipped: it takes up to five times as
-// long as the budget's and dominates the time of the study.
+// The published radius has no guarantee, so no view can be skipped: a run takes up to five times as
+// long as with the budget radius, and such runs dominate the time of the study.
 int most_published(const std::string& offset, bool quick) {
   return quick || offset == "exact" ? 1024 : 4096;
 }
 
 constexpr int kMostOfForms = 1024;  // px
 
-// CULLIDE as published, and its changes one by one and together. For a scene that is drawn again,
-// only the forms that miss little.
+// CULLIDE as published, and with its changes one by one and together. A scene that is drawn again
+// gets only the forms that miss little.
 std::vector<CullideForm> forms_of(const AccuracyScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
   const CullideForm strict = {.rounds = 1, .clear = ClearRule::all, .conservative = true};

@@ -1,8 +1,8 @@
 // Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
 // bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
-// "precision" and "radius" test the lemmas and count misses by the format of the depth buffer, the
-// source of depth, and the radius; and how often the published radius misses a pair of randomly
-// placed patches.
+// "precision" and "radius" test the lemmas and count misses for each format of the depth buffer,
+// each source of depth and each radius. They also count how often the published radius misses a
+// pair of randomly placed patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -184,7 +184,7 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators whose depth varies inside a pixel; the others' triangles are too small for that.
+// Generators of triangles whose depth varies inside a pixel; those of the others are too small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
@@ -253,11 +253,12 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; of these pairs hardly another one keeps any
+constexpr double kSmallest = 0x1p-5;  // px; so small that hardly any other pair keeps a missed one
 
-// Placements with corners snapped to 8 bits: the published radius by the size of triangles, 10^6 in
-// all, and smaller radii. Then the smallest triangles by subpixel bits and by resolution, and at
-// the budget radius, which must miss none.
+// Three series. With 8 subpixel bits: triangles of each size at the published radius (10^6
+// placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius. The smallest
+// triangles at the published radius, with other numbers of subpixel bits and at other resolutions.
+// The smallest triangles at the budget radius, which must miss none.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;

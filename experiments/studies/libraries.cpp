@@ -201,7 +201,7 @@ PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
 
 PointResult measure(const Point& at, Lab& lab) {
   const auto& point = std::get<LibraryPoint>(at);
-  // The processes of our own methods read it.
+  // The processes of our own methods read this variable.
   ::setenv("FARCULL_CONTEST_DEVICE", lab.device().c_str(), 1);
   const Invitation invitation = invite_known(known_contestant(point.contestant));
   if (!invitation.invited) return {.device = "none", .left_out = invitation.missing};

@@ -151,7 +151,7 @@ void shift(std::vector<Corners>& patch, const Vec3& by) {
   }
 }
 
-// Moves the second patch so that a random point of each is at the same place.
+// Moves the second patch so that a random point of it is at a random point of the first patch.
 void cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Vec3 to = inner(one[random.below(one.size())], random);
   shift(other, to - inner(other[random.below(other.size())], random));

@@ -121,7 +121,7 @@ struct LibraryPoint {
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
-  int resolution = 0;   // of the reliable diagram; below 1 nothing is promised
+  int resolution = 0;   // of a diagram, in cells; 0: the method has none
   double widening = 1;  // of the reliable diagram; below 1 it promises nothing
   int repeat = 1;       // runs
 };
@@ -247,8 +247,8 @@ inline RunPoint at_mean_pixels(RunPoint point, double pixels) {
   return point;
 }
 
-/// The first `count` of the five seeds with which randomly drawn scenes are measured: their own,
-/// and 101 to 104.
+/// The scene with the first `count` of the five seeds with which randomly drawn scenes are
+/// measured: the scene's default seed, and 101 to 104.
 inline std::vector<std::string> drawn_scenes(const std::string& name, int count = 5) {
   std::vector<std::string> out = {name};
   for (int i = 1; i < count; ++i) out.push_back(name + "@seed" + std::to_string(100 + i));

@@ -1,6 +1,6 @@
-// The study "proximity": the size of potential neighbour sets, what a grid loses of them, and the
-// errors of libraries' distances against their time. The exact answers of the last scene are
-// cached, since many points share a scene.
+// The study "proximity" measures the size of potential neighbour sets, the nearest neighbours that
+// a grid loses, and the errors and times of libraries' distances. The exact answers of the last
+// scene are cached, since many points share a scene.
 //
 // Sud, Govindaraju, Gayle, Kabul and Manocha, Fast Proximity Computation Among Deformable Models
 // using Discrete Voronoi Diagrams, SIGGRAPH 2006.
@@ -45,7 +45,7 @@ void require_proved(const std::string& where, const DistanceRecord& record) {
               "this is a fault of farcull: please report it with the scene");
 }
 
-// Checks that both searches agree: of several equally near objects the record names one.
+// Checks that both searches agree. If several objects are equally near, `distances` names one.
 void require_alike(const std::string& where, const Exact& exact) {
   for (const PeerDistance& one : exact.distances) {
     const std::vector<std::uint32_t>& all = exact.nearest[one.a].objects;
@@ -83,7 +83,7 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
   return last;
 }
 
-// The counts of the first run, which all others must equal, and the times of all.
+// Returns the counts of the first run and the times of all. All other runs must have equal counts.
 template <class Run>
 PointResult repeated_runs(const Point& point, int repeat, const Run& run) {
   auto [first, ms] = repeat_point(point, repeat, [&] {
@@ -103,11 +103,12 @@ std::vector<int> resolutions(bool quick) {
 }
 constexpr int kCellsInMotion = 256;    // cells, for scenes that move
 constexpr int kCountResolution = 128;  // cells, for times against the number of objects
-constexpr int kMostInDiagrams = 400;   // objects in those
+constexpr int kMostInDiagrams = 400;   // objects in a scene; for diagrams
 constexpr int kRuns = 9;               // as in the study "scaling"
 constexpr int kSeeds = 3;              // of clusters
 
-// Both diagrams at each resolution, beside the methods without cells.
+// Adds both diagrams at each resolution, and the methods without cells. unwidened: also adds the
+// reliable diagram with widening 0, which may lose objects.
 void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
     out.emplace_back(NeighbourPoint{.scene = scene, .method = method});

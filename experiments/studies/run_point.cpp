@@ -27,7 +27,7 @@
 namespace farcull {
 namespace {
 
-// Two objects of segments. Each segment is crossed by one of the other object at 45 degrees, within
+// Two objects of segments. Each segment crosses a segment of the other object at 45 degrees, within
 // 2^-10 px of a corner of a pixel in the view z at this resolution. Both boxes are as many units
 // wide as the window has pixels, so that a unit is a pixel and corners are whole numbers
 // (core/view/view.h, fit_window).
@@ -222,7 +222,7 @@ void require_same(const PointKey& point, const Outcome& first, const Outcome& ot
     different += (different.empty() ? "" : ", ") + text;
   };
   if (first.device != other.device) add("device " + first.device + " and " + other.device);
-  // By name: both values, "none" for a missing count.
+  // For each name of a count both values, "none" if it is missing.
   std::map<std::string, std::pair<std::string, std::string>> values;
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;

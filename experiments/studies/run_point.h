@@ -90,16 +90,16 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab);
 /// refutes the exact answers, or if two runs differ.
 PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab);
 
-/// The same for the contestant of the point. The counts are DistanceCounts. Left out if this build
-/// lacks the library or the library refuses the scene. Throws std::logic_error if there is no such
-/// contestant.
+/// The same for a DistancePoint and its contestant. The counts are DistanceCounts. Left out if this
+/// build lacks the library or the library refuses the scene. Throws std::logic_error if there is no
+/// such contestant.
 PointResult measure_distances(const DistancePoint& point, Lab& lab);
 /// The same for the given contestant, whatever its name.
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant, Lab& lab);
 
 /// "farcull" and all peers, including those that this build lacks.
 std::vector<DistancePeer> distance_contestants();
-/// Study::library: that of a DistancePoint.
+/// The library of a DistancePoint with its version (Study::library).
 std::string library_of_distances(const Point& point);
 
 /// Counts for one drawing of every triangle that takes part, in each view of a run of FAR.
@@ -118,10 +118,10 @@ struct Fragments {
 /// one first. Precondition: record is of `far` with fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
-// How often FAR misses a pair at a radius, on many small patches of triangles that are placed into
-// each other at random. A patch is a few neighbouring triangles of a built-in scene, scaled and
-// turned at random. A scene holds thousands of placements. In each of the views x, y and z every
-// placement has pixels of its own, so that one run of FAR decides them all.
+// Measures how often FAR misses a pair at a radius, on many small patches of triangles that are
+// placed into each other at random. A patch is a few neighbouring triangles of a built-in scene,
+// scaled and turned at random. A scene holds thousands of placements. In each of the views x, y and
+// z every placement has pixels of its own, so that one run of FAR decides them all.
 
 constexpr std::uint32_t kPatchTriangles = 8;
 
@@ -137,8 +137,9 @@ class PatchSource {
  public:
   explicit PatchSource(Scene from);
 
-  /// As many placements as a window of `resolution` pixels holds, at least one and at most `most`,
-  /// drawn with `seed`. grazing, side: as in PlacementPoint. Throws std::logic_error if none fits.
+  /// Returns as many placements as a window of `resolution` pixels holds, at least one and at most
+  /// `most`, drawn with `seed`. grazing, side: as in PlacementPoint. Throws std::logic_error if
+  /// none fits.
   PlacedPatches place(bool grazing, double side, int resolution, std::uint64_t most,
                       std::uint64_t seed) const;
 

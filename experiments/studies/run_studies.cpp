@@ -120,8 +120,8 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Seconds for the remaining points, at the mean time of their study's points in this run, or of all
-// studies if their study has none yet.
+// Seconds for the remaining points, at the mean time of their study's points in this run, or of the
+// points of all studies if their study has none yet.
 std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, std::size_t next) {
   double seconds = 0;
   std::size_t measured = 0;

@@ -31,7 +31,7 @@ const PointScene* scene_of(const Point& point) {
   return nullptr;
 }
 
-// Each scene once; for a moving scene the middle one of its measured frames.
+// Lists each scene once; a moving scene with the middle one of its measured frames.
 std::vector<Point> scenes_grid(const GridChoice& choice) {
   std::vector<std::pair<std::string, std::vector<RunPoint>>> scenes;
   for (const Study& study : studies_of_all()) {
@@ -195,7 +195,7 @@ std::vector<Case> cases(bool quick) {
     out.push_back({std::move(scene), resolution, drawn});
   };
   // At least six sizes of each, so that a fitted exponent has an interval.
-  // Objects: of about the same size, in a box that grows with their number.
+  // Objects: all are of about the same size, in a box that grows with their number.
   for (const int n :
        quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
     add(fmt::format("crowd:{}", n), kUsual, true);

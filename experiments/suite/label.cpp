@@ -46,7 +46,7 @@ bool on_edge(const Q3& p, const Triangle& t) {
     const Q3 w = minus(p, t[i]);
     if (!is_zero(cross(e, w))) continue;
     const Q along = dot(e, w);
-    // An edge without length holds its end alone.
+    // An edge without length holds only its end.
     if (is_zero(e) ? is_zero(w) : along >= 0 && along <= dot(e, e)) return true;
   }
   return false;
@@ -77,7 +77,7 @@ class CommonPoints {
   }
 
   const std::vector<Q3>& points() const { return points_; }
-  /// Their mean: a point of the relative interior of the intersection.
+  /// The mean of the points: it is in the relative interior of the intersection.
   Q3 inner() const {
     Q3 out;
     for (const Q3& p : points_) {
@@ -86,13 +86,13 @@ class CommonPoints {
     for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
     return out;
   }
-  /// Whether both are the same set: each holds the corners of the other.
+  /// Whether both triangles are the same set of points: each holds the corners of the other.
   bool all_of_both() const {
     return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
            std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
   }
-  /// Whether all six corners are in one plane. Precondition: there are two common points, so two
-  /// segments have a line in common.
+  /// Whether all six corners are in one plane. Precondition: there are at least two common points.
+  /// So if both triangles are segments, these lie on one line.
   bool coplanar() const {
     const Q3& n = is_zero(normal_a_) ? normal_b_ : normal_a_;
     const auto in_plane = [&](const Q3& p) { return sgn(dot(n, minus(p, a_[0]))) == 0; };
@@ -117,7 +117,7 @@ class CommonPoints {
       if (sgn(from) * sgn(to) < 0) add(between(s[i], s[(i + 1) % 3], from / (from - to)));
     }
   }
-  /// Adds the point in which two edges meet that are not parallel.
+  /// Adds the point in which edge i of a and edge j of b meet, unless they are parallel.
   void add_of_edges(int i, int j) {
     const Q3 u = edge(a_, i);
     const Q3 v = edge(b_, j);
@@ -138,7 +138,7 @@ Triangle rational_triangle(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
-/// Whether p is a corner of the triangle as a set of points: if that is a segment, one of its ends.
+/// Whether p is a corner of the triangle; if the triangle is a segment, whether p is an end of it.
 bool is_corner(const Q3& p, const Triangle& t) {
   if (std::find(t.begin(), t.end(), p) == t.end()) return false;
   if (!is_zero(normal(t))) return true;
@@ -162,8 +162,8 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
-  // The relative interior of a triangle is what its edges leave. A segment is all edge, and comes
-  // here only where it goes through the inside of a triangle.
+  // The relative interior of a triangle is the triangle without its edges. A segment consists of
+  // edges; it comes here only if it goes through the inside of the other triangle, in one point.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
@@ -172,7 +172,7 @@ void require_equal(bool one, bool other, const char* oracles, const std::string&
   if (one != other) throw Error(where, fmt::format("{} disagree", oracles), kReport, line);
 }
 
-/// Throws Error where two vertices that triangles of the object use are at one position.
+/// Throws Error if two vertices that triangles of the object use are at one position.
 void require_distinct(const Scene& scene, const Object& object, const std::string& where) {
   std::vector<std::uint32_t> used;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {

@@ -1,6 +1,6 @@
-// The readers go through a text line by line, so that every error has its line: lists of pairs, the
-// folder of a mesh (mesh.txt, an OBJ for each object, pairs.csv), and suite.txt, the list of all
-// files with their sums. Numbers are converted by <charconv>, which no locale changes.
+// Reads lists of pairs, the folder of a mesh (mesh.txt, an OBJ for each object, pairs.csv), and
+// suite.txt, the list of all files with their sums. The readers go through a text line by line, so
+// that every error has its line. <charconv> converts numbers, since no locale changes it.
 #include "experiments/suite/reader.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ constexpr const char* kFormat = "docs/suite.md has the format; write the suite a
 constexpr const char* kAgain = "write the suite again, as in farcull suite DIR";
 constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();
 
-/// The next word of `line`, which is removed from it with the blanks before it. Empty at the end.
+/// Removes the next word from `line`, with the blanks before it, and returns it. Empty at the end.
 std::string_view take_word(std::string_view& line) {
   constexpr std::string_view kBlanks = " \t\r";
   line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
@@ -46,7 +46,7 @@ std::string_view take_word(std::string_view& line) {
 /// The lines of a text one by one, with their numbers.
 class Lines {
  public:
-  /// `name` stands for the file in errors. Throws Error where the text does not end with a newline.
+  /// `name` stands for the file in errors. Throws Error if the text does not end with a newline.
   Lines(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
     if (text.empty() || text.back() != '\n') {
       throw Error(name_, "the file does not end with a newline, so its end may be missing",
@@ -63,7 +63,7 @@ class Lines {
     ++number_;
     return true;
   }
-  /// The word after `key`; the next line has to be these two.
+  /// Reads the next line, which must be `key` and one word, and returns the word.
   std::string word_after(std::string_view key, const char* remedy) {
     std::string_view line;
     if (!next(line) || take_word(line) != key)
@@ -251,7 +251,7 @@ bool is_sum(std::string_view word) {
   return word.size() == 64 && word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// A path below the folder, with nothing that leads out of it.
+/// Whether the path is relative to the folder and does not lead out of it.
 bool is_inner_path(std::string_view path) {
   return !path.empty() && path[0] != '/' && path.find("..") == std::string_view::npos;
 }

@@ -14,8 +14,8 @@
 
 namespace farcull {
 
-/// How two closed triangles meet. docs/suite.md defines each; of a pair exactly one is true.
-/// unlabelled stands in the lists of others, whose answers nobody has decided.
+/// How two closed triangles meet. docs/suite.md defines the kinds; a pair has exactly one.
+/// unlabelled is for pairs in other people's lists whose answer is not decided.
 enum class SuiteKind : std::uint8_t {
   apart,
   touch_vertex,
@@ -31,7 +31,7 @@ enum class SuiteKind : std::uint8_t {
 
 /// As in a list of pairs: "touch-vertex"; "?" for unlabelled.
 std::string to_string(SuiteKind kind);
-/// The inverse; empty where no kind is called so.
+/// The inverse; empty if no kind has this name.
 std::optional<SuiteKind> parse_suite_kind(std::string_view name);
 /// Whether a pair of this kind collides. Precondition: not unlabelled.
 bool collides(SuiteKind kind);
@@ -45,8 +45,8 @@ struct SharedCorner {
 
 struct SuitePair {
   std::uint64_t id = 0;  // counts from 0 in its file
-  long line = 0;         // of the file it was read from, from 1; 0 where it was made
-  double parameter = 0;  // the family's number; 0 where it has none
+  long line = 0;         // in the file that was read, from 1; 0 if it was made
+  double parameter = 0;  // the family's number; 0 if it has none
   /// Ascending, each once; empty for triangles that are not neighbours in a mesh.
   std::vector<SharedCorner> shared;
   SuiteKind kind = SuiteKind::unlabelled;
@@ -59,18 +59,19 @@ struct SuitePairs {
   std::vector<SuitePair> pairs;
 };
 
-/// Reads a file of pairs. Throws Error naming the file, the line and a remedy where the file cannot
-/// be read, does not end with a newline, or has another form: the first line, IDs that do not count
-/// from 0, a word that is no number or no kind, a shared corner whose coordinates differ, a kind of
-/// neighbours without shared corners or the contrary, fewer or more words.
+/// Reads a file of pairs. Throws Error naming the file, the line and a remedy if the file cannot be
+/// read, does not end with a newline, or has another form: another first line, IDs that do not
+/// count from 0, a word that is no number or no kind, a shared corner whose coordinates differ, a
+/// kind of neighbours without shared corners or shared corners with another kind, too few or too
+/// many words.
 SuitePairs read_pairs(const std::string& path);
-/// The same of bytes in memory; `name` stands for the path in errors.
+/// The same for a text in memory; `name` stands for the path in errors.
 SuitePairs parse_pairs(std::string_view text, const std::string& name);
 
 /// A colliding pair of a mesh.
 struct SuiteMeshPair {
   TrianglePair pair;         // of SuiteMesh::scene
-  std::uint32_t shared = 0;  // vertices that they share by index, 0 to 3; 0 in different objects
+  std::uint32_t shared = 0;  // vertices shared by index, 0 to 3; 0 in different objects
   auto operator<=>(const SuiteMeshPair&) const = default;
 };
 
@@ -84,13 +85,13 @@ struct SuiteMesh {
   std::vector<SuiteMeshPair> pairs;  // all that collide, ascending, each once
 };
 
-/// Reads a folder of a mesh. Throws Error naming the file, the line and a remedy where a file is
-/// missing or malformed, a face is no triangle, a pair names no triangle of the mesh, does not
-/// count (one object, and self is no), is out of order, or where `shared` is not what the indices
-/// say.
+/// Reads a folder of a mesh. Throws Error naming the file, the line and a remedy if a file is
+/// missing or malformed, or a face is no triangle; and if a pair names no triangle of the mesh, is
+/// of one object although `self` is no, is out of order, or has a `shared` that disagrees with the
+/// indices.
 SuiteMesh read_mesh(const std::string& folder);
 
-/// How many vertices two triangles of one object share: indices that stand in both, each once.
+/// How many vertices two triangles of one object share: indices in both triangles, each once.
 std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair);
 
 /// The folder of a suite, by its suite.txt.
@@ -107,20 +108,20 @@ struct SuiteIndex {
   std::string size;  // small or full
   std::string licence;
   std::vector<File> files;  // by path, ascending
-  std::string sum;          // SHA-256 of the lines before the last: it names the whole suite
+  std::string sum;          // SHA-256 of all lines but the last: it names the whole suite
 
   std::vector<std::string> pair_files() const;    // their paths, as in "pairs/random.txt"
   std::vector<std::string> mesh_folders() const;  // as in "meshes/cloth-1"
 };
 
 /// Reads FOLDER/suite.txt and compares its sum. Throws Error naming the file, the line and a
-/// remedy. The files that it names are not looked at: check_files() does that.
+/// remedy. Does not read the files that suite.txt names: check_files() does.
 SuiteIndex read_suite(const std::string& folder);
-/// The same of bytes in memory; `name` stands for the path in errors.
+/// The same for a text in memory; `name` stands for the path in errors.
 SuiteIndex parse_suite(std::string_view text, const std::string& name);
 
-/// Throws Error naming the first file of the suite that is missing, has another length or another
-/// sum, and the first one below pairs/ and meshes/ that the suite does not name.
+/// Throws Error naming the first file of the suite that is missing or has another length or sum; or
+/// the first file below pairs/ and meshes/ that the suite does not name.
 void check_files(const std::string& folder, const SuiteIndex& index);
 
 /// A finite double as C's %a prints it, such as 0x1.8p+1; empty for anything else.
@@ -133,15 +134,15 @@ std::string decimal(double value);
 /// The SHA-256 of a text.
 std::string sum_of(std::string_view text);
 
-// Decides how two triangles meet, and which pairs of a mesh collide: each answer by two exact
-// oracles that share no code, and a disagreement is an Error. So a label of the suite rests on no
-// single program.
+// Decides how two triangles meet, and which pairs of a mesh collide. Two exact oracles that share
+// no code give each answer; a disagreement is an Error. So no label of the suite rests on one
+// program alone.
 
 /// How two closed triangles meet, as docs/suite.md defines the kinds. CGAL's predicates
-/// (verify/exact), the 38 directions and the 21 points in integers (verify/certificate) say whether
-/// they do; the points that they have in common, as rational numbers, say how, and CGAL's
-/// predicates once more whether they cross (verify/contact). Throws Error naming `where` and
-/// `line` where two answers differ. Coordinates have to be finite.
+/// (verify/exact), and the 38 directions and 21 points in integers (verify/certificate), decide
+/// whether they meet. Their common points, as rational numbers, decide how; CGAL's predicates also
+/// decide whether they cross (verify/contact). Throws Error naming `where` and `line` if two
+/// answers differ. Precondition: finite coordinates.
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::string& where, long line = 0);
 
@@ -150,16 +151,16 @@ SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where, long line = 0);
 
-/// decide_neighbours() where the pair has shared corners, else decide_kind().
+/// decide_neighbours() if the pair has shared corners, else decide_kind().
 SuiteKind decide(const SuitePair& pair, const std::string& where);
 
 /// Every pair of corners at equal positions, ascending.
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// All colliding pairs of a mesh, ascending: CGAL's join of boxes and predicates find them, and the
-/// checker of certificates proves the list with integers alone. Throws Error naming `where` where
-/// it does not, and where two vertices of an object that is tested against itself are at one
-/// position: by the indices their triangles would be no neighbours, by the positions they would.
+/// checker of certificates proves the list with integers alone. Throws Error naming `where` if the
+/// checker does not prove it. Also throws Error if an object that is tested against itself has two
+/// vertices at one position: their triangles would be neighbours by position, but not by index.
 std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& where);
 
 }  // namespace farcull

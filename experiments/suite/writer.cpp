@@ -1,5 +1,5 @@
-// Makes a suite, writes it, and checks one that is read back by deciding every label anew. Pairs
-// are decided on all cores; each stands in its own place, so the order is that of their IDs.
+// Makes and writes a suite, and checks a suite that is read back by deciding every label anew.
+// Pairs are decided on all cores; each result has its own place, so the order is that of the IDs.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>

@@ -20,11 +20,11 @@ struct SuiteSettings {
   std::uint64_t seed = 1;
 };
 
-/// Pairs of one family, or a mesh: how many there are of each kind.
+/// How many pairs of each kind a family or a mesh has.
 struct SuiteCounts {
   std::string name;                       // of the family, or of the mesh
   std::uint64_t triangles = 0;            // of a mesh; 0 for a family of pairs
-  std::uint64_t pairs = 0;                // of a family; of a mesh those that collide
+  std::uint64_t pairs = 0;                // of a family; of a mesh only colliding ones
   std::uint64_t colliding = 0;            // of a mesh the same as `pairs`
   std::uint64_t neighbours = 0;           // of the colliding pairs of a mesh
   std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
@@ -42,11 +42,11 @@ SuiteCounts counts_of(const SuitePairs& pairs);
 SuiteCounts counts_of(const SuiteMesh& mesh);
 
 /// Pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends on the seed, the name
-/// of the family and the ID alone: any part of a suite can be made alone, and threads change
-/// nothing.
+/// of the family and the ID alone. So any part of a suite can be made alone, and the number of
+/// threads changes nothing.
 SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id);
 /// The pairs of a family of this suite, decided, in the order of their IDs. Throws Error naming the
-/// family and the pair where two oracles disagree, std::logic_error where there is no such family.
+/// family and the pair if two oracles disagree, std::logic_error if there is no such family.
 SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings);
 /// The names of the meshes of this suite, such as "cloth-1", ascending.
 std::vector<std::string> mesh_names(SuiteSize size);
@@ -73,9 +73,9 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
                          const Progress& progress = {});
 
 /// Reads a suite again, compares all sums and decides every label anew. Throws Error naming the
-/// file, and the line where there is one, at the first thing that is wrong: what the readers
-/// refuse, a wrong kind, equal corners that are not called shared, a list of colliding pairs that
-/// is not the one of its mesh. Unlabelled pairs and meshes count as right.
+/// file, and the line if there is one, at the first fault: a file that the readers refuse, a wrong
+/// kind, equal corners that are not called shared, or a list of colliding pairs that is wrong for
+/// its mesh. Unlabelled pairs and meshes count as right.
 SuiteSummary check_suite(const std::string& folder, const Progress& progress = {});
 
 }  // namespace farcull

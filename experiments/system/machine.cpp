@@ -43,7 +43,8 @@ std::optional<double> status_kib(const std::string& key) {
 
 }  // namespace
 
-// The C library counts what is online, also where the process is confined to less.
+// Asks the scheduler: the C library counts all cores that are online, even if the process is
+// confined to fewer.
 unsigned usable_cores() {
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof cores, &cores) != 0)

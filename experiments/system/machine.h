@@ -10,19 +10,19 @@ namespace farcull {
 unsigned usable_cores();
 
 /// Confines the process, with all threads that it starts from now on, to that many cores, so that
-/// no library takes more than it was given. Throws Error naming --threads if the machine has fewer
-/// or the system refuses. Precondition: threads >= 1.
+/// no library uses more cores than it should. Throws Error naming --threads if the machine has
+/// fewer or the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
-/// The model of the CPU as /proc/cpuinfo has it; "unknown" where that does not say.
+/// The model of the CPU as /proc/cpuinfo has it; "unknown" if the file does not say.
 std::string cpu_model();
 
-/// The features of the CPU as /proc/cpuinfo lists them; "unknown" where that does not say.
+/// The features of the CPU as /proc/cpuinfo lists them; "unknown" if the file does not say.
 std::string cpu_features();
 
 /// The growth of resident memory since construction. The constructor returns free memory to the
 /// system, notes the resident size and resets the peak (VmHWM, by /proc/self/clear_refs);
-/// grown_mib() is the peak since then above the noted size. Empty where the system does not say.
+/// grown_mib() is the peak since then minus the noted size; empty if the system does not say.
 class PeakMemory {
  public:
   PeakMemory();

@@ -1,6 +1,6 @@
 // Writes a file beside its path and renames it, so that a reader sees the old file or the new one.
-// A file that grows is written once in this way; each addition then overwrites its end. Handlers of
-// signals take no memory and no lock.
+// A file that grows is written once in this way; each addition then overwrites the file's end.
+// Handlers of signals take no memory and no lock.
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
@@ -21,8 +21,8 @@
 
 namespace farcull {
 
-// Writes the line of an interrupted run, from within the handler of a signal: no memory is taken
-// and no lock.
+// The handler of a signal writes the line of an interrupted run, so this code takes no memory and
+// no lock.
 
 namespace {
 
@@ -94,13 +94,13 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// The place that a path leads to. Only a regular file, or a new one, can be put there by renaming;
-// anything else takes the text as it comes.
+// The place that a path leads to. A regular file or a new one is put there by renaming. Anything
+// else is `direct`: it takes the text as it comes.
 struct Target {
   std::string path;
   bool exists = false;
   bool direct = false;
-  mode_t mode = 0;  // of what exists
+  mode_t mode = 0;  // of the file that exists
 };
 
 Target target_of(const std::string& path) {
@@ -108,7 +108,7 @@ Target target_of(const std::string& path) {
   struct stat link = {}, status = {};
   target.exists = ::stat(path.c_str(), &status) == 0;
   const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
-  // /dev/stdout is a link to whatever that is, perhaps a file that another program holds open.
+  // /dev/stdout is a link to standard output, perhaps a file that another program holds open.
   const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
   target.mode = status.st_mode;
   target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
@@ -126,7 +126,7 @@ std::string folder_of(const std::string& path) {
 char half_written[4096] = "";
 
 // The path of a file until it is put in place: in the same folder, under its name with an ending.
-// The name is cut if the file system does not take it so long, but not within a UTF-8 character.
+// The name is cut if it is too long for the file system, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
@@ -144,8 +144,8 @@ extern "C" void remove_half_written(int signal) {
 
 }  // namespace
 
-// A file that is being written. It is removed unless it is renamed into place: by the destructor,
-// or by the handler where a signal ends the program. One at a time.
+// A file that is being written. The destructor removes it unless put() renamed it into place; the
+// handler of a signal that ends the program removes it too. One at a time.
 class HalfWritten {
  public:
   // Precondition: the path is shorter than half_written.
@@ -175,7 +175,7 @@ class HalfWritten {
 
 namespace {
 
-// Writes all of the text and closes the file; 0 or the errno of the first failure.
+// Writes all of the text and closes the file. Returns 0 or the errno of the first failure.
 int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
   int failure = 0;
   if (std::fwrite(text.data(), 1, text.size(), file) != text.size() || std::fflush(file) != 0 ||
@@ -186,8 +186,8 @@ int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
   return failure;
 }
 
-// Writes all of the text, at a place of a file where `at` is not negative; 0 or the errno of the
-// first failure.
+// Writes all of the text, from the byte `at` of the file if `at` is not negative. Returns 0 or the
+// errno of the first failure.
 int write_all(int file, const std::string& text, long long at) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = at < 0 ? ::write(file, text.data() + done, text.size() - done)
@@ -292,7 +292,7 @@ GrowingOutput::~GrowingOutput() {
   try {
     finish();
   } catch (const Error&) {
-    // A destructor must not throw, and the text is whole without its last end.
+    // A destructor must not throw. A regular file has its end already; only a stream may lack it.
   }
   if (file_ >= 0) ::close(file_);
 }
@@ -323,7 +323,7 @@ void GrowingOutput::add(const std::string& text, const std::string& end) {
     return;
   }
   if (const int failure = write_all(file_, text + end, kept_)) {
-    // The bytes of the end before are the file's own already, so a full disk takes them.
+    // The file already has the bytes of the previous end, so they can be restored on a full disk.
     (void)write_all(file_, end_, kept_);
     (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
     refuse(path_, failure);
@@ -348,7 +348,7 @@ void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   // The next file that is opened would get the number of a closed stream, and the table would be
-  // written into it. A file that refuses reads or writes takes the number instead.
+  // written into that file. So a file that refuses reads or writes takes the number.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

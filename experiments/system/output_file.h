@@ -20,19 +20,19 @@ void check_output(const std::string& path);
 
 /// Writes the text beside the path and renames it into place; "-" is standard output. A symbolic
 /// link stays and its file is replaced; devices and pipes take the text as it comes. Throws Error
-/// naming the path where the disk, the folder or a closed pipe refuses. Nothing half-written is
-/// left, also where SIGINT, SIGTERM or SIGHUP ends the program meanwhile. SIGPIPE and SIGXFSZ have
-/// to be ignored for that (prepare_output()).
+/// naming the path if the disk, the folder or a closed pipe refuses. No half-written file is left,
+/// even if SIGINT, SIGTERM or SIGHUP ends the program meanwhile. SIGPIPE and SIGXFSZ have to be
+/// ignored for that (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
 /// Writes help, or another text that a reader may end early (help run | head), to standard output:
-/// a closed pipe is no error. Throws Error as write_output() where the disk refuses.
+/// a closed pipe is no error. Throws Error as write_output() if the disk refuses.
 void write_help(const std::string& text);
 
 /// Writes the text to a new file beside `path`, an absolute or relative path that is no symbolic
-/// link, and renames it into place; a file that is replaced leaves its permissions. Returns 0 or
-/// the errno of the first failure. Nothing half-written is left, as by write_output(). One at a
-/// time in a process.
+/// link, and renames it into place. The new file gets the permissions of a file that it replaces.
+/// Returns 0 or the errno of the first failure. No half-written file is left, as by write_output().
+/// One at a time in a process.
 int replace_file(const std::string& path, const std::string& text);
 
 /// Once, at the start of the program: a full disk and a closed pipe answer with an error instead of
@@ -40,10 +40,10 @@ int replace_file(const std::string& path, const std::string& text);
 void prepare_output();
 
 /// A text that grows by additions and has an end, such as a JSON array with its brackets. After
-/// each addition a file holds everything up to there and the end, so whatever ends the program
-/// leaves a whole text; only a kill or a crash of the machine while an addition is written can cut
-/// it short. The first addition appears as write_output() does: what the path held is there until
-/// then. Standard output, devices and pipes take the additions as they come, and the end once.
+/// each addition a file holds all additions and the end, so whatever ends the program leaves a
+/// whole text; only a kill or a crash of the machine while an addition is written can cut it short.
+/// The first addition replaces the file as write_output() does; until then the old file stays.
+/// Standard output, devices and pipes take the additions as they come, and the end once.
 class GrowingOutput {
  public:
   /// Nothing is written before the first addition.
@@ -52,10 +52,10 @@ class GrowingOutput {
   GrowingOutput(const GrowingOutput&) = delete;
   GrowingOutput& operator=(const GrowingOutput&) = delete;
 
-  /// Adds `text`; `end` takes the place of the end before. Throws Error as write_output() does; a
+  /// Adds `text`; `end` replaces the previous end. Throws Error as write_output() does; a
   /// file then holds what it held before.
   void add(const std::string& text, const std::string& end);
-  /// No addition will follow. The destructor does the same where it can, and says nothing.
+  /// Ends the text: no addition may follow. The destructor calls it too, and ignores an Error.
   void finish();
 
  private:
@@ -68,21 +68,21 @@ class GrowingOutput {
 
 class HalfWritten;
 
-/// Writes beside the path; put() renames into place. What is not put is removed, also where SIGINT,
-/// SIGTERM or SIGHUP ends the program. One at a time in a process, and no write_output() meanwhile.
-/// A symbolic link stays and its file is replaced.
+/// Writes a file beside the path; put() renames it into place. A file that is not put is removed,
+/// even if SIGINT, SIGTERM or SIGHUP ends the program. One at a time in a process, and no
+/// write_output() meanwhile. A symbolic link stays and its file is replaced.
 class StreamedOutput {
  public:
-  /// Throws Error naming the path where it is standard output, a device or a pipe, which cannot
-  /// appear at once, or where the folder or the disk refuses.
+  /// Throws Error naming the path if it is standard output, a device or a pipe, which cannot appear
+  /// at once, or if the folder or the disk refuses.
   explicit StreamedOutput(const std::string& path);
   ~StreamedOutput();
   StreamedOutput(const StreamedOutput&) = delete;
   StreamedOutput& operator=(const StreamedOutput&) = delete;
 
-  /// Throws Error where the disk refuses.
+  /// Throws Error if the disk refuses.
   void add(std::string_view text);
-  /// Ends the file, on the disk, and puts it in place. Throws Error as add().
+  /// Waits until the file is on the disk, and puts it in place. Throws Error as add() does.
   void put();
 
  private:
@@ -91,11 +91,11 @@ class StreamedOutput {
   std::FILE* file_ = nullptr;
 };
 
-// Signals that end the program: a handler for as long as an object lives, and the line that a long
-// run prints then.
+// Signals that end the program: a handler that stays as long as an object lives, and the line that
+// a long run prints when a signal ends it.
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP call the handler. Those that the caller had us ignore
-/// (nohup) stay ignored. The destructor puts the handlers of before back.
+/// While it lives, SIGINT, SIGTERM and SIGHUP call the handler. Signals that the caller of the
+/// program ignores (nohup) stay ignored. The destructor restores the previous handlers.
 class SignalGuard {
  public:
   explicit SignalGuard(void (*handler)(int)) {
@@ -126,11 +126,11 @@ class SignalGuard {
 };
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP print one line on standard error, "farcull:
-/// interrupted: after DONE of WANTED WHAT; END", and end the program as they would have. Those that
-/// the caller had us ignore (nohup) stay ignored. One at a time in a process.
+/// interrupted: after DONE of WANTED WHAT; END", and then end the program. Signals that the caller
+/// of the program ignores (nohup) stay ignored. One at a time in a process.
 class Interruptible {
  public:
-  /// The texts have to outlive it. terminal: the line of progress is cleared first.
+  /// The texts have to outlive this object. terminal: the line of progress is cleared first.
   Interruptible(long wanted, const char* what, const char* end, bool terminal);
 
   void done(long count);

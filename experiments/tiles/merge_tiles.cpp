@@ -29,7 +29,7 @@ constexpr const char* kRecordRemedy =
     "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote";
 constexpr const char* kAgain = "run the tile again";
 
-// The parts of a record that have to fit the other records.
+// A record, and its values that must fit those of the other records.
 struct Source {
   std::string path;
   Json json;
@@ -41,7 +41,7 @@ struct Source {
   throw Error(path, reason, kRecordRemedy);
 }
 
-// The value at a place such as /tile/k. Throws Error where it is of another kind.
+// The value at a place such as /tile/k. Throws Error if it has another type.
 template <class Value>
 Value at(const Source& source, const char* place) {
   try {
@@ -99,7 +99,7 @@ Source read_record(const std::string& path) {
   return out;
 }
 
-// Refuses two records that are not of one scene, asked in one way.
+// Refuses two records that differ in the scene or in the question.
 void require_alike(const Source& first, const Source& other) {
   const std::pair<const char*, const char*> places[] = {
       {"/scene", "is of another scene"},
@@ -118,7 +118,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Refuses a tile that is there twice or not at all, and triangles that are in no tile.
+// Refuses a tile that is given twice or not at all, and triangles that are in no tile.
 void require_whole(const std::vector<Source>& sources) {
   const Source& first = sources.front();
   std::vector<const Source*> tiles(first.n, nullptr);
@@ -162,7 +162,7 @@ class List {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
-  // Reads the next row; false at the end. Throws if the whole is then not what the record says.
+  // Reads the next row; false at the end. There it throws if the list is not what the record says.
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {
@@ -174,7 +174,7 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle, twice
+  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle, of both
   std::string_view line() const { return line_; }                   // without its end
   const std::string& path() const { return source_.list; }
 
@@ -231,7 +231,7 @@ class List {
 
   const Source& source_;
   std::size_t buffer_;
-  std::string text_, line_;  // read and not used up; the line that next() gave
+  std::string text_, line_;  // read and not used up; the current line
   std::size_t at_ = 0;       // in text_
   std::uint64_t offset_ = 0, rows_ = 0, lines_ = 0;
   std::array<std::uint64_t, 4> key_{};
@@ -278,7 +278,7 @@ std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sou
   return {rows, hash.digest()};
 }
 
-// The sum of a count over all records.
+// Sums a count over all records.
 std::uint64_t sum_of(const std::vector<Source>& sources, const char* place) {
   std::uint64_t sum = 0;
   for (const Source& source : sources) sum += at<std::uint64_t>(source, place);
@@ -291,7 +291,7 @@ double largest_of(const std::vector<Source>& sources, const char* place) {
   return most;
 }
 
-// Sums of the kinds of contact, or null where they were not asked for.
+// Sums of the kinds of contact, or null if they were not asked for.
 Json contacts_of(const std::vector<Source>& sources) {
   Json sum = at<Json>(sources.front(), "/contacts");
   if (!sum.is_object()) return nullptr;

@@ -23,8 +23,9 @@
 
 namespace farcull {
 
-// The sample holds the triangles whose hashed numbers end in a certain number of zero bits, one
-// more each time it becomes too large. So it depends neither on parts nor on chance.
+// The sample holds the triangles whose hashed numbers end in a certain number of zero bits. That
+// number grows by one each time the sample becomes too large. So the sample depends neither on the
+// parts in which the scene is read nor on chance.
 
 namespace {
 
@@ -61,13 +62,13 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The tile in which a place lies: the cuts at or before it.
+// The tile in which a place lies: the number of cuts at or before the place.
 std::size_t tile_at(const Cuts& cuts, double at) {
   return static_cast<std::size_t>(std::upper_bound(cuts.at.begin(), cuts.at.end(), at) -
                                   cuts.at.begin());
 }
 
-// How many boxes meet each tile, from the tiles where they begin and end.
+// Counts the boxes that meet each tile, from the tiles where the boxes begin and end.
 class Loads {
  public:
   explicit Loads(const Cuts& cuts) : cuts_(cuts), step_(cuts.tiles() + 1, 0), home_(cuts.tiles()) {}
@@ -172,7 +173,7 @@ std::vector<TileCount> count_tiles(const SceneSource& source, const Cuts& cuts, 
 
 namespace {
 
-// Vertices get new numbers part by part: no two parts share one.
+// Vertices get new numbers part by part, since no two parts share a vertex.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, see plan_pairs()
 
@@ -209,7 +210,8 @@ class Gathering {
                 "do not change its files while a run reads them");
   }
 
-  // The hash began with what the first reading says of all objects, so this reading has to agree.
+  // The hash begins with the sizes of all objects at the first reading (begun_hash()), so this
+  // reading must find the same sizes.
   void require_known(const Object& object) {
     if (run_ == census_.sizes.size() || census_.sizes[run_].first != size_word(object)) changed();
     if (++of_run_ < census_.sizes[run_].second) return;
@@ -265,10 +267,10 @@ class Gathering {
   double clearance_;
   Fnv1a hash_, faces_;
   TileScene out_;
-  std::size_t run_ = 0;       // of census_.sizes: that of the next object
-  std::uint64_t of_run_ = 0;  // objects before it in the run
+  std::size_t run_ = 0;       // index in census_.sizes of the next object's run
+  std::uint64_t of_run_ = 0;  // objects before the next one in its run
   std::uint64_t objects_ = 0;
-  std::vector<std::uint32_t> vertex_;  // of the part, in the tile
+  std::vector<std::uint32_t> vertex_;  // by vertex of the part: its number in the tile, or kNone
 };
 
 // Renumbers pairs of objects of the whole scene for the part. Leaves out those with an object
@@ -372,11 +374,11 @@ using Json = nlohmann::ordered_json;
 
 std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
 
-// Null where a tile has no end on this side.
+// Null if the tile has no end on this side.
 Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
 
-// The pairs of objects, in the same text for all tiles. Not as names: the same name may be of
-// another object, and scene_hash() leaves names out.
+// Identifies the ignored pairs by a text that is the same for all tiles. It hashes numbers of
+// objects, not names: two objects may have the same name, and scene_hash() leaves names out.
 std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   if (ignored.empty()) return "";
   Fnv1a hash;
@@ -395,7 +397,7 @@ std::string interval_text(const Slab& slab) {
   return fmt::format("{} from {} to below {}", axis_name(slab.axis), slab.from, slab.to);
 }
 
-// A triangle in the numbers of the whole scene.
+// Writes a triangle of the part with its numbers in the whole scene.
 void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
               std::uint32_t triangle, Json& place) {
   place["object"] = part.numbers.objects[owner[triangle]];
@@ -414,7 +416,7 @@ Json list_json(const TileList& list) {
           {"sha256", hash.digest()}};
 }
 
-// Bytes of memory for each triangle of a tile without the accounting: more than was measured on
+// Bytes of memory for each triangle of a tile, without the accounting: more than was measured on
 // large tiles (docs/tiles.md).
 constexpr double kBytesPerTriangle = 100;
 
@@ -474,7 +476,7 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // A small scene with the same answer: at most two of the objects with triangles, and one without.
+  // A small scene has the same answer: at most two objects with triangles, and one without.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

@@ -34,30 +34,32 @@ namespace farcull {
 /// returns the pairs of objects that the scene ignores, as stream_scene() does.
 using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 
-/// What a reading of all parts tells. Memory: 65,536 triangles, 16 bytes for each object whose
+/// The result of reading all parts. Memory: 65,536 triangles, 16 bytes for each object whose
 /// number of triangles is not that of the object before it, and the ignored pairs.
 struct Census {
   std::string name;
   std::uint64_t objects = 0, self_objects = 0, triangles = 0;
   std::vector<std::string> names;   // of the objects; empty where they were not asked for
   std::vector<ObjectPair> ignored;  // by the scene, as in_order() gives them
-  /// Grown boxes of some triangles: all of them where there are at most 65,536, else those of which
-  /// the numbers are chosen by a fixed hash. So the same scene gives the same sample everywhere.
+  /// Grown boxes (core/boxes/block.h) of all triangles if there are at most 65,536, else of those
+  /// that a fixed hash of their numbers chooses. So the same scene gives the same sample
+  /// everywhere.
   std::vector<Box> sample;
-  /// size_word() of each object, and how often in a row.
+  /// The runs of objects with equal size_word(): the word, and how many objects.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> sizes;
 
-  /// scene_hash() of the scene, up to the coordinates.
+  /// The state of scene_hash() after the part of the scene that comes before the coordinates.
   Fnv1a begun_hash() const;
 };
 
-/// What scene_hash() hashes of an object before it comes to the coordinates.
+/// An object's number of triangles and `self`, as scene_hash() hashes them before the coordinates.
 std::uint64_t size_word(const Object& object);
 
-/// clearance: as of grown_box(). names: keep those of the objects. Throws what `source` throws.
+/// clearance: as in grown_box(). names: whether to keep the names of the objects. An exception of
+/// `source` is passed on.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
 
-/// A scene whose objects have their names alone.
+/// A scene whose objects have names but no triangles.
 Scene names_of(const Census& census);
 
 /// Where a scene is cut.
@@ -67,18 +69,18 @@ struct Cuts {
   std::size_t tiles() const { return at.size() + 1; }
 };
 
-/// Cuts for this many tiles, by a fixed rule: on each axis the quantiles of the places where the
-/// boxes of the sample begin; of the three axes the one whose fullest tile meets the fewest
-/// triangles of the sample, then the one with the fewest in all tiles, then the first. Only time
-/// and memory depend on them. Precondition: tiles >= 1.
+/// Cuts for this many tiles, by a fixed rule. On each axis the cuts are the quantiles of the places
+/// where the boxes of the sample begin. The axis is the one whose fullest tile meets the fewest
+/// triangles of the sample; among equals, the one with the fewest in all tiles, then the first.
+/// Only time and memory depend on the cuts. Precondition: tiles >= 1.
 Cuts choose_cuts(const Census& census, std::size_t tiles);
 
 /// Triangles of a tile.
 struct TileCount {
-  std::uint64_t triangles = 0;  // that meet it
-  std::uint64_t home = 0;       // whose box begins in it: each triangle of the scene in one tile
+  std::uint64_t triangles = 0;  // that meet the tile
+  std::uint64_t home = 0;       // whose box begins in the tile: in one tile each
 };
-/// One more reading of the scene: the triangles of each tile. Memory O(tiles).
+/// Reads the scene once more and counts the triangles of each tile. Memory O(tiles).
 std::vector<TileCount> count_tiles(const SceneSource& source, const Cuts& cuts, double clearance);
 
 // A tile of a scene: a half-open interval of one axis. Which triangles meet it, and which pairs of
@@ -103,14 +105,14 @@ inline Slab slab_of(int axis, std::span<const double> cuts, std::size_t k) {
 /// Whether a place on the axis is in the tile. Exact: it only compares doubles.
 inline bool holds(const Slab& slab, double at) { return at >= slab.from && at < slab.to; }
 
-/// Whether a closed box has a place in the tile. Precondition: the box is not empty, and begins
+/// Whether a closed box has a point in the tile. Precondition: the box is not empty, and begins
 /// below infinity.
 inline bool meets(const Slab& slab, const Box& box) {
   return box.lo[slab.axis] < slab.to && box.hi[slab.axis] >= slab.from;
 }
 
-/// Whether the pair belongs to the tile: where the later one of the two triangles' boxes begins,
-/// each grown by half the clearance (core/boxes/block.h).
+/// Whether the pair belongs to the tile: whether the later one of the two triangles' boxes begins
+/// in the tile. Each box is grown by half the clearance (core/boxes/block.h).
 inline bool owns(const Slab& slab, const Scene& scene, const TrianglePair& pair, double clearance) {
   return holds(slab, std::max(grown_box(scene, pair.a, clearance).lo[slab.axis],
                               grown_box(scene, pair.b, clearance).lo[slab.axis]));
@@ -126,8 +128,8 @@ TileNumber parse_tile(const std::string& text);
 std::size_t parse_tiles(const std::string& text);
 inline constexpr std::size_t kMostTiles = 10'000;
 
-/// The part of a scene that meets a tile. Objects and triangles keep their order; objects without a
-/// triangle there are left out, and so are vertices that no triangle uses.
+/// The triangles of a scene that meet a tile. Objects and triangles keep their order; objects
+/// without such a triangle are left out, and so are vertices that no triangle uses.
 struct TileScene {
   Scene scene;             // with the whole scene's name
   ListNumbers numbers;     // of its objects and triangles in the whole scene
@@ -137,18 +139,18 @@ struct TileScene {
 };
 
 /// Reads all parts of the scene and keeps the triangles whose boxes, grown by half the clearance,
-/// meet the tile: every pair that belongs to the tile is one of these triangles. Memory
-/// O(largest part + triangles that meet the tile). Throws Error naming the scene where it differs
-/// from the census in an object's number of triangles or self, and where 2^31 or more triangles and
-/// objects meet the tile; and what `source` throws.
+/// meet the tile: both triangles of every pair that belongs to the tile are kept. Memory O(largest
+/// part + triangles that meet the tile). Throws Error naming the scene if it differs from the
+/// census in an object's number of triangles or self, and if 2^31 or more triangles and objects
+/// meet the tile. An exception of `source` is passed on.
 TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
                       double clearance);
 
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
   TileNumber tile = {};
-  /// Which objects are ignored beside those that the scene ignores, as pairs of the objects of a
-  /// scene that has the names alone; empty: none.
+  /// Returns the pairs of objects to ignore besides those that the scene ignores. Its argument is
+  /// names_of() the census. Empty: no more pairs.
   std::function<std::vector<ObjectPair>(const Scene& names)> ignored = {};
 };
 
@@ -157,7 +159,7 @@ struct TileRun {
   Census census;
   Cuts cuts;
   Slab slab;
-  TileScene part;  // its scene is called after the whole and the tile
+  TileScene part;  // its scene's name is that of the whole and the tile
   Record record;   // of the part; its candidates and pairs are those that belong to the tile. The
                    // accounting is about all pairs of the part, whichever tile they belong to
   std::uint64_t elsewhere = 0;           // candidates that belong to other tiles
@@ -185,13 +187,13 @@ struct TileList {
 };
 
 /// The record as to_json(), about the whole scene and with the entry `tile` (docs/tiles.md). list:
-/// null where there is none, and then `farcull merge` has nothing to join.
+/// null if no list is written; `farcull merge` then has nothing to join.
 nlohmann::ordered_json tile_json(const TileRun& run, const TileList* list);
 
 /// nothing_to_test() of the whole scene.
 NothingToTest nothing_to_test(const Census& census);
 
-/// The lines for people: what the tile is, and what the run says nothing about.
+/// The lines for people: which tile it is, and which pairs the run does not cover.
 std::string tile_lines(const TileRun& run);
 
 /// The largest resident memory of this process so far, MiB.
@@ -205,7 +207,7 @@ std::string tiles_table(const Census& census, const Cuts& cuts,
 nlohmann::ordered_json tiles_json(const Census& census, const Cuts& cuts,
                                   const std::vector<TileCount>& counts);
 
-// Joins what runs on all tiles of a scene have found.
+// Joins the results of runs on all tiles of a scene.
 
 /// Whether `farcull merge` takes the file for the record of a tile: its name ends in .json.
 bool is_tile_record(const std::string& path);
@@ -223,10 +225,10 @@ struct MergedTiles {
 /// beside them, and writes the list of the whole scene to `out`: byte for byte that of one run. A
 /// file appears there only when everything was read to its end and proved whole. The lists are
 /// merged from their beginnings on, so the memory is at most 64 MiB, or 4 KiB for each list, and
-/// the records. Throws Error naming the file where a record or a list is missing, is none, or was
-/// cut short or changed since; where a tile is there twice or not at all; where two records differ
-/// in scene, number of tiles, cuts, options, columns or commit; where the tiles do not hold all
-/// triangles of the scene; and where `out` cannot be written or is a file that is read.
+/// the records. Throws Error naming the file if a record or a list is missing, is no such file, or
+/// was cut short or changed since; if a tile is given twice or not at all; if two records differ in
+/// scene, number of tiles, cuts, options, columns or commit; if the tiles do not hold all triangles
+/// of the scene; and if `out` cannot be written or is a file that is read.
 /// other: a path to which the caller will write, which must not be a file that is read either.
 MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
                         const std::string& other = "");

@@ -8,7 +8,7 @@
 
 namespace farcull {
 
-// The tree: it divides at the middle one of the centres along the axis in which they spread most.
+// The tree divides at the median of the centres, along the axis in which they spread most.
 
 BoundsTree::BoundsTree(const Scene& scene) {
   const auto count = static_cast<std::uint32_t>(scene.triangles.size());
@@ -26,14 +26,14 @@ BoundsTree::BoundsTree(const Scene& scene) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The places where the tree divides change only the time of a query, not its answer: a query looks
-// below every node whose box it meets.
+// The places where the tree divides change only the time of a query, not its answer, since a query
+// looks below every node whose box it meets.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;
   const auto to = from + count;
   Node node{.bounds = bounds[*from], .first = first, .count = count};
-  Bounds centres;  // of the boxes, halved before they are added, since a sum may overflow
+  Bounds centres;  // box of the centres; halves are added, since a sum may overflow
   for (int k = 0; k < 3; ++k) {
     const auto centre = [&](std::uint32_t t) { return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2; };
     centres.lo[k] = centres.hi[k] = centre(*from);
@@ -72,7 +72,7 @@ BoxPairs::BoxPairs(const Scene& scene, double clearance)
   if (count > 0) tree_.add(0, count);
 }
 
-// Rounding is monotone: no two boxes inside x and y have a smaller rounded difference.
+// Rounding is monotone: boxes inside x and y never have a smaller rounded difference than x and y.
 bool BoxPairs::meet(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const {
   for (int k = 0; k < 3; ++k) {
     if (clearance_ == 0) {
@@ -123,32 +123,32 @@ namespace {
 
 // ---- rounding ----
 // With u = 2^-53: a gap of two boxes along an axis is a difference of doubles, off by a factor
-// within 1 +- u, and exact where it is subnormal. It is scaled (1 +- u), squared (the two errors
-// twice, and 1 +- u), and the three squares are added (1 +- u, twice): 7 factors within 1 +- u in
-// all, so the exact sum is at least the computed one times 1 - 8 u. What underflows on the way is
-// off by less than 2^-1074 for each of the three, nothing beside a length whose scaled square is at
-// least 2^-104. The length's scaled square is rounded twice, (1 +- u)^2. So a margin of 32 u is
-// enough: (1 - 8 u) (1 - u)^2 (1 + 32 u) > 1 + 20 u.
+// within 1 +- u, and exact if it is subnormal. The gap is scaled (1 +- u) and squared (the two
+// errors twice, and 1 +- u), and the three squares are added (1 +- u, twice). These are 7 factors
+// within 1 +- u, so the exact sum is at least the computed one times 1 - 8 u. Each of the three
+// squares is off by less than 2^-1074 more if it underflows, which is negligible beside a length
+// whose scaled square is at least 2^-104. The length's scaled square is rounded twice, (1 +- u)^2.
+// So a margin of 32 u is enough: (1 - 8 u) (1 - u)^2 (1 + 32 u) > 1 + 20 u.
 constexpr double kMargin = 0x1p-48;
 
 }  // namespace
 
 FarBoxes::FarBoxes(double length) : length_(length) {
   if (length == 0 || std::isinf(length)) return;
-  // The scaled length is in [1, 2), or in [2^-52, 1) where it is subnormal.
+  // The scaled length is in [1, 2), or in [2^-52, 1) if the length is subnormal.
   const int exponent = std::max(std::ilogb(length), std::numeric_limits<double>::min_exponent - 1);
   scale_ = std::ldexp(1.0, -exponent);
   const double scaled = length * scale_;
   squared_ = scaled * scaled * (1 + kMargin);
 }
 
-// A difference that overflows is more than any finite length, and so is a gap that overflows where
-// it is scaled: by 2^-e to 2^1024 or more, while the length is less than 2^(e + 1).
+// If a difference overflows, it is more than any finite length. If a gap overflows when it is
+// scaled by 2^-e, it is at least 2^(e + 1024), while the length is less than 2^(e + 1).
 bool FarBoxes::proved(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
     const double gap = std::max({y.lo[k] - x.hi[k], x.lo[k] - y.hi[k], 0.0});
-    // Rounding is monotone: a rounded difference above a double comes from a difference above it.
+    // Rounding is monotone: if the rounded difference is above a double, so is the exact one.
     if (gap > length_) return true;
     const double scaled = gap * scale_;
     sum += scaled * scaled;

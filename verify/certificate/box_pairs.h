@@ -1,8 +1,8 @@
-// The pairs that a certificate speaks about, in the order in which it speaks about them.
+// Enumerates the pairs of triangles that a certificate is about, in the certificate's order.
 //
-// An enumeration of its own: neither core's join, which culling uses, nor CGAL's, nor the tree of
-// verify/accounting. It needs what they do not have, a sorted order without storing or sorting all
-// pairs: triangle after triangle, each asked for its partners.
+// This enumeration shares no code with core's join, which culling uses, nor with CGAL's join or the
+// tree of verify/accounting. Unlike these it gives the pairs in sorted order without storing or
+// sorting all of them: it takes the triangles in order, and finds the partners of each.
 #pragma once
 
 #include <array>
@@ -45,20 +45,20 @@ struct BoundsTree {
   std::vector<Node> nodes;
 };
 
-// ---- the pairs that a certificate speaks about ----
+// ---- the pairs that a certificate is about ----
 
 /// All pairs of triangles that count (of different objects, and of one object where it is `self`)
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
 /// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
-/// With a clearance > 0 (world units, finite): the pairs whose boxes are not farther apart than
-/// that along an axis, by differences in double. Memory O(triangles). Precondition: validate()
-/// accepts the scene. It must outlive the object.
+/// With a clearance > 0 (world units, finite): the pairs whose boxes are no farther apart than the
+/// clearance along any axis, by differences in double. Memory O(triangles). Precondition:
+/// validate() accepts the scene. The scene must outlive the object.
 class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene, double clearance = 0);
 
   /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at
-  /// least `enough` or the scene ends. False, with none, after the last.
+  /// least `enough` or the scene ends. Returns false, with no pairs, after the last pair.
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:
@@ -73,8 +73,7 @@ class BoxPairs {
 
 // ---- the pairs of triangles of two objects that may be within some distance, by their boxes ----
 //
-// For the checker of distances; also an enumeration of its own: it shares no code with
-// core/proximity, which culls.
+// For the checker of distances. Shares no code with core/proximity, which culls.
 
 /// Whether two boxes are farther apart than a length, in doubles whose rounding is bounded.
 class FarBoxes {
@@ -90,7 +89,8 @@ class FarBoxes {
   double squared_ = 0;  // above (length * scale)^2
 };
 
-/// Precondition: validate() accepts the scene. It must outlive the object.
+/// Enumerates these pairs. Precondition: validate() accepts the scene. The scene must outlive the
+/// object.
 class NearBoxes {
  public:
   explicit NearBoxes(const Scene& scene);
@@ -98,16 +98,16 @@ class NearBoxes {
   /// Begins with the objects a <= b. length: world units, >= 0, may be infinite.
   void ask(std::uint32_t a, std::uint32_t b, double length);
 
-  /// Appends pairs of triangles, one of each object, or any two of the object that both are; in no
-  /// order, until there are at least `enough` or no more. Among all that are appended since ask()
-  /// each pair whose boxes are not proved to be farther apart than the length is there once. False
-  /// when none is left.
+  /// Appends pairs of triangles, in no order, until there are at least `enough` or no more. If
+  /// a < b, a pair has one triangle of each object; if a == b, any two triangles of the object.
+  /// Since ask(), each pair whose boxes are not proved to be farther apart than the length is
+  /// appended once. False when no pair is left.
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:
   const Scene& scene_;
   BoundsTree tree_;
-  std::vector<std::uint32_t> roots_;  // by object; of one without triangles none
+  std::vector<std::uint32_t> roots_;  // by object; no root if the object has no triangles
   FarBoxes far_{0};
   std::vector<std::array<std::uint32_t, 2>> open_;  // pairs of nodes still to be looked into
 };

@@ -1,4 +1,4 @@
-// Makes certificates. The choice of directions need not be trusted: the checker proves each.
+// Makes certificates. The choice of directions need not be trusted, since the checker proves each.
 #include "verify/certificate/certificate.h"
 
 #include <algorithm>
@@ -54,10 +54,10 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
   return kept ? kKept : kMeets;
 }
 
-/// The pairs of a sorted list, found one after the other in a longer one.
+/// Finds the pairs of a sorted list in a longer sorted list, whose pairs come one after the other.
 class Marked {
  public:
-  /// others: pairs that are not in the longer list are passed over.
+  /// others: skip pairs that are not in the longer list; else they are an error.
   Marked(std::span<const TrianglePair> pairs, const char* name, bool others)
       : pairs_(pairs), name_(name), others_(others) {
     for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -95,7 +95,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error("make_certificate: a clearance must be finite and not negative");
   constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
-  constexpr std::size_t kPerThread = 1024;  // enough work to pay for a thread
+  constexpr std::size_t kPerThread = 1024;  // pairs per thread, enough to pay for it
   Certificate out;
   out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
   out.clearance = clearance;
@@ -150,7 +150,7 @@ Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> li
   constexpr std::size_t kBlock = 1 << 16;
   BoxPairs enumeration(scene, clearance);
   std::vector<TrianglePair> pairs;
-  std::vector<TrianglePair> near;  // of the list
+  std::vector<TrianglePair> near;  // pairs of the list whose boxes overlap
   while (enumeration.next(pairs, kBlock)) {
     std::set_intersection(pairs.begin(), pairs.end(),
                           std::lower_bound(listed.begin(), listed.end(), pairs.front()),

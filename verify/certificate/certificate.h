@@ -2,17 +2,18 @@
 // of evidence a pair, so that a stranger can prove or refute it without any of the code that
 // culled. docs/certificate.md is the format and the proof that 38 directions suffice.
 //
-// A check that passes proves something about the scene alone: of the pairs of triangles that
-// count (of different objects, and of one object where it is `self`), these meet and no others. The
-// certificate names the list of these pairs by its hash, so that a written list is proved with it.
+// A check that passes proves something about the scene alone: which of the pairs of triangles that
+// count meet. A pair counts if its triangles are of different objects, or of one object marked
+// `self`. The certificate names the list of the pairs that meet by its hash, so that a written list
+// is proved, too.
 // Neighbours (verify/exact.h) meet iff they share more than their shared part. Pairs whose boxes
 // are disjoint need no evidence. Nothing is proved about the run: neither how it came to its answer
-// (Run) nor which pairs it kept. A certificate that calls a pair culled which meets is refuted; one
-// that calls it kept instead says something true of the scene, whatever the run did.
+// (Run) nor which pairs it kept. If the certificate calls a pair culled that meets, it is refuted.
+// If it calls this pair kept, its statement about the scene is true, whatever the run did.
 //
 // With a clearance D > 0 read "meets" as "is at distance D or less", "overlap" as "are no farther
 // apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
-// decided as without one.
+// decided as without a clearance.
 #pragma once
 
 #include <array>
@@ -27,8 +28,9 @@
 
 namespace farcull {
 
-/// The pairs that a scene does not ask about: those inside an object that is not `self`. No number
-/// of pairs met, missed or proved speaks of them, so whoever reports one reports this as well.
+/// The pairs that a scene does not ask about: those inside an object that is not `self`. No count
+/// of pairs that meet, are missed or are proved includes them, so a report of such a count reports
+/// these pairs as well.
 struct NotAsked {
   std::uint64_t objects = 0;                         // that are not tested against themselves
   std::uint64_t pairs = 0;                           // of two triangles inside one of them
@@ -46,7 +48,7 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// The pairs that the scene does not ask about (not_asked()), and so is no part of the claims.
+  /// The pairs that the scene does not ask about (not_asked()). They are no part of the claims.
   struct Unasked {
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;
@@ -113,27 +115,26 @@ constexpr std::uint8_t kKept = 0x40;
 /// check refutes them. A kept pair is said to meet iff it is in `colliding`. If the run calls a
 /// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept (neighbours:
 /// kNeighbours), and kMeets if it was culled. The hash of the list is that of `colliding`. With a
-/// clearance > 0, kept pairs whose boxes are farther apart than it are left out: they need no
-/// evidence, and a method may keep more.
+/// clearance > 0, kept pairs whose boxes are farther apart than the clearance are left out: they
+/// need no evidence, and a method may keep such pairs.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0);
 
-/// Evidence for a list that did not come with any, as of a run that kept just these pairs and found
-/// them to meet. Pairs of the list that do not count, or whose boxes are disjoint, are left out:
-/// find_differences() (pair_list.h) names them. Any order, repetitions allowed; a < b.
+/// Makes a certificate for a list that has none, as for a run that kept just these pairs and found
+/// that they meet. Pairs of the list that do not count, or whose boxes are disjoint, are left out:
+/// find_differences() (pair_list.h) names them. listed: a < b, any order, repetitions allowed.
 Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> listed,
                                 double clearance = 0);
 
-/// JSON, the keys always in the same order, with a final newline: version 3, or 4 with a clearance.
-/// Bytes of strings that are not UTF-8 become U+FFFD. Throws std::logic_error where a radius is not
-/// finite.
+/// The certificate as JSON, the keys always in the same order, with a final newline. The version is
+/// 3, or 4 with a clearance. Bytes of strings that are not UTF-8 become U+FFFD. Throws
+/// std::logic_error if a radius is not finite.
 std::string to_text(const Certificate& certificate);
 
-/// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not
-/// JSON of exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64,
-/// format or version. It does not judge what the certificate claims. Memory in proportion to the
-/// text, whatever it says.
+/// The inverse of to_text(). Throws Error naming `name` and the fault if the text is not JSON of
+/// exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64, format
+/// or version. It does not judge what the certificate claims. Memory in proportion to the text.
 Certificate parse_certificate(std::string_view text, const std::string& name);
 
 enum class Verdict : std::uint8_t { proved, refuted, not_proved };
@@ -142,31 +143,31 @@ std::string to_string(Verdict verdict);
 struct CheckResult {
   Verdict verdict = Verdict::not_proved;
   std::string reason;                   // empty where proved
-  std::optional<TrianglePair> pair;     // that refutes, or for which the evidence fails
+  std::optional<TrianglePair> pair;     // the one that refutes, or whose evidence fails
   Certificate::Claims found;            // counted by the checker, whatever was claimed
   std::vector<TrianglePair> meeting;    // the pairs that meet, sorted; decided by the checker
-  std::string list_sha256;              // pair_list_hash() of them; empty where nothing was decided
+  std::string list_sha256;              // pair_list_hash() of `meeting`; empty if none was decided
   std::uint64_t culled_meeting = 0;     // pairs that the certificate calls culled and that meet
-  std::vector<std::string> unattested;  // what the check cannot speak about, one line each
+  std::vector<std::string> unattested;  // what the check cannot prove, one line each
   double ms = 0;                        // wall clock of the check: hash, enumeration and decisions
   double decide_ms = 0;                 // wall clock of the decisions alone, on all cores
 };
 
-/// Decides every pair of the scene whose boxes overlap, in integers, and compares.
-/// - refuted: the certificate calls a pair culled that meets, or says wrongly of a pair that it
-///   meets or that it does not. The first such pair in order is named.
-/// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
-///   byte is no evidence or names a direction that does not separate its disjoint pair, or does not
-///   say what neighbours are, or a count or the hash of the list is wrong.
-/// - proved: neither. So the pairs of the list meet, and no others that count. What the certificate
-///   calls kept, and all of its Run, stays unattested.
+/// Decides every pair of the scene whose boxes overlap, in integers, and compares with the claims.
+/// - refuted: the certificate calls a pair culled that meets, or is wrong about whether a pair
+///   meets. The first such pair in order is named.
+/// - not_proved: there is no such pair, but the certificate is of another scene, the evidence is
+///   too short or too long, a count or the hash of the list is wrong, or a byte is wrong: it has no
+///   meaning, its direction does not separate the pair (which is disjoint), or it does not say that
+///   neighbours meet only in what they share.
+/// - proved: neither. So the pairs of the list meet, and no others that count. The check does not
+///   prove which pairs the run kept, nor anything else in Run.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
-/// Throws std::logic_error where the clearance is negative or not finite. Precondition: validate()
+/// Throws std::logic_error if the clearance is negative or not finite. Precondition: validate()
 /// accepts the scene.
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene);
 
-/// "the certificate is of another scene: ..." with what differs; empty where the key is the
-/// scene's.
+/// "the certificate is of another scene: ..." with the difference; empty if the key is the scene's.
 std::string other_scene(const Certificate::SceneKey& key, const Scene& scene);
 
 }  // namespace farcull

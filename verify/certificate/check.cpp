@@ -1,4 +1,4 @@
-// The checker: box_pairs, integer_pair, pair_list and this file are all that has to be right.
+// The checker. Only box_pairs, integer_pair, pair_list and this file have to be right.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -19,13 +19,13 @@ enum class Finding : std::uint8_t {
   as_claimed,
   // These leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
-  not_neighbours,   // neighbours that meet only in what they share, called something else
+  not_neighbours,   // neighbours meet only in what they share, but the byte does not say so
   no_evidence,      // the byte means nothing
   // And these refute it:
   culled_meets,
-  meets,       // kept; claimed to be disjoint
-  separated,   // claimed to meet
-  neighbours,  // claimed to meet, but they meet only in what they share
+  meets,       // a kept pair meets, but is claimed to be disjoint
+  separated,   // the pair is disjoint, but is claimed to meet
+  neighbours,  // neighbours meet only in what they share, but are claimed to meet
 };
 
 bool refutes(Finding finding) { return finding >= Finding::culled_meets; }
@@ -44,7 +44,8 @@ struct Decision {
 }
 
 /// Decides the pair without trusting the byte: a direction separates it, or a point lies in both
-/// triangles, or two points are within the clearance. Neighbours have a decision of their own.
+/// triangles, or two points are within the clearance. Neighbours are decided by
+/// meets_beyond_shared().
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);
@@ -146,7 +147,7 @@ std::string wrong_list(const std::string& claimed, const std::string& found) {
                                 claimed + ", and that of the pairs that meet is " + found;
 }
 
-/// The counts of the pairs so far.
+/// Counts the decided pairs, and keeps the pair to be named.
 class Tally {
  public:
   explicit Tally(bool clearance) : clearance_(clearance) {}
@@ -162,7 +163,7 @@ class Tally {
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == Finding::as_claimed) return;
-    // The first pair that refutes; before there is one, the first that is not proved.
+    // Names the first pair that refutes; if there is none yet, the first that is not proved.
     const bool refuted = refutes(decision.finding);
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
@@ -170,7 +171,7 @@ class Tally {
     result_.reason = sentence(decision.finding, byte, clearance_);
   }
 
-  /// The verdict, once every pair is in.
+  /// The result. Every pair has been added.
   CheckResult finish(const Certificate& certificate, const Scene& scene, double decide_ms) {
     result_.decide_ms = decide_ms;
     result_.list_sha256 = pair_list_hash(scene, result_.meeting);

@@ -1,4 +1,4 @@
-// A certificate of distances as text and back.
+// Writes a certificate of distances as text, and reads it.
 #include "verify/certificate/distance_certificate.h"
 
 #include <algorithm>
@@ -131,7 +131,8 @@ DistanceEntry entry_of(const Scene& scene, const TrianglePair& pair, std::string
     const std::uint32_t triangle = side == 0 ? pair.a : pair.b;
     if (triangle >= scene.triangles.size())
       throw std::logic_error("entry_of: a triangle that the scene does not have");
-    // An object without triangles starts where the next one does: the last one owns it.
+    // An object without triangles starts where the next object does, so the last one that starts at
+    // or before the triangle owns it.
     const auto after =
         std::ranges::upper_bound(scene.objects, triangle, {}, &Object::first_triangle);
     entry.objects[side] = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
@@ -172,10 +173,10 @@ std::string to_text(const DistanceCertificate& certificate) {
 
 DistanceCertificate parse_distance_certificate(std::string_view text, const std::string& name) {
   const JsonReader reader(name, kDistancesRemedy);
-  // There may be very many answers, so the limit of values is the number of characters.
+  // There may be very many answers, so the number of values is limited only by the text's length.
   const Json root = reader.parse(text, text.size());
   if (!root.is_object()) reader.fail("the certificate is no object");
-  // Before the keys, which another version may have others of.
+  // Format and version are checked before the keys, since another version may have other keys.
   if (root.value("format", Json()) != kDistancesFormat)
     reader.fail(std::string("format is not ") + kDistancesFormat);
   if (const Json version = root.value("version", Json());

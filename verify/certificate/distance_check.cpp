@@ -1,5 +1,5 @@
-// The checker of distances: integers, integer_distance, box_pairs, distance_proofs and this file,
-// and what they include of this folder, are all that has to be right.
+// The checker of distances. Only integers, integer_distance, box_pairs, distance_proofs and this
+// file, with the files of this folder that they include, have to be right.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -20,7 +20,7 @@ namespace {
 using Pairs = DistanceCertificate::Pairs;
 
 constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time
-constexpr std::size_t kPerThread = 256;  // enough of them to pay for a thread
+constexpr std::size_t kPerThread = 256;  // pairs per thread, enough to pay for it
 
 /// The fault that is reported: the first that refutes the certificate, else the first that leaves
 /// it unproved.
@@ -111,7 +111,7 @@ class Checker {
     }
   }
 
-  /// Whether the pair is of those that are asked about.
+  /// Whether the certificate's question asks about the pair of entry i.
   bool counts(std::size_t i) const {
     const DistanceEntry& entry = certificate_.distances[i];
     if (entry.objects[0] != entry.objects[1]) return entry.objects[0] < entry.objects[1];
@@ -119,7 +119,7 @@ class Checker {
            entry.triangles[0] < entry.triangles[1] && !are_neighbours(listed_[i].pair);
   }
 
-  /// Whether it says what is inside where that is not asked.
+  /// Whether entry i claims what is inside although that is not asked about this pair.
   bool says_needlessly_what_is_inside(std::size_t i) const {
     const DistanceEntry& entry = certificate_.distances[i];
     if (entry.inside == InsideClaim::unknown) return false;
@@ -127,8 +127,8 @@ class Checker {
            listed_[i].length.squared.over == 0;
   }
 
-  /// What the entry says wrongly about insides; empty if nothing. That the objects do not meet is
-  /// proved by their distance.
+  /// A message if the entry is wrong about which object is inside, else empty. Elsewhere the
+  /// distance proves that the objects do not meet.
   static std::string wrong_inside(const IntegerInside& insides, const DistanceEntry& entry) {
     const auto& [a, b] = entry.objects;
     if (entry.inside == InsideClaim::unknown || a == b) return "";
@@ -205,11 +205,12 @@ class Checker {
   // ---- objects ----
 
   using Objects = std::array<std::uint32_t, 2>;
-  /// Each two objects that are listed, sorted, with their entry.
+  /// The pairs of objects that are listed, sorted, each with its entry.
   using Named = std::vector<std::pair<Objects, const Listed*>>;
 
-  /// Entries that do not count are left out, and of several about the same objects all but the
-  /// first: such a certificate is not proved, and may be refuted for another reason.
+  /// Leaves out entries that do not count, and of several entries about the same objects all but
+  /// the first. A certificate with such entries is not proved, but may be refuted for another
+  /// reason.
   Named named_objects() const {
     Named out;
     for (std::size_t i = 0; i < listed_.size(); ++i) {
@@ -221,21 +222,22 @@ class Checker {
     return out;
   }
 
-  /// How far the answers of an object reach: its kth nearest one that is listed, or where fewer
-  /// are listed `within`, which all answers reach.
+  /// How far the answers of an object reach: to its kth nearest listed object, or to `within` if
+  /// fewer than k are listed.
   struct Reach {
     const Length* length = nullptr;                                    // null: infinite
-    std::uint32_t object = std::numeric_limits<std::uint32_t>::max();  // the last of those as far
+    std::uint32_t object = std::numeric_limits<std::uint32_t>::max();  // the last one as far away
   };
 
-  /// Whether an object at this distance is within the reach: of equally far ones the lower one is.
+  /// Whether an object at this distance is within the reach. At the reach's own distance, objects
+  /// up to reach.object are within it.
   static bool is_in(const Length& length, std::uint32_t object, const Reach& reach) {
     if (reach.length == nullptr) return true;
     const auto order = length.squared <=> reach.length->squared;
     return order < 0 || (order == 0 && object <= reach.object);
   }
 
-  /// By object.
+  /// The reach of each object.
   std::vector<Reach> reaches(const Named& named) const {
     std::vector<Reach> out(scene_.objects.size(), {.length = within_ ? &*within_ : nullptr});
     if (certificate_.pairs != Pairs::nearest) return out;
@@ -258,7 +260,7 @@ class Checker {
   void check_objects() {
     const Named named = named_objects();
     NearBoxes boxes(scene_);
-    // First what is listed: how far answers reach is known only when these distances are proved.
+    // Listed objects come first: only when their distances are proved, the reaches are known.
     for (const auto& [objects, listed] : named) {
       ask(boxes, objects, &listed->length, false, listed);
       if (report_.refuted()) return;
@@ -271,7 +273,7 @@ class Checker {
   }
 
   void check_unlisted(NearBoxes& boxes, const Named& named, const std::vector<Reach>& reach) {
-    std::vector<std::uint32_t> objects;  // that have triangles
+    std::vector<std::uint32_t> objects;  // those that have triangles
     for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
       if (scene_.objects[o].triangle_count > 0) objects.push_back(o);
     }
@@ -296,8 +298,8 @@ class Checker {
     const Reach& of_a = reach[objects[0]];
     const Reach& of_b = reach[objects[1]];
     const Length* far = farther(of_a.length, of_b.length);
-    // If the last object of each reach of this length comes before the other object, a pair that is
-    // just as far is allowed.
+    // A pair exactly `far` apart is allowed if for each of the two reaches that is so long, its
+    // last object comes before the other object.
     const auto as_far = [&](const Reach& x, std::uint32_t other) {
       return far != nullptr && (x.object < other || x.length->squared < far->squared);
     };
@@ -309,8 +311,8 @@ class Checker {
     return x->squared < y->squared ? y : x;
   }
 
-  /// Adds the proof that every pair of the two objects that counts is farther apart than the
-  /// length; exactly as far is enough with or_as_far, and for pairs after the listed one.
+  /// Asks for the proof that every pair of the two objects that counts is farther apart than the
+  /// length. With or_as_far, and for pairs after the listed one, exactly as far is enough.
   void ask(NearBoxes& boxes, const Objects& objects, const Length* length, bool or_as_far,
            const Listed* listed) {
     ++question_;
@@ -356,7 +358,7 @@ class Checker {
     return std::nullopt;
   }
 
-  /// Each entry has to be in the reach of one of its objects.
+  /// Refutes entries whose objects are not within the reach of each other, either way.
   void check_reaches(const Named& named, const std::vector<Reach>& reach) {
     for (const auto& [objects, listed] : named) {
       if (is_in(listed->length, objects[1], reach[objects[0]]) ||
@@ -370,7 +372,8 @@ class Checker {
 
   // ---- deciding ----
 
-  /// Reports what the pairs so far find. To be called where no question is half asked.
+  /// Decides the waiting pairs and reports the faults. To be called only between two questions, not
+  /// while the pairs of a question are still added.
   void decide() {
     proof_.decide();
     if (const auto& job = proof_.nearer())
@@ -404,7 +407,7 @@ class Checker {
   const Scene& scene_;
   std::vector<Listed> listed_;
   std::optional<Length> within_;  // none: infinite
-  std::uint64_t question_ = 0;    // the last that was asked
+  std::uint64_t question_ = 0;    // number of the last question
   FarProof proof_;
   Report report_;
 };

@@ -1,5 +1,5 @@
 // Every index is compared with the scene before it is used. A direction proves that a pair is far
-// enough; if no direction does, its nearest points prove that it is not.
+// enough; if no direction does, the nearest points prove that the pair is not far enough.
 #include "verify/certificate/distance_proofs.h"
 
 #include <array>
@@ -47,7 +47,7 @@ std::vector<Listed> located(const DistanceCertificate& certificate, const Scene&
 // ---- far pairs ----
 
 void FarProof::decide() {
-  constexpr std::size_t kPerThread = 256;  // enough of them to pay for a thread
+  constexpr std::size_t kPerThread = 256;  // jobs per thread, enough to pay for it
   std::vector<std::uint8_t> fails(jobs_.size());
   for_chunks(jobs_.size(), chunks_for(jobs_.size(), kPerThread),
              [&](std::size_t, std::size_t begin, std::size_t end) {

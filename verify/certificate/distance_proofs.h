@@ -1,5 +1,5 @@
-// For the checker of distances: the entries of a certificate in the numbers of its scene, and the
-// proof that all other pairs are farther apart.
+// For the checker of distances: finds the triangles of entries in the scene, and proves that all
+// other pairs are farther apart.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,17 @@ struct Listed {
   Length length;
 };
 
-/// Entry by entry. Throws Error naming `name` where one names what the scene does not have.
+/// The entries in order. Throws Error naming `name` if an entry names an object or a triangle that
+/// the scene does not have.
 std::vector<Listed> located(const DistanceCertificate& certificate, const Scene& scene,
                             const std::string& name);
 
-// Many pairs of triangles of which each has to be farther apart than some length, decided in
-// integers, on all cores.
+// Decides in integers, on all cores, whether each of many pairs of triangles is farther apart than
+// its length.
 
 class FarProof {
  public:
-  /// A pair that has to be farther apart than the length, or at least as far.
+  /// A pair that has to be farther apart than the length (with or_as_far: at least as far).
   struct Job {
     TrianglePair pair;
     const Length* length = nullptr;  // null: infinite, which no pair satisfies
@@ -41,15 +42,16 @@ class FarProof {
   explicit FarProof(const Scene& scene) : scene_(scene) {}
 
   void add(const Job& job) { jobs_.push_back(job); }
-  /// How many have been added and not decided.
+  /// How many jobs have been added and not decided.
   std::size_t waiting() const { return jobs_.size(); }
   /// Decides the waiting jobs.
   void decide();
 
-  /// The first decided pair, by question and then by pair, that is not far enough; not one that is
-  /// exactly as near as the pair of its entry.
+  /// The first decided job, by question and then by pair, whose pair is not far enough. Leaves out
+  /// jobs with an entry whose pair is exactly as near as the pair of the entry (as_near()).
   const std::optional<Job>& nearer() const { return nearer_; }
-  /// The first pair that is exactly as near as the pair of its entry.
+  /// The first decided job whose pair is not far enough, but exactly as near as the pair of its
+  /// entry.
   const std::optional<Job>& as_near() const { return as_near_; }
 
  private:

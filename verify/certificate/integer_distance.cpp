@@ -1,5 +1,5 @@
-// A pair of triangles is scaled to integers once; GMP's, since the square of a distance is mostly
-// long.
+// A pair of triangles is scaled to integers once. They are GMP's integers, since the square of a
+// distance is mostly long.
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
@@ -28,8 +28,8 @@ constexpr int kFace = 6;
 
 bool is_corner(int feature) { return feature < 3; }
 
-/// Constructs the two points of these features that can be nearest, if no earlier pair of features
-/// has nearest points. False: there are none.
+/// Constructs the only two points of these features that can be nearest points, provided that no
+/// earlier pair of features has nearest points. False: there are none.
 bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int of_a, int of_b) {
   const auto& [a, b, exponent] = pair;
   if (is_corner(of_a)) {
@@ -53,7 +53,8 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-/// Whether x is the fraction, rounded: whether that lies between the middles beside x.
+/// Whether x is the rounded fraction: whether the fraction lies between the middles from x to the
+/// next lower double and from x to the next higher double.
 bool is_rounded(double x, const mpq_class& exact) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
@@ -133,18 +134,18 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
   return false;
 }
 
-// Parity of crossings along a ray in the direction of the first axis. The ray starts a little
-// beside the point, by e along the second axis and by e^2 along the third, with e > 0 smaller than
-// any number: so it meets no edge, and no ray has to be tried twice. The sign of a polynomial in e
-// is that of its first coefficient that is not 0.
+// Finds the parity of crossings along a ray in the direction of the first axis. The ray starts a
+// little beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
+// smaller than any number. So the ray meets no edge, and one ray is enough. The sign of a
+// polynomial in e is that of its first coefficient that is not 0.
 
 namespace {
 
 using integer::BigVector;
 
-/// On which side of the ray the edge from p to q passes, both relative to the point: of the product
-/// (p - o) x (q - o) along the first axis, o = (0, e, e^2). 0 only where p and q differ at most
-/// along the ray.
+/// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
+/// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ at
+/// most along the ray.
 int side_of_edge(const BigVector& p, const BigVector& q) {
   const int sign = cmp(mpz_class(p[1] * q[2]), mpz_class(p[2] * q[1]));
   if (sign != 0) return sign;
@@ -171,19 +172,19 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   return true;
 }
 
-/// Is the number of crossings odd? Nothing where x lies on a triangle that the ray crosses.
+/// Is the number of crossings odd? Empty if x lies on a triangle that the ray crosses.
 std::optional<bool> is_odd(const Scene& scene, const Object& object, const Vec3& x) {
   bool odd = false;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
     if (!may_cross(t, x)) continue;
-    const integer::ScaledPair pair = integer::scaled({x, x, x}, t);  // t less x
+    const integer::ScaledPair pair = integer::scaled({x, x, x}, t);  // pair.b: t relative to x
     const int side = side_of_edge(pair.b[0], pair.b[1]);
     if (side == 0 || side_of_edge(pair.b[1], pair.b[2]) != side ||
         side_of_edge(pair.b[2], pair.b[0]) != side) {
       continue;  // passes by
     }
-    // The ray meets the plane at determinant / n_x along it, and n_x has the sign `side`.
+    // Along the ray the plane is at distance determinant / n_x, and n_x has the sign `side`.
     const int ahead = sgn(determinant(pair.b));
     if (ahead == 0) return std::nullopt;
     if (ahead == side) odd = !odd;
@@ -222,7 +223,8 @@ bool is_closed_mesh(const Scene& scene, const Object& object) {
   return true;
 }
 
-/// A corner of each set of triangles that vertices hold together. Such a set is connected.
+/// One corner of each connected part of the mesh: triangles that share a vertex index, directly or
+/// through others, are one part.
 std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) {
   const auto first = scene.triangles.begin() + object.first_triangle;
   const auto last = first + object.triangle_count;
@@ -271,7 +273,7 @@ IntegerInside::~IntegerInside() = default;
 
 IntegerInside::Answer IntegerInside::contains(std::uint32_t outer, std::uint32_t inner) const {
   OfObject &in = objects_[inner], &out = objects_[outer];
-  // A part that is inside a closed mesh is inside its box.
+  // An object that is inside a closed mesh is inside the mesh's box.
   const Box &x_box = in.box, &y_box = out.box;
   if ((x_box.lo.array() < y_box.lo.array()).any() || (x_box.hi.array() > y_box.hi.array()).any())
     return Answer::no;

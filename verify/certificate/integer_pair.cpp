@@ -1,5 +1,5 @@
-// A pair is scaled to integers once. Where the coordinates are short enough, 128-bit integers
-// decide it, else, and with a clearance, GMP's.
+// A pair is scaled to integers once. 128-bit integers decide it if the coordinates are short enough
+// and there is no clearance, else GMP's integers.
 #include "verify/certificate/integer_pair.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       top = std::max(top, x.exponent + bit_length(x.mantissa < 0 ? -Wide{x.mantissa} : x.mantissa));
     }
   }
-  constexpr int kWidest = 125;  // of a coordinate, so that a difference still is a Wide
+  constexpr int kWidest = 125;  // bits of a coordinate, so that a difference still is a Wide
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (corners_[0][i] != corners_[1][j]) continue;
@@ -98,7 +98,7 @@ IntegerPair::Big& IntegerPair::big() {
 }
 
 bool IntegerPair::separated_by(int direction) {
-  // A clearance is mostly a decimal fraction, which is long beside the coordinates.
+  // A clearance is mostly a decimal fraction, which makes the integers too long for Wide.
   if (clearance_ == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
@@ -112,7 +112,7 @@ bool IntegerPair::separated_by(int direction) {
 }
 
 std::optional<int> IntegerPair::separating_direction() {
-  // The directions of the lowest degree first: 29 .. 37, 0 .. 10, 11 .. 28.
+  // Directions of low degree come first: 29 .. 37, 0 .. 10, 11 .. 28.
   for (int n = 0; n < kDirections; ++n) {
     const int direction = n < 9 ? 29 + n : n - 9;
     if (separated_by(direction)) return direction;
@@ -144,7 +144,7 @@ bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, 
 bool IntegerPair::has_common_point() {
   thread_local PointSearch search;
   const Big& pair = big();
-  // Whatever was constructed, only membership in both triangles counts.
+  // The constructions are not trusted: only membership in both triangles counts.
   return any_point(search, pair.a, pair.b,
                    [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); });
 }
@@ -163,7 +163,7 @@ bool IntegerPair::is_within() {
 }
 
 bool IntegerPair::meets_beyond_shared() {
-  // The corners of a that are shared, one of them repeated where there are fewer than three.
+  // The shared corners of a; if there are fewer than three, one of them is repeated.
   std::array<int, 3> shared = {-1, -1, -1};
   std::size_t count = 0;
   for (int i = 0; i < 3; ++i) {
@@ -174,7 +174,7 @@ bool IntegerPair::meets_beyond_shared() {
 
   thread_local PointSearch search;
   const bool all = shared_[0] == 7 && shared_[1] == 7;
-  // The hull of the shared corners is the shared part unless they are the corners of a triangle.
+  // The hull of the shared corners is the shared part, unless it is a triangle with an interior.
   if (all && search.is_triangle(big().a)) return true;
   for (int direction = 0; direction < 11; ++direction) {
     if (only_shared_by(direction)) return false;
@@ -186,8 +186,8 @@ bool IntegerPair::meets_beyond_shared() {
   });
 }
 
-// A likely direction: all 38 in doubles. Nothing rests on their rounding, since a guess is proved
-// by whoever asked.
+// Tries all 38 directions in doubles. Rounding errors do no harm, since the caller proves the
+// guess.
 
 namespace {
 

@@ -1,16 +1,17 @@
-// Two triangles decided in integers: which of 38 directions separates them, or a point they share;
-// with a clearance, which one shows that they are farther apart, or two points that are not.
+// Decides two triangles in integers: finds which of 38 directions separates them, or a point that
+// they share. With a clearance, finds which direction shows that they are farther apart, or two
+// points that are not farther apart.
 //
-// The certificate checker rests on this file alone, so it knows neither CGAL nor verify/exact.
+// The certificate checker relies on this file, so the file uses neither CGAL nor verify/exact.
 // Every finite double is an integer times a power of two: the pair is scaled by one common power,
-// and from there on nothing is rounded and nothing can overflow (GMP; machine integers where the
-// scaled coordinates are short enough for a bound that is proved beside the code).
+// and from there on nothing is rounded and nothing can overflow. The integers are GMP's, or machine
+// integers if the scaled coordinates are short enough for a bound that is proved beside the code.
 //
 // Semantics as in verify/exact.h: closed convex hulls of the three corners, touching counts, a
-// degenerate triangle is the segment or the point that it is. docs/certificate.md proves that the
-// 38 directions find every disjoint pair and the 21 points every other one, and that with a
-// clearance the same directions find every pair that is farther apart, and 42 pairs of points or
-// the 21 points every other one.
+// degenerate triangle is the segment or the point that it is. docs/certificate.md proves that one
+// of the 38 directions separates every disjoint pair, and one of 21 points shows that any other
+// pair meets. With a clearance, the same directions show every pair that is farther apart, and 42
+// pairs of points or the 21 points show every other pair.
 #pragma once
 
 #include <array>
@@ -47,20 +48,20 @@ class IntegerPair {
   bool separated_by(int direction);
   /// A direction that separates; none iff the distance is at most the clearance.
   std::optional<int> separating_direction();
-  /// True iff one of 21 constructed points (corners, edge with plane, edge with edge) lies in both
-  /// closed triangles; each is a vector of integers over one integer. True iff the triangles share
-  /// a point, found without any of the directions.
+  /// True iff the triangles share a point. Uses no directions: true iff one of 21 constructed
+  /// points (corners, edge with plane, edge with edge) lies in both closed triangles. Each point is
+  /// a vector of integers over one integer.
   bool has_common_point();
-  /// True iff two constructed points, one verified to lie in each triangle, are no farther apart
-  /// than the clearance, or has_common_point(). True iff the distance is at most the clearance,
-  /// found without any of the directions.
+  /// True iff the distance is at most the clearance. Uses no directions: true iff
+  /// has_common_point(), or two constructed points, one verified to lie in each triangle, are no
+  /// farther apart than the clearance.
   bool is_within();
 
   /// True iff a corner of a and a corner of b are equal.
   bool shares_position() const { return shared_[0] != 0; }
   /// True iff the triangles share more than the shared part, as verify/exact.h defines it for
-  /// neighbours: the equal corners and the segments between any two of them. By a direction that
-  /// shows the contrary (docs/certificate.md), else by the 21 points. Precondition:
+  /// neighbours: the equal corners and the segments between any two of them. A direction may show
+  /// that they do not (docs/certificate.md); else the 21 points decide. Precondition:
   /// shares_position().
   bool meets_beyond_shared();
 
@@ -72,8 +73,8 @@ class IntegerPair {
 
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;
-  std::array<unsigned, 2> shared_{};  // bit i: corner i equals one of the other triangle
-  // Relative to the first corner of a, where bits_ allows; the corners of a, then of b.
+  std::array<unsigned, 2> shared_{};  // bit i: corner i equals a corner of the other triangle
+  // The corners of a, then of b, relative to the first corner of a; only if bits_ is small enough.
   std::array<std::array<std::int64_t, 3>, 6> small_;
   int bits_ = 0;  // |difference of two coordinates| < 2^bits_
   std::unique_ptr<Big> big_;
@@ -82,13 +83,14 @@ class IntegerPair {
 /// True iff the closed convex hulls share a point: iff none of the 38 directions separates them.
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff
-/// along none of the 38 directions the gap is longer.
+/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff the
+/// gap along none of the 38 directions is longer than the clearance.
 bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
-/// A guess which of the 38 directions parts two triangles most clearly: one whose gap beyond the
-/// clearance, in doubles, is clear of rounding, cheap ones first; else the one with the widest in
-/// proportion. Only a guess, whatever doubles overflow.
+/// Guesses in doubles which of the 38 directions separates two triangles most clearly: the first,
+/// in order of degree, whose gap beyond the clearance is far above rounding errors; else the one
+/// with the widest gap in proportion to the pair's extent. Doubles may overflow: it is only a
+/// guess.
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

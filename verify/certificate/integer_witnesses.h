@@ -1,5 +1,5 @@
-// All that can prove something about a pair of triangles: directions and points. For
-// integer_pair.cpp and integer_distance.cpp alone.
+// The directions and points that prove something about a pair of triangles. For integer_pair.cpp
+// and integer_distance.cpp alone.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace farcull::integer {
 
-// The 38 directions of a pair of triangles, and the proofs that one of them gives. Gottschalk, Lin,
-// Manocha, "OBBTree" (1996) for the idea; docs/certificate.md proves that the 38 are complete for
-// triangles, degenerate ones included.
+// The 38 directions of a pair of triangles, and the proofs that a direction gives. The idea is from
+// Gottschalk, Lin, Manocha, "OBBTree" (1996). docs/certificate.md proves that the 38 directions are
+// complete for triangles, degenerate ones included.
 
-/// The intermediate results of a test. They are kept between tests, since GMP's integers own
-/// memory.
+/// The intermediate results of a test. They are reused between tests, since allocating GMP's
+/// integers anew takes time.
 template <class Integer>
 struct Scratch {
   Vector<Integer> e, f, w, d;
@@ -21,7 +21,7 @@ struct Scratch {
   std::array<Integer, 3> on_a, on_b;
 };
 
-/// s.d = the direction; see kDirections in integer_pair.h.
+/// Sets s.d to the direction; see kDirections in integer_pair.h.
 template <class Integer>
 void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                     int direction) {
@@ -76,7 +76,7 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// gap = the length, times |d|, of the gap that has_gap() has found.
+/// Sets `gap` to the length, times |d|, of the gap that has_gap() has found.
 template <class Integer>
 void gap_length(const Scratch<Integer>& s, Integer& gap) {
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
@@ -88,9 +88,9 @@ void gap_length(const Scratch<Integer>& s, Integer& gap) {
   }
 }
 
-/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0: then so is
-/// the distance, since along no direction is the gap longer. Squares are compared: gap / |d| >
-/// clearance.
+/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0. Then the
+/// distance is longer, too, since no gap is longer than the distance. Compares gap / |d| with the
+/// clearance, by squares.
 template <class Integer>
 bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
   gap_length(s, s.we);
@@ -101,9 +101,9 @@ bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
   return s.w[0] > s.w[2];
 }
 
-/// True iff the gap that has_gap() has found is so long that the square of the distance is more
-/// than over / under (over >= 0, under > 0), or with or_as_far at least that: gap^2 / |d|^2 is
-/// compared.
+/// True iff the gap that has_gap() has found proves that the square of the distance is more than
+/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. Compares gap^2 /
+/// |d|^2.
 inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
                         bool or_as_far) {
   gap_length(s, s.we);
@@ -115,10 +115,11 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
 }
 
 /// True iff the direction s.d proves that a and b share no more than their shared part; shared_a
-/// and shared_b are the corners that stand in both. Where all of a lies on one side of a plane
-/// across d and all of b on the other, they meet only in what both have in the plane: in the hulls
-/// of their corners there. That is no more than the shared part where these corners of one triangle
-/// are all shared, or where two edges that are not parallel (d is their product) lie in the plane.
+/// and shared_b are the corners that a and b have in common. If a plane perpendicular to d has all
+/// of a on one side and all of b on the other, the triangles meet only in the plane, where each is
+/// the hull of its corners in the plane. This is no more than the shared part if all these corners
+/// of one triangle are shared, or if an edge of each lies in the plane and the edges are not
+/// parallel (d is their product).
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
@@ -161,8 +162,8 @@ inline int most_bits(int direction) {
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-/// Constructs points and verifies them. Its integers are members because GMP's own memory: a search
-/// that made them anew would spend most of its time on that.
+/// Constructs points and verifies them. Its integers are members, since GMP's integers own memory:
+/// a search that allocated them anew would spend most of its time on that.
 class PointSearch {
  public:
   /// These functions construct a point, and return false if it does not exist. The point lies on
@@ -181,8 +182,8 @@ class PointSearch {
     dot(scale_, normal_, u_);
     return along(s[i]);
   }
-  /// The point of edge i of s nearest to the line of edge j of t, unless they are parallel. Where
-  /// the lines cross it is their common point.
+  /// The point of edge i of s nearest to the line of edge j of t, unless the edges are parallel. If
+  /// the lines cross, this is their common point.
   bool edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
     edge(u_, s, i);
     edge(v_, t, j);
@@ -215,8 +216,8 @@ class PointSearch {
     return scale_ != 0;
   }
 
-  /// True iff the point constructed last is no farther than `distance` from that of another search:
-  /// |p / m - q / n| <= distance, as squares of integers.
+  /// True iff the point constructed last is no farther than `distance` from the last point of
+  /// another search: |p / m - q / n| <= distance, compared as squares of integers.
   bool is_near(const PointSearch& other, const mpz_class& distance) {
     from_to(other);
     dot(value_, w_, w_);
@@ -226,10 +227,10 @@ class PointSearch {
     return value_ <= side_[1];
   }
 
-  /// With p the point constructed last and q that of another search: true iff q - p has no part
-  /// that leads from p into a, nor one that leads from q out of b: (q - p) . (a_i - p) <= 0 and
-  /// (q - p) . (b_j - q) >= 0 for all corners. Where p lies in a and q in b, no two points of a and
-  /// b are then nearer (docs/certificate.md).
+  /// Let p be the point constructed last and q the last point of another search. True iff
+  /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners: p cannot move into a
+  /// towards q, nor q into b towards p. If p lies in a and q in b, no two points of a and b are
+  /// then nearer (docs/certificate.md).
   bool is_nearest(const PointSearch& other, const BigCorners& a, const BigCorners& b) {
     from_to(other);
     for (int i = 0; i < 3; ++i) {
@@ -249,8 +250,8 @@ class PointSearch {
     return true;
   }
 
-  /// The square of the distance of the point constructed last from that of another search, as
-  /// numerator and denominator > 0, not reduced.
+  /// The square of the distance from the point constructed last to the last point of another
+  /// search, as numerator and denominator > 0, not reduced.
   void squared_distance(const PointSearch& other, mpz_class& over, mpz_class& under) {
     from_to(other);
     dot(over, w_, w_);
@@ -289,9 +290,9 @@ class PointSearch {
       }
       return true;
     }
-    // Collinear corners: the hull is the union of its edges. Between two ends: on their line, and
-    // the offsets from the ends differ in sign in every coordinate or are zero (which pins a point
-    // that both ends coincide in).
+    // Collinear corners: the hull is the union of the edges. The point is between two ends if it is
+    // on their line and in every coordinate its offsets from the ends differ in sign or are zero.
+    // This also decides about two equal ends.
     for (int i = 0; i < 3; ++i) {
       edge(v_, t, i);
       cross(side_, v_, from_[i]);
@@ -305,7 +306,7 @@ class PointSearch {
   }
 
  private:
-  /// w_ = q - p, times both scales; p the point constructed last, q that of another search.
+  /// w_ = q - p, times both scales; p is the point constructed last, q that of another search.
   void from_to(const PointSearch& other) {
     for (int k = 0; k < 3; ++k) {
       multiply(w_[k], other.point_[k], scale_);
@@ -317,7 +318,7 @@ class PointSearch {
     edge(w_, t, 1);
     cross(normal_, v_, w_);
   }
-  /// from + (numerator / scale) u; none unless the fraction is in [0, 1].
+  /// Makes the point from + (numerator / scale) u; false unless the fraction is in [0, 1].
   bool along(const BigVector& from) {
     if (scale_ < 0) {
       mpz_neg(scale_.get_mpz_t(), scale_.get_mpz_t());
@@ -338,7 +339,7 @@ class PointSearch {
   mpz_class numerator_, value_;
 };
 
-/// True iff one of the 21 points passes.
+/// True iff test() holds for one of the 21 points.
 template <class Test>
 bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const Test& test) {
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// A rounded root is only a guess: its exact square is compared with the fraction.
+// A rounded root is only a guess, so its exact square is compared with the fraction.
 #include "verify/certificate/integers.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ std::string text_of(const Fraction& fraction) {
 
 double root_above(const Fraction& fraction) {
   if (fraction.over == 0) return 0;
-  // The root of a quotient of 128 bits or so has 64.
+  // A quotient of about 128 bits gives a root of about 64 bits.
   long shift = 128 - bits_of(fraction.over) + bits_of(fraction.under);
   shift += shift & 1;
   const mpz_class quotient = shift >= 0 ? mpz_class((fraction.over << shift) / fraction.under)

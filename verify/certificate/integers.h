@@ -1,6 +1,6 @@
-// The numbers of this folder: vectors of machine integers and of GMP's, with the few operations
-// that deciding a pair takes; doubles as such integers; and fractions. For the sources of
-// verify/certificate, for verify/distance_claims.h and for tests alone.
+// The numbers of this folder: vectors of machine integers and of GMP's integers, with the few
+// operations that deciding a pair needs; conversion of doubles to integers; fractions. For the
+// sources of verify/certificate, for verify/distance_claims.h and for tests alone.
 #pragma once
 
 #include <gmpxx.h>
@@ -90,20 +90,22 @@ inline Parts parts(double value) {
   return {mantissa >> zeros, exponent - 53 + zeros};
 }
 
-/// to = value / 2^exponent. Precondition: that is an integer.
+/// Sets `to` to value / 2^exponent. Precondition: this is an integer.
 inline void scale(mpz_class& to, double value, int exponent) {
   const Parts x = parts(value);
   to = static_cast<long>(x.mantissa);
   if (x.mantissa != 0) to <<= x.exponent - exponent;
 }
 
-/// Two triangles: the corner of the input is the first corner of a + 2^exponent * the integers.
+/// Two triangles in integers: a corner of the input is the first corner of a, plus 2^exponent times
+/// the integers.
 struct ScaledPair {
   Corners<mpz_class> a, b;
   int exponent = 0;
 };
 
-/// length: another number, finite, that has to be a whole multiple of 2^exponent as well.
+/// Scales two triangles to integers. length: another finite number that has to be a whole multiple
+/// of 2^exponent as well.
 inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                          double length = 0) {
   int least = std::numeric_limits<int>::max();
@@ -125,7 +127,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   };
   convert(out.a, a);
   convert(out.b, b);
-  // Every direction and every gap is about differences, and differences are shorter.
+  // Directions and gaps depend only on differences of corners, and these are shorter numbers.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
     for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
@@ -139,12 +141,12 @@ namespace farcull {
 
 // ---- squares of distances as fractions ----
 
-/// over / under, >= 0. Not always in lowest terms.
+/// A fraction over / under >= 0. Not always in lowest terms.
 struct Fraction {
   mpz_class over = 0;   // >= 0
   mpz_class under = 1;  // > 0
 
-  /// By value: 1/2 equals 2/4.
+  /// Compares values: 1/2 equals 2/4.
   friend std::strong_ordering operator<=>(const Fraction& x, const Fraction& y);
   friend bool operator==(const Fraction& x, const Fraction& y) { return x <=> y == 0; }
 };
@@ -160,14 +162,14 @@ constexpr std::size_t kMostDigits = 4000;
 /// The square of a length, finite and >= 0.
 Fraction square_of(double length);
 
-/// The fraction that is all of the text: decimal digits, '/', decimal digits, in lowest terms,
-/// without leading zeros, neither part longer than kMostDigits. None for any other text.
+/// Parses the whole text as a fraction: decimal digits, '/', decimal digits, in lowest terms,
+/// without leading zeros, each part at most kMostDigits long. Empty for any other text.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// In lowest terms, as parse_fraction() reads it.
+/// The fraction in lowest terms, as parse_fraction() reads it.
 std::string text_of(const Fraction& fraction);
 
-/// A double that is at least the root, and hardly more; infinity where no double is.
+/// A double that is at least the root, and hardly more; infinity if no finite double is so large.
 double root_above(const Fraction& fraction);
 
 /// A length by its square, with the double above it.

@@ -31,7 +31,8 @@ bool JsonSyntax::key(string_t& name) {
 
 bool JsonSyntax::parse_error(std::size_t position, const std::string&,
                              const nlohmann::json::exception& error) {
-  // The library's text between "...column 2: " and "; last read: '...'", which holds the text.
+  // Keeps the part of the library's message between "...column 2: " and "; last read: '...'". The
+  // latter would quote the text of the file.
   std::string_view what = error.what();
   for (const std::string_view mark : {"] ", "column "}) {
     const std::size_t found = what.find(mark);
@@ -131,14 +132,14 @@ Json scene_key_json(const Certificate::SceneKey& scene) {
           {"hash", scene.hash}};
 }
 
-// ---- a certificate as text and back ----
+// ---- writing and reading a certificate as text ----
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-// Certificates of the second version have a clearance; all else is the same.
+// The versions are the same except that kVersionWithClearance has a clearance.
 constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
@@ -243,7 +244,7 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   constexpr std::uint64_t kMostValues = 10'000;  // views and assumptions are few
   const Reader reader(name, kRemedy);
   const Json root = reader.parse(text, kMostValues);
-  // Before the keys, which another version has others of.
+  // Format and version are checked before the keys, since another version has other keys.
   if (!root.is_object()) reader.fail("the certificate is no object");
   if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
   const Json version = root.value("version", Json());

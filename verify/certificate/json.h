@@ -1,6 +1,6 @@
-// Shared by the readers of certificates. They trust nothing: a first pass over the syntax bounds
-// the number of values and the depth before anything is built, so memory stays in proportion to the
-// text. For the sources of this folder alone.
+// Shared by the readers of certificates. The readers do not trust the text: a first pass over the
+// syntax bounds the number of values and the depth before anything is built, so memory stays in
+// proportion to the text. For the sources of this folder alone.
 #pragma once
 
 #include <cstdint>
@@ -49,22 +49,22 @@ class JsonSyntax : public nlohmann::json_sax<nlohmann::ordered_json> {
 
   std::uint64_t most_values_;
   std::uint64_t values_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of the objects (none of arrays) around the place
+  std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
 };
 
-/// Readers of values; `place` is where they are, as in unattested.views[1].width. Each throws Error
+/// Readers of values. place: where the value is, as in unattested.views[1].width. Each throws Error
 /// naming the file if the value is of another kind.
 class JsonReader {
  public:
-  /// name: of the file; remedy: what the Error advises.
+  /// name: the file's name; remedy: what the Error advises.
   JsonReader(std::string name, std::string remedy)
       : name_(std::move(name)), remedy_(std::move(remedy)) {}
 
-  /// The value that is all of the text.
+  /// Parses the whole text as one JSON value.
   nlohmann::ordered_json parse(std::string_view text, std::uint64_t most_values) const;
 
   [[noreturn]] void fail(const std::string& reason) const;
-  /// The value is an object with exactly these keys.
+  /// Throws unless the value is an object with exactly these keys.
   void object(const nlohmann::ordered_json& value, const std::string& place,
               std::initializer_list<const char*> keys) const;
   const nlohmann::ordered_json& array(const nlohmann::ordered_json& value,
@@ -78,7 +78,7 @@ class JsonReader {
   std::string name_, remedy_;
 };
 
-/// The key `scene` of a certificate.
+/// Read and write the value of the key `scene` of a certificate.
 Certificate::SceneKey read_scene_key(const JsonReader& reader, const nlohmann::ordered_json& value);
 nlohmann::ordered_json scene_key_json(const Certificate::SceneKey& scene);
 

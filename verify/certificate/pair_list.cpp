@@ -1,5 +1,5 @@
 // Makes the list line by line, so that its hash needs no more memory than one line and the owners
-// of the triangles. A list that is read is held against the scene and the pairs that meet.
+// of the triangles. A list that is read is compared with the scene and the pairs that meet.
 #include "verify/certificate/pair_list.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ constexpr const char* kListRemedy =
     "give a list as `farcull run --pairs FILE` writes it: first a line "
     "object_a,triangle_a,object_b,triangle_b, then these four numbers for each pair";
 
-/// Printable ASCII in quotes, cut short: for a message.
+/// The text as printable ASCII in quotes, cut short, for a message.
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 40;
   std::string out = "'";
@@ -91,7 +91,7 @@ std::string in_quotes(std::string_view text) {
   return out + (text.size() > kMost ? "...'" : "'");
 }
 
-/// Cuts the text into lines and these into cells.
+/// Divides the text into lines and the lines into cells.
 class CsvReader {
  public:
   CsvReader(std::string_view text, const std::string& name) : text_(text), name_(name) {
@@ -102,7 +102,7 @@ class CsvReader {
     throw Error(name_, reason, kListRemedy, static_cast<long>(line_));
   }
 
-  /// The cells of the next line with a character; false at the end.
+  /// The cells of the next line that is not empty; false at the end.
   bool next(std::vector<std::string>& cells) {
     std::string_view line;
     do {
@@ -151,7 +151,7 @@ class CsvReader {
   std::uint64_t line_ = 0;
 };
 
-/// Columns of ListedPair, as kNames says them.
+/// Names of the columns of ListedPair.
 constexpr std::array kNames = {"object_a",   "triangle_a", "object_b",
                                "triangle_b", "frame",      "neighbours"};
 constexpr std::size_t kNeeded = 4, kFrame = 4, kNeighboursColumn = 5;

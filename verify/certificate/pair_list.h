@@ -1,5 +1,5 @@
-// The list of the colliding pairs as text. A certificate names the list by the SHA-256 of these
-// bytes. And the reader of such lists, whoever wrote them: columns are found by their names, rows
+// Writes the list of the colliding pairs as text; a certificate names the list by the SHA-256 of
+// these bytes. Also reads such lists, whoever wrote them: columns are found by their names, rows
 // may be in any order.
 #pragma once
 
@@ -15,14 +15,14 @@
 
 namespace farcull {
 
-/// object_a,triangle_a,object_b,triangle_b, and a fifth column `neighbours` where an object of the
-/// scene is tested against itself; each line ends with a single newline.
+/// The header object_a,triangle_a,object_b,triangle_b, with a fifth column `neighbours` if an
+/// object of the scene is tested against itself. Each line ends with a single newline.
 std::string pair_list_header(const Scene& scene);
-/// The same where it is known whether an object is tested against itself.
+/// The same header. self: whether an object is tested against itself.
 std::string pair_list_header(bool self);
 
-/// How lists name the objects and triangles of a scene that is a part of another one: by the
-/// numbers of the whole.
+/// Numbers for lists of a scene that is a part of a whole scene: lists name objects and triangles
+/// by their numbers in the whole scene.
 struct ListNumbers {
   std::vector<std::uint64_t> objects;    // per object: its number in the whole scene, ascending
   std::vector<std::uint32_t> triangles;  // per triangle: its number within its whole object
@@ -33,7 +33,7 @@ struct ListNumbers {
 /// object; `neighbours` is 1 for triangles of one object that share a vertex position, else 0.
 class PairListRows {
  public:
-  /// The scene must outlive the object, and so must the numbers; null: those of the scene itself.
+  /// The scene and the numbers must outlive the object. Null: the numbers of the scene itself.
   explicit PairListRows(const Scene& scene, const ListNumbers* numbers = nullptr);
   /// Appends the line of a pair to `text`. Precondition: both triangles are of the scene.
   void append(const TrianglePair& pair, std::string& text) const;
@@ -64,35 +64,36 @@ struct GivenList {
   std::string name;                        // of the file
   bool has_frames = false;                 // a column `frame`
   std::vector<ListedPair> rows;            // in the order of the file
-  std::vector<std::string> not_looked_at;  // other columns
+  std::vector<std::string> not_looked_at;  // names of the columns that are not read
 };
 
 /// Reads CSV: a first line that names the columns object_a, triangle_a, object_b and triangle_b in
-/// any order, perhaps `frame`, `neighbours` and any others; then a line a pair. Cells are divided
-/// by commas and may stand in double quotes; lines end with LF or CR LF; lines without a character
-/// are passed over. Throws Error naming `name`, the line and a remedy where a column is missing or
-/// named twice, a line has more or fewer cells, or a cell is no whole number.
+/// any order, and may name `frame`, `neighbours` and others; then one line for each pair. Cells are
+/// divided by commas and may be in double quotes; lines end with LF or CR LF; empty lines are
+/// skipped. Throws Error naming `name`, the line and a remedy if a column is missing or named
+/// twice, a line has more or fewer cells, or a cell is no whole number.
 GivenList read_pair_list(std::string_view text, const std::string& name);
 
-/// How a list differs from that of the pairs that meet.
+/// How a list differs from the list of the pairs that meet.
 struct ListDifferences {
   std::uint64_t listed = 0;      // rows
   std::uint64_t wrong = 0;       // rows whose pair does not meet, was listed before, or has a wrong
                                  // entry in `neighbours`
   std::uint64_t missing = 0;     // pairs that meet and are in no row
-  std::uint64_t wrong_line = 0;  // of the first wrong row
-  std::string wrong_reason;      // why, as in "the pair is disjoint"
+  std::uint64_t wrong_line = 0;  // line of the first wrong row
+  std::string wrong_reason;      // why it is wrong, as in "the pair is disjoint"
   std::optional<TrianglePair> wrong_pair;    // empty: the row names one triangle twice
   std::optional<TrianglePair> missing_pair;  // the first in the order of the scene
 
   bool none() const { return wrong == 0 && missing == 0; }
 };
 
-/// The pair of a row, a < b (a == b where it names one triangle twice). Throws Error naming the
-/// list and the line where the scene has no such object or triangle.
+/// The pair of a row, a < b (a == b if the row names one triangle twice). Throws Error naming the
+/// list and the line if the scene has no such object or triangle.
 TrianglePair pair_of(const Scene& scene, const std::string& name, const ListedPair& row);
 
-/// Compares rows with the pairs that meet (sorted, each once; with a clearance those within it).
+/// Compares rows with the pairs that meet, or with a clearance the pairs within it (sorted, each
+/// once).
 /// The order of rows and of the triangles in a row does not matter. Throws Error as pair_of().
 ListDifferences find_differences(const Scene& scene, const std::string& name,
                                  std::span<const ListedPair> rows,

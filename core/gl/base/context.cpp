@@ -33,10 +33,11 @@ bool has_word(const std::string& list, const std::string& word) {
 }
 
 // Threads of the driver are counted by their names, and by what LP_NUM_THREADS asked for. Neither
-// is enough: another user of Mesa in this process may have opened the display, when the variable
-// had another value; and a thread gets its name a moment after it was started.
+// alone is enough: another user of Mesa in this process may have opened the display, when the
+// variable had another value; and a thread gets its name a moment after it was started.
 
-// As llvmpipe reads the variable. Without it there is a thread for each core, but none on one core.
+// Reads LP_NUM_THREADS as llvmpipe does. Without the variable there is a thread for each core, but
+// none if there is only one core.
 int read_variable() {
   constexpr long kMost = 16;  // of Mesa 22
   const long cores = static_cast<long>(std::thread::hardware_concurrency());
@@ -49,8 +50,7 @@ int read_variable() {
   return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
 }
 
-// To be called before the first display is opened: llvmpipe then reads the variable, and never
-// again.
+// Call it before the first display is opened: llvmpipe reads the variable then, and never again.
 int asked_threads() {
   static const int threads = read_variable();
   return threads;
@@ -77,7 +77,8 @@ std::size_t driver_bytes() {
   return (std::size_t{256} + std::size_t{64} * threads) << 20;
 }
 
-// Reserves it and gives it back untouched: under a limit of the process (ulimit -v) that fails.
+// Throws Error if driver_bytes() of address space are not left, as under a limit of the process
+// (ulimit -v): reserves them and gives them back untouched.
 void require_memory() {
   const std::size_t bytes = driver_bytes();
   void* const reserved = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
@@ -92,8 +93,8 @@ void require_memory() {
   ::munmap(reserved, bytes);
 }
 
-// EGL itself, without a display: extensions of the client library. libepoxy aborts the process
-// where libEGL is missing, so its presence is asked for first.
+// Throws Error unless libEGL is there and its client extensions can list and open devices.
+// libepoxy aborts the process where libEGL is missing, so epoxy_has_egl() is asked first.
 void require_egl() {
   asked_threads();
   require_memory();
@@ -149,7 +150,7 @@ GlDevice describe(EGLDeviceEXT device, int index) {
 
 constexpr const char* kNoMemory = "there is not enough memory for it (EGL_BAD_ALLOC)";
 
-// The reason, unless EGL's error says that memory is missing.
+// Returns `reason`, or kNoMemory if EGL's error says that memory is missing.
 std::string with_cause(const char* reason) {
   return eglGetError() == EGL_BAD_ALLOC ? kNoMemory : reason;
 }

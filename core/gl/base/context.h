@@ -7,7 +7,7 @@
 
 namespace farcull {
 
-/// One EGL device of this machine, as `--device` numbers them.
+/// One EGL device of this machine; `--device` takes its index.
 struct GlDevice {
   int index = 0;
   std::string kind;        // "software" or "hardware"

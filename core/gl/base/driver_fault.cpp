@@ -33,11 +33,11 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// Every compute program of ours ends an invocation by this line, where its work items end. The
-// replacement also ends it at the item before far_lost_item.
+// Every compute program of farcull has this line, which ends an invocation when its work items run
+// out. The replacement also ends the invocation at the item before far_lost_item.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
-// Programs of far-pairs may read on the device how many items they have.
+// Programs of far-pairs that may read their number of items on the device have this line instead.
 constexpr const char* kCountedEnd = "if (w >= items) break;";
 constexpr const char* kEarlierCountedEnd =
     "if (w >= items || (far_lost_item != 0u && w == items / 2u)) break;";
@@ -90,7 +90,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
   }
 }
 
-// gl_program() passes one text, ended by 0.
+// gl_program() passes one source string, ended by 0.
 void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);
@@ -103,7 +103,7 @@ void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, con
   }
   if (plan->kind == Kind::kept_bits)
     replace(text, "FAR_AT(to, w) = 0u;", "if (u_extra.x == 0u) FAR_AT(to, w) = 0u;");
-  // The text of lists has three steps, of which the second counts.
+  // pair_lists.comp has three steps: step 1 counts.
   if (plan->kind == Kind::wrong_count && text.find("#define FAR_STEP 1\n") != std::string::npos &&
       text.find("atomicExchange(FAR_AT(listed, record)") != std::string::npos) {
     replace(text, "void work(uint w) {",

@@ -1,6 +1,6 @@
 // Faults of a GL driver, with which `farcull doctor` and the tests check that a fault is noticed
 // (assumption A7). While an object lives, functions that fail stand in place of GL's entry points
-// (libepoxy's function pointers), and texts of shaders are changed on their way to the compiler.
+// (libepoxy's function pointers), and shader sources are changed on their way to the compiler.
 // Only core/gl and its tests include this.
 #pragma once
 
@@ -77,8 +77,8 @@ class DriverFault {
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;
 
-  /// Makes the call with this number fail, counted from now on and from 0: of the draws, the
-  /// dispatches or the queries. Before, none fails.
+  /// Makes the call with this number fail: a draw, a dispatch or a query, by the kind of fault. The
+  /// calls are counted from 0 and from now on. No call fails before strike().
   void strike(std::size_t call = 0);
 
  private:

@@ -20,7 +20,7 @@ constexpr const char* kKernelNames =
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
-// An element of the array at the end of a storage block; the last one where the index is beyond it.
+// FAR_AT: an element of the array at the end of a storage block; the last one if `index` is larger.
 // An upload, a binding or a uniform that was lost is noticed when results are read. Until then
 // indices that come from buffers may be anything, and a device without robust access must not read
 // or write outside the buffer. A storage buffer of ours is never empty.

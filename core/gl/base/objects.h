@@ -20,7 +20,7 @@
 
 namespace farcull {
 
-/// Throws Error naming the GL stage: `cause` happened, and `reason` says how that was seen.
+/// Throws Error naming the GL stage: `cause` happened, and `reason` says how it was noticed.
 [[noreturn]] void throw_lost(const std::string& stage, const std::string& reason,
                              const std::string& cause = "a command was lost");
 
@@ -75,13 +75,13 @@ struct ShaderText {
   GLenum stage;
   std::vector<std::string> texts;
 };
-/// Compiles and links "#version 430 core", `defines` (one #define line each) and the texts of each
-/// stage. Throws Error with the driver's log and the name.
+/// Compiles and links a program. The source of each stage is "#version 430 core", `defines` (one
+/// #define line each) and the stage's texts. Throws Error with the driver's log and the name.
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 
-/// Starts so many work groups of the program in use, in rows of at most `row`, and lets what they
-/// write be read by what follows.
+/// Starts `groups` work groups of the program in use, in rows of at most `row`. A barrier lets
+/// later commands read what they write.
 void gl_dispatch(std::uint32_t groups, int row);
 
 /// Replaces the contents of a shader storage buffer (at least 16 bytes long, so that it can always
@@ -101,11 +101,12 @@ constexpr std::size_t kTagBytes = 16;
 /// cannot spoil another buffer. Each throws Error where GL fails.
 class GlStore {
  public:
-  /// Grows to hold `wanted` bytes of data, up to half as much again within `most`. Returns true if
+  /// Grows to hold `wanted` bytes of data, or up to half as much again, at most `most`. Returns
+  /// true if
   /// the contents are lost, and so undefined. The store is unchanged if it throws.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
-  /// Zeros, from the beginning; a multiple of 4.
+  /// Sets the first `bytes` bytes to 0; a multiple of 4.
   void clear(std::size_t bytes);
   void read(std::size_t at, void* out, std::size_t bytes) const;
 
@@ -143,7 +144,7 @@ class GlClock {
 };
 
 // The echo (assumption A7): the device returns a hash of what a program read, and of what was sent,
-// so that lost commands are seen. kEchoGlsl is the same arithmetic for shaders.
+// so that lost commands are seen. kEchoGlsl does the same arithmetic in shaders.
 
 /// Mixes a word with its place: a bijection of the word, after which a change of any bit may change
 /// every bit (the finalizer of MurmurHash3). So changes of a few words do not cancel in a sum, as

@@ -1,8 +1,8 @@
-// Stores or asks one fragment. FAR_VALUE: its depth in px is written out as well.
-// FAR_PROXY: depth from the solid's own data (its function stands before this text); entry when storing, exit when asking. FAR_ASK: ask, so
-// far behind the depth of the exit (kAskedBehind). FAR_FLAGS: an asked fragment raises its slot's flag by writing this pass's serial number
-// there: of a proxy, after comparing with the stored depth itself; of a triangle, after the depth test. Otherwise an occlusion query
-// counts.
+// Stores or asks one fragment. FAR_VALUE: the fragment's depth in px is written out as well. FAR_PROXY: the depth comes from
+// the solid's own data (its function stands before this text): the entry when storing, the exit when asking. FAR_ASK: asks, and
+// is the slack by which the asked depth lies behind that of the exit (kAskedBehind). FAR_FLAGS: an asked fragment raises its
+// slot's flag by writing this pass's serial number there: a proxy does so if it passes its own comparison with the stored
+// depth, a triangle if it passes the depth test. Without FAR_FLAGS an occlusion query counts.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
 uniform float u_scale;   // of the depth map

@@ -21,7 +21,7 @@ enum class DepthFormat { float32, fixed24 };
 /// flight, as published.
 enum class QueryMode { flags, occlusion };
 
-/// The define with which canvas.frag asks, by the bits of the slack.
+/// The define that makes canvas.frag ask; it gives the slack as bits.
 inline std::string ask_define(float behind = kAskedBehind) {
   return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
 }
@@ -32,7 +32,7 @@ struct GlCanvasOptions {
   /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
   /// GL_INTEL_conservative_rasterization.
   bool conservative = false;
-  /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
+  /// The most bytes that a storage block is taken to hold. 0: the device's own limit.
   long storage_limit = 0;
 };
 
@@ -43,8 +43,8 @@ class GlCanvas final : public Canvas {
   /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
   /// options do not go together or the device refuses. The context must outlive the canvas, which
   /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
-  /// depths() all that lies on the device is dropped; the next begin() makes it anew, and the
-  /// others throw std::logic_error before it.
+  /// depths() all that lies on the device is dropped. The next begin() makes it anew; until then
+  /// the other functions throw std::logic_error.
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
@@ -69,10 +69,10 @@ class GlCanvas final : public Canvas {
   GlCanvasOptions options_;
   RasterLimits limits_;
   std::unique_ptr<CanvasState> state_;  // null after a failure
-  CanvasWork earlier_;                  // of the states before it
+  CanvasWork earlier_;                  // of states that were dropped
 };
 
-/// The same behind the interface.
+/// A GlCanvas behind the interface Canvas.
 std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
                                   const SolidProgram& solid, const GlCanvasOptions& options = {});
 

@@ -1,9 +1,9 @@
-// Fetches an element for each draw of a batch (those of one step that read one element buffer) and places it. FAR_PROXY:
+// Fetches an element for each draw of a batch (draws of one step that read one element buffer) and places it. FAR_PROXY:
 // a quadrilateral of two triangles that share the corners of a diagonal, seven vec4 an element. Otherwise: a triangle,
 // three vec4 an element.
 // FAR_ECHO: the buffers have tags. The draws of a batch follow its head: this pass's serial number, and the batch's word of
-// the report. The first vertex of the batch writes there an echo of what the program reads; with FAR_FLAGS, also of what the
-// fragment stage reads.
+// the report. Into that word the first vertex of the batch writes an echo (a checksum, core/gl/base/objects.h) of what the
+// program reads; with FAR_FLAGS, also of what the fragment stage reads.
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };

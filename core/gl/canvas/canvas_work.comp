@@ -1,6 +1,6 @@
-// Step 0: the sum of the words of a buffer, each mixed with its place. Step 1: packs flags, one word each, into bits: a flag
-// is raised where it holds this pass's serial number. The report begins with the number of work items that finished and
-// the sum, of all dispatches since the host set them to 0; each dispatch writes its echo to a word of its own.
+// Step 0 sums the words of a buffer, each mixed with its place. Step 1 packs flags, one word each, into bits: a flag is
+// raised if it holds this pass's serial number. The report begins with the number of work items that finished and the sum,
+// both over all dispatches since the host set them to 0. Each dispatch writes its echo to another word of the report.
 layout(local_size_x = 64) in;
 #if FAR_STEP == 0
 layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uvec4 from[]; };

@@ -27,7 +27,7 @@ class Layout {
     out_.serial = gl_number();
     out_.list.assign(kTagBytes / sizeof(GpuDraw), GpuDraw{0, 0});
     out_.slots = pass.slots;
-    // It covers the window and nothing of the border.
+    // The quad covers the window and nothing of the border.
     const double x = 0.5 * canvas.window.width + 0.25, y = 0.5 * canvas.window.height + 0.25;
     add_quad(-x, -y, x, y, 0.0f);
     own_elements_ = quad_elements();
@@ -122,9 +122,11 @@ class Layout {
   bool fresh_ = true;      // the next draw starts a batch
 };
 
-// The draw list of `pass`. With `marks`, it begins with a store and ends with an ask (of control
-// items alone if the caller's steps do not). Its first store draws the mark, and its first ask asks
-// for that of the pass before, in the pixels that canvas.odd says. Without, it has neither.
+// The draw list of `pass`. With `marks`, it begins with a store and ends with an ask; if the
+// caller's steps do not, a step of control items alone is added (state.h). The first store draws
+// this pass's mark, and the first ask looks for the mark of the pass before; canvas.odd says which
+// of pixels 1 and 2 has which. Without `marks`, no step is added, and no mark is drawn or asked
+// for.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -306,7 +308,7 @@ std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   return seen;
 }
 
-// After report->read(), so nothing is waited for.
+// Called after report->read(), so it does not wait.
 std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   work.readbacks += slots;
   work.downloaded_bytes += slots * sizeof(GLuint);
@@ -314,7 +316,7 @@ std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;
     glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &result);
-    // One that was never issued has no object behind its name, and gives nothing.
+    // A query that was never issued has no object behind its name, and gives no result.
     if (result == kNone) throw_lost("pass", "query " + std::to_string(i) + " gave no answer");
     seen[i] = result != 0;
   }
@@ -347,7 +349,7 @@ void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<
   float corner[3] = {-1, -1, -1};
   glReadPixels(0, 0, 3, 1, GL_DEPTH_COMPONENT, GL_FLOAT, corner);
   check_gl("samples");
-  // 24 bits move it by at most depth_rounding() steps, far less than half a gap.
+  // 24 bits move a depth by at most depth_rounding() steps, far less than half a gap.
   const double moved = std::abs(corner[0] - (kControlTop - kControlGap));
   if (!(moved <= (options.depth_format == DepthFormat::float32 ? 0x1p-24 : 4 * 0x1p-24)))
     throw_lost("samples", "the control item was not drawn");
@@ -445,7 +447,8 @@ GlCanvas::~GlCanvas() { forget(); }
 
 const RasterLimits& GlCanvas::limits() const { return limits_; }
 
-// Deletes everything on the device. If the context cannot be made current, its end does that.
+// Deletes everything on the device. If the context cannot be made current, the end of the context
+// does that.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
   if (!gl_forget(context_, [&] { state_.reset(); })) static_cast<void>(state_.release());

@@ -81,7 +81,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this is lost, read() finds the counts of the last pass.
+  // If this write is lost, read() finds the counts of the last pass.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -138,7 +138,7 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   gl_wait(stage);
   const std::size_t bits = kHead + echoes_.size();
-  // If nothing is read, no echo is found.
+  // With this filling, no echo is found if nothing is read.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);

@@ -3,11 +3,11 @@
 //
 // The canvas draws elements of its own besides those of the caller: the quad for kEverywhere, and
 // control items, by which lost commands are seen. Control items stand in corner pixels of the
-// render target, outside the window. In pixel 0 the store of step k leaves the depth kControlTop -
-// k * kControlGap. The next ask's control item, at that depth (or half a gap behind it, where equal
-// depths are not seen), is seen only if that store ran. Passes mark pixels 1 and 2 in turn, and
-// each asks in the other one, which the pass before marked: kAsked is seen there unless the buffer
-// was cleared.
+// render target, outside the window. In pixel 0 the k-th store of a pass leaves the depth
+// kControlTop - k * kControlGap. The next ask has a control item at that depth (or half a gap
+// behind it, where equal depths are not seen), which is seen only if that store ran. Passes mark
+// pixels 1 and 2 in turn. Each pass asks in the pixel that the pass before marked: kAsked is seen
+// there unless the buffer was cleared.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ struct CanvasPass {
                               // batch begins with {serial, word of the report}
   std::vector<float> own;     // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  std::uint32_t slots = 0;  // of the caller's; with marks, one that must not be seen; controls
+  std::uint32_t slots = 0;  // the caller's; with marks, one that must not be seen; controls'
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
   }
@@ -59,8 +59,9 @@ struct CanvasPass {
 /// The binding of the report in every program of the canvas.
 constexpr GLuint kReport = 3;
 
-/// A storage buffer into which every batch of draws writes its echo, every dispatch its own and the
-/// number of its work items that finished, and which holds the flags of a pass.
+/// A storage buffer for what the device reports. Every batch of draws and every dispatch writes an
+/// echo into it (GlEcho: a checksum of what it read). A dispatch also adds how many of its work
+/// items finished. The buffer holds the packed flags of a pass, too.
 class CanvasReport {
  public:
   static constexpr std::uint32_t kHead = 2;  // words before the echoes: finished, sum
@@ -70,10 +71,10 @@ class CanvasReport {
 
   /// Expects so many batches of draws, at most `dispatches` dispatches, and `flags` to be packed.
   void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
-  /// The dispatches that expect() makes for so many bytes.
+  /// How many dispatches expect() makes for so many bytes.
   std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
   /// Lets the device sum what the store holds from its beginning; read() compares the sum with that
-  /// of `data`, of a multiple of 16 bytes.
+  /// of `data` (a multiple of 16 bytes).
   void expect(const GlStore& store, std::span<const std::byte> data);
   /// The echo that a batch writes to word kHead + batch.
   void expect_batch(std::size_t batch, std::uint32_t echo) { echoes_[batch] = echo; }
@@ -136,7 +137,7 @@ struct CanvasState {
   int target_width = 0, target_height = 0;
   bool odd = false;                     // which of two pixels the next pass marks
   CanvasElements current;               // of the last begin()
-  std::vector<CanvasElements> earlier;  // of those before, which may come again
+  std::vector<CanvasElements> earlier;  // of calls before, which may come again
   std::size_t per_chunk = 0;            // elements
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
@@ -156,7 +157,7 @@ struct CanvasState {
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
   // Proxies write their depth, so their fragments compare with the stored one themselves. Triangles
   // at fixed depth let the depth test decide before the fragment program raises the flag: then no
-  // step reads the texture that another draws to, which would have to be finished first.
+  // step reads the texture that another step draws to, so no step waits for another.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }
@@ -182,7 +183,7 @@ struct CanvasState {
   void draw(std::size_t first, std::size_t count);
 
   // Uploads the elements of `drawables` and prepares the targets. All functions throw Error where
-  // the device refuses or a command was lost; nothing on it is to be believed then.
+  // the device refuses or a command was lost; then nothing on the device is to be believed.
   void begin(const Window& window, const Drawables& drawables);
   std::vector<std::uint8_t> run(const Pass& pass);
   std::vector<float> depths(Verb verb, const std::vector<Draw>& wanted);

@@ -14,17 +14,18 @@ constexpr std::uint64_t kEntriesAtOnce = std::uint64_t{1} << 24;
 constexpr std::uint64_t kComparisonsAtOnce = std::uint64_t{1} << 30;  // with large triangles
 // If a part takes more portions than this, the pairs of a single work item do not fit.
 constexpr std::uint32_t kMostPortions = 1u << 30;
-// From so many entries of a record, on average, a pair is emitted only once; and the largest number
-// of records for which the number of a pair's bit fits 32 bits.
+// A part with more than kRepeatedFrom entries per record may emit each pair only once
+// (settle_pairs()). With more than kMostSettled records, the number of a pair's bit would not fit
+// 32 bits.
 constexpr std::size_t kRepeatedFrom = 16, kMostSettled = std::size_t{1} << 16;
 constexpr std::size_t kLeastPairs = std::size_t{64} << 10;  // bytes for pairs
 constexpr std::size_t kUnitBytes = 2 * kWord;
-// Pairs are held although they may repeat, up to this part of the memory or so many, whichever is
-// more, or as many as are distinct.
+// The pool may hold repeated pairs: in a kBufferPart-th of the memory, or kLeastBuffer of them,
+// whichever is more, or as many as are distinct.
 constexpr std::size_t kBufferPart = 8;
 constexpr std::size_t kLeastBuffer = 4096;
 
-// The largest number of work items of further tests of a level.
+// How many work items further tests have, in the level where they have most.
 std::size_t most_units_of(const PairTotalWords& totals) {
   const auto first = totals.begin() + kTotalMore;
   return *std::max_element(first, first + kMaxLevel + 1);
@@ -34,7 +35,7 @@ std::size_t most_units_of(const PairTotalWords& totals) {
 
 // Begins a window: no pairs yet.
 void PairFinder::begin_pairs() {
-  // The pairs of a portion may come on top of it.
+  // Beyond this size, the pool may hold the pairs of one more portion.
   portions_ = reported_ = 0;
   found_.emplace(1, std::max(options_.memory / kBufferPart / sizeof(TrianglePair), kLeastBuffer),
                  task_->narrow);
@@ -90,8 +91,8 @@ bool PairFinder::run_portions(PairTotalWords& totals) {
   return true;
 }
 
-// Reads the pairs of a portion that was launched. If there was too little room for them it is left
-// to be done again, with more room, or in smaller portions. False: too many for the part.
+// Reads the pairs of a portion that was launched. If they did not fit, the portion is left to be
+// done again, with more room or in smaller portions. False: too many for the part.
 bool PairFinder::take_portion(const Portion& portion, const PairTotalWords& totals) {
   const std::uint64_t emitted = two_words(totals, kTotalPairs);
   const std::size_t more = most_units_of(totals);
@@ -104,7 +105,7 @@ bool PairFinder::take_portion(const Portion& portion, const PairTotalWords& tota
     counts_.given_up = counts_.tests > task_->most_tests;
     return true;
   }
-  // The bits mark pairs as emitted that did not fit.
+  // Clears the bits: they mark pairs as emitted that did not fit.
   if (settled_words_ > 0) device_.zero(settled_, settled_words_, true);
   divide(portion, emitted, more, two_words(totals, kTotalTests));
   return true;
@@ -116,7 +117,7 @@ void PairFinder::divide(const Portion& portion, std::uint64_t emitted, std::size
   const std::size_t most = most_bytes();
   const std::size_t units = more * kUnitBytes;
   std::uint64_t bytes = emitted * sizeof(TrianglePair);
-  // Further tests that did not run are taken to report as many pairs each.
+  // Assumes that further tests that did not run report as many pairs each as those that ran.
   if (more > unit_capacity() && tests > 0) {
     const double all = static_cast<double>(bytes) *
                        (1 + static_cast<double>(more) * kUnit / static_cast<double>(tests));
@@ -165,8 +166,8 @@ void PairFinder::launch_portion(const Portion& portion) {
   device_.stamp(PairStamp::done);
 }
 
-// Decides whether pairs of the part are emitted once, which takes a bit for each two records: if
-// they may repeat often, and there is memory for it.
+// Decides whether each pair of the part is emitted only once: if pairs may repeat often, and there
+// is memory for a bit for each two records.
 void PairFinder::settle_pairs() {
   settled_words_ = 0;
   const std::size_t all = records();
@@ -179,7 +180,7 @@ void PairFinder::settle_pairs() {
   settled_words_ = words;
 }
 
-// Runs tests of a level's cells that are not cut, or what they left (`more`).
+// Runs the tests of a level's cells that are not cut, or (`more`) the further tests that they left.
 void PairFinder::run_tests(std::size_t l, bool more, const PairWork& work, const Portion& portion) {
   PairLevel& level = levels_[l];
   const bool some_cut = level.crowded > 0, once = settled_words_ > 0;
@@ -190,7 +191,7 @@ void PairFinder::run_tests(std::size_t l, bool more, const PairWork& work, const
   u.cells = portion.of;
   u.extra = {static_cast<std::uint32_t>(l), owners_.same_group,
              static_cast<std::uint32_t>(unit_capacity()), portion.k};
-  // By more, some_cut, once.
+  // Indexed by more, some_cut, once.
   static constexpr PairProgram kPrograms[2][2][2] = {
       {{PairProgram::tests, PairProgram::settled_tests},
        {PairProgram::uncut_tests, PairProgram::uncut_settled_tests}},
@@ -206,7 +207,7 @@ void PairFinder::run_tests(std::size_t l, bool more, const PairWork& work, const
                {10, &level.places}});
 }
 
-// Lists the large ones among the records.
+// Lists the large triangles among the records.
 void PairFinder::find_large() {
   large_.reserve(std::max(large_count_ * kWord, kVec4), memory_.block);
   if (large_count_ == 0) return;
@@ -216,7 +217,7 @@ void PairFinder::find_large() {
               {{5, &records_}, {6, &record_heads_}, {8, &large_}});
 }
 
-// Large triangles with each active one.
+// Compares large triangles with each active one.
 void PairFinder::run_large(const Portion& portion) {
   const std::uint64_t batches = (large_count_ + kLargeBatch - 1) / kLargeBatch;
   if (batches == 0) return;
@@ -234,7 +235,7 @@ void PairFinder::run_large(const Portion& portion) {
       run(0, {large_count_, kTotalLarge, kLargeBatch, static_cast<std::uint32_t>(sent)});
       return;
     }
-    // Numbers of work items fit 32 bits in each dispatch, which begins with a batch of large ones.
+    // Each dispatch begins with a batch of large triangles; its work item numbers fit 32 bits.
     const std::uint64_t step = std::max<std::uint64_t>(kComparisonsAtOnce / sent, 1);
     for (std::uint64_t first = 0; first < batches; first += step)
       run(first, std::min(step, batches - first) * sent);

@@ -30,8 +30,8 @@ void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
 }
 
 // Whether a sample, an eighth of the triangles, predicts several times the work that may be done.
-// The device reports its work only afterwards, so this comes first. Pixels grow with the triangles,
-// comparisons with their square.
+// The device reports its work only afterwards, so this check comes first. The number of pixels
+// grows with the number of triangles, that of comparisons with its square.
 bool takes_too_much(const PairTask& task) {
   constexpr std::size_t kOneOf = 8, kTimes = 4;
   if (task.most_tests == UINT64_MAX || std::max(task.width, task.height) > kMostCpuPixels)
@@ -109,7 +109,7 @@ void PairFinder::begin_window(const PairTask& task) {
   fresh_ = true;
 }
 
-// The whole window with one wait; false: there was not room enough.
+// Finds the pairs of the whole window with one wait; false: there was not room enough.
 bool PairFinder::find_at_once(const PairPart& window, const PairForecast& room) {
   const PairCounts before = counts_;
   if (find_in(window, &room)) {
@@ -123,7 +123,7 @@ bool PairFinder::find_at_once(const PairPart& window, const PairForecast& room) 
   return false;
 }
 
-// A part of the window step by step, in two halves if it is too much.
+// Finds the pairs of a part of the window step by step, in two halves if the part is too much.
 void PairFinder::split(const PairPart& part) {
   if (counts_.given_up) return;
   const PairCounts before = counts_;
@@ -131,7 +131,7 @@ void PairFinder::split(const PairPart& part) {
     ++counts_.bands;
     return;
   }
-  // The next parts believe what was sent for this one, so it is checked first.
+  // The next parts use what was sent for this one, so read() checks it first.
   device_.read("pairs");
   counts_ = before;
   break_off_lists();
@@ -147,7 +147,7 @@ void PairFinder::split(const PairPart& part) {
   split(high);
 }
 
-// The items, lists and pairs of one part. With `room` for them, nothing is read before the end.
+// Makes the items, lists and pairs of one part. With `room`, nothing is read before the end.
 bool PairFinder::find_in(const PairPart& part, const PairForecast* room) {
   part_ = part;
   room_ = room;
@@ -191,7 +191,7 @@ void PairFinder::begin_part() {
   seen_.reset();
 }
 
-// Takes the counts of a part that was done.
+// Adds the counts of a part that was done, and keeps them in seen_.
 void PairFinder::end_part(const PairTotalWords& totals) {
   PairForecast seen;
   seen.triangles = task_->triangles.size();
@@ -229,7 +229,7 @@ void PairFinder::break_off_lists() {
   for (PairLevel& level : levels_) level.dirty = true;
 }
 
-// True if a sum went beyond 32 bits, so that the part must be split. Throws Error if it is a single
+// True if a sum went beyond 32 bits, so that the part must be split. Throws Error for a single
 // pixel.
 bool PairFinder::overflow(const PairTotalWords& totals) const {
   if (totals[kTotalOverflow] == 0) return false;
@@ -248,7 +248,8 @@ GlPairs::GlPairs(const GlContext& context, const GlPairOptions& options)
 
 GlPairs::~GlPairs() { forget(); }
 
-// Deletes everything on the device. If the context cannot be made current, its end does that.
+// Deletes everything on the device. If the context cannot be made current, the end of the context
+// does that.
 void GlPairs::forget() {
   if (!gl_forget(context_, [&] { finder_.reset(); })) static_cast<void>(finder_.release());
 }

@@ -36,7 +36,7 @@ enum PairTotal : std::uint32_t {
   kTotalLargeFound,
   kTotalEntries,                                  // of each level
   kTotalCrowded = kTotalEntries + kMaxLevel + 1,  // cells, of each level, before they are filled
-  kTotalParents = kTotalCrowded + kMaxLevel + 1,  // the same, when they are listed
+  kTotalParents = kTotalCrowded + kMaxLevel + 1,  // the same cells, counted when they are listed
   kSerialItems = kTotalParents + kMaxLevel + 1,
   kTotalWholes,
   kTotalItems,
@@ -62,15 +62,15 @@ constexpr PairTotal of_level(PairTotal first, std::size_t level) {
 /// Totals that are set to 0 together, by the place of their serial number.
 struct PairTotals {
   PairTotal serial;
-  std::uint32_t words;  // with it
+  std::uint32_t words;  // with the serial number
 };
 constexpr PairTotals kItemTotals{kSerialItems, kSerialPairs - kSerialItems};
 constexpr PairTotals kPairTotals{kSerialPairs, kTotals - kSerialPairs};
 
-/// How many work items a dispatch has: `most` if no total is given. Else a total that the device
-/// counted says it, so the host need not wait and read it: one work item for each `per` of the
-/// total, `times`. The total may be at most `most`, the room for what it counts. If it is more,
-/// neither this dispatch nor those after it that use a total do any work, and read() says so.
+/// How many work items a dispatch has: `most` if no total is given. Else the device takes the
+/// number from a total that it counted, so that the host need not wait: `times` work items for each
+/// `per` of the total. The total may be at most `most`, the room for what it counts. If it is more,
+/// this dispatch and later ones that use a total do no work, and read() says so.
 struct PairWork {
   PairWork(std::uint64_t count) : most(count) {}
   PairWork(std::uint64_t room, PairTotal counted, std::uint32_t each = 1, std::uint32_t times_ = 1)
@@ -100,7 +100,7 @@ struct PairUniforms {
   std::array<float, 4> numbers{};
 };
 
-/// Each is a text of core/gl/pairs and a step of it.
+/// The programs of FAR pairs. Each is one step of a shader file of core/gl/pairs.
 enum class PairProgram {
   items,
   records,
@@ -144,8 +144,8 @@ struct PairBinding {
   const GlStore* store;
 };
 
-/// When a part of the window begins, when its slices are marked, its lists filled in, and its tests
-/// done.
+/// The times at which a part of the window begins, its slices are marked, its lists are filled in
+/// and its tests are done.
 enum class PairStamp : std::size_t { begun, marked, listed, done };
 constexpr std::size_t kPairStamps = 4;
 
@@ -161,12 +161,13 @@ class PairQueue {
   /// must be given.
   void run(PairProgram program, const PairWork& work, const PairUniforms& uniforms,
            const std::vector<PairBinding>& bindings);
-  /// Writes the sums before each of `count` numbers, or of as many as the total `counted` says,
-  /// unless it is kSerialStart; their sum becomes the total `sum`.
+  /// Writes for each number the sum of all numbers before it; the sum of all becomes the total
+  /// `sum`. There are `count` numbers, or as many as the total `counted` says, unless that is
+  /// kSerialStart.
   void scan(const GlStore& numbers, const GlStore& before, std::size_t count, PairTotal counted,
             PairTotal sum);
-  /// Lets the device sum what five stores hold; read() compares the sum with that of the data, of a
-  /// whole number of words each, none where nothing was sent.
+  /// Lets the device sum what five stores hold; read() compares the sum with that of the data that
+  /// were sent: a whole number of words each, or none.
   struct Sent {
     const GlStore* store;
     std::span<const std::byte> data;
@@ -196,7 +197,7 @@ class PairQueue {
     return clock_.between(static_cast<std::size_t>(from), static_cast<std::size_t>(to));
   }
 
-  /// Counts a wait for results that read() does not make.
+  /// Counts a wait for results outside read().
   void add_readback() { ++readbacks_; }
 
   /// Since start(true).
@@ -206,7 +207,7 @@ class PairQueue {
  private:
   struct Program {
     GlProgram name;
-    std::uint32_t bindings = 0;  // a bit for each that it reads
+    std::uint32_t bindings = 0;  // bit b: the program reads binding b
   };
   struct Dispatch {
     PairWork work;
@@ -223,9 +224,9 @@ class PairQueue {
   GlStore sums_;
   std::vector<Dispatch> expected_;  // of each dispatch since the last read
   std::vector<PairWork> needed_;    // totals for which there has to be room
-  bool overflow_ = false;           // there was not, or a sum was too large
+  bool overflow_ = false;           // there was too little room, or a sum was too large
   std::uint32_t expected_sum_ = 0;  // of what was sent since the start
-  PairTotalWords serials_{};        // those that were sent, at their places
+  PairTotalWords serials_{};        // serial numbers that were sent, at their places
   std::uint32_t serial_ = 0;        // the last one
   std::vector<std::uint32_t> words_;
   GlClock clock_{kPairStamps};
@@ -407,8 +408,8 @@ class PairFinder {
 
   // emission.cpp: the tests of the lists, and the pairs that they report.
   struct Portion {
-    // The work items of all tests whose number is k modulo `of`. The tests of an entry with 256
-    // others are one, and their number is that of the entry and of the 256.
+    // The work items whose number is k modulo `of`. A work item tests an entry with up to 256
+    // others; its number is the index of the entry plus that of the 256 (pair_tests.comp).
     std::uint32_t k = 0, of = 1;
   };
   void begin_pairs();

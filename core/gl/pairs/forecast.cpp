@@ -57,7 +57,7 @@ class CellCounts {
     --change_[j1 + i0];
     ++change_[j1 + i1];
   }
-  /// Ends the counting: the largest count of a cell, and how many pixels lie in crowded cells.
+  /// Ends the counting: finds the largest count of a cell, and the number of crowded pixels.
   void finish() {
     for (std::size_t j = 0; j + 1 < rows_; ++j) {
       int row = 0;
@@ -88,7 +88,7 @@ PairBounds grown(const PairBounds& b, float by) {
   return {b.lo - change, b.hi + change};
 }
 
-// Bytes of the lists: those of PairItems and PairLists.
+// Bytes that the items and the lists of a forecast take.
 std::size_t bytes_of(const PairForecast& f) {
   std::size_t bytes = f.wholes * (kVec4 + 2 * kWord) + f.items * (kRecord + kVec4 + 3 * kWord) +
                       f.shown * (kRecord + kVec4);
@@ -96,7 +96,7 @@ std::size_t bytes_of(const PairForecast& f) {
   return bytes;
 }
 
-// The items of the active triangles, and their entries in pixels; cells: their bounds.
+// Counts the items of the active triangles and their entries; `cells` counts their bounds.
 PairForecast count_bounds(const PairTask& task, CellCounts& cells) {
   const PairGrid grid(task);
   const float large = large_pixels(task.active.size());
@@ -122,12 +122,12 @@ PairForecast count_bounds(const PairTask& task, CellCounts& cells) {
       const float pixels =
           interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1), grid.corner(t, 2),
                                   bounds.hi.x - bounds.lo.x, bounds.hi.y - bounds.lo.y);
-      // The device may round the pixels otherwise: near the limit both are counted.
+      // The device may round the pixels otherwise: a triangle near the limit counts as both.
       if (pixels > 0.99f * large) ++guess.large;
       if (pixels > 1.01f * large) continue;
       guess.row_items += height * ((width - 1) / kSpan + 1);
       // The footprint is that of the triangle. Its solid is about half a pixel larger to each side,
-      // so it meets about one more for each row and column.
+      // so it meets about one more pixel for each row and column.
       listed += std::min(width * height, static_cast<std::size_t>(pixels) + width + height);
     }
     cells.add(item);

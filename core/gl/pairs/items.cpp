@@ -232,7 +232,7 @@ bool PairFinder::make_records(std::size_t shown) {
 namespace {
 
 constexpr std::size_t kSubCells = kSubdivision * kSubdivision;
-constexpr std::size_t kBins = std::size_t{1} << 20;  // that are wanted at most
+constexpr std::size_t kBins = std::size_t{1} << 20;  // the most that are wanted
 
 }  // namespace
 
@@ -246,7 +246,7 @@ bool PairLevel::shape(std::size_t n, std::uint32_t groups, std::uint64_t expecte
     ++shift;
   }
   bins = {groups * slices, shift, slices, groups - 1};
-  // Lists of smaller cells have a place more for each parent (pair_cut.comp).
+  // Lists of smaller cells have one more place for each parent (pair_cut.comp).
   const std::size_t wanted = (all_bins() + cells / kSubCells + 1) * kWord;
   if (!memory.take(wanted) || !memory.take(wanted)) return false;
   if (counts.reserve(wanted, memory.block)) dirty = true;
@@ -326,7 +326,7 @@ bool PairFinder::count_entries() {
 // Marks the slices that two owners touch in each pixel.
 void PairFinder::mark(std::size_t mask_bytes) {
   const Stopwatch start;
-  // If this is lost, old slices still count as touched: more is listed, never less.
+  // If this command is lost, old slices still count as touched: more is listed, never less.
   masks_.clear(mask_bytes);
   visit(PairProgram::mark_wholes, PairProgram::mark_rows, 0);
   PairUniforms u = common_;
@@ -404,7 +404,7 @@ void PairFinder::cut_step(PairProgram program, std::size_t l, const PairWork& wo
                {10, &below.places}});
 }
 
-// Whether all that was counted was filled in, and which cells are crowded.
+// Lets the device count bins that were not filled in as counted, and list the crowded cells.
 void PairFinder::check_cells(std::size_t l) {
   cut_step(PairProgram::parents, l,
            l == 0 ? PairWork(levels_[0].cells)

@@ -1,9 +1,9 @@
-// Steps over arrays of words. 0: the sums of the words of up to five buffers, each mixed with its place (gl_sum has the same on the
-// CPU). 1: copies words. 2: sets words to 0; u_extra.x: not 0 where they are bits of pairs.
-// 3 and 4: sums of all numbers before each. 3 sums 64 numbers at a time, and adds each sum to those of 64^2 and 64^3 numbers, which
-// are 0 before. 4 sums from these what precedes its 64 numbers, then each one. A sum beyond 32 bits raises FAR_OVERFLOW.
-// 5: slices of a pixel that two owners touch: they differ in some bit of their numbers, so one of them touches the region of that
-// bit's 0 and the other that of its 1. 6: after counting, counts the crowded cells.
+// Steps over arrays of words. 0 sums the words of up to five buffers, each mixed with its place (gl_sum does the same on the
+// CPU). 1 copies words. 2 sets words to 0; u_extra.x is not 0 if they are bits of pairs. 3 and 4 find for each number the sum
+// of all before it. 3 sums 64 numbers at a time, and adds each sum to the sums of the 64^2 and the 64^3 numbers around, which
+// are 0 at first. 4 adds up from these what precedes its 64 numbers, then goes on number by number. A sum beyond 32 bits raises
+// FAR_OVERFLOW. 5 finds the slices of a pixel that two owners touch: the owners' numbers differ in some bit, so one touches the
+// slice in the region for 0 in that bit and the other in the region for 1. 6, after counting, counts the crowded cells.
 #if FAR_STEP == 0
 layout(std430, binding = 0) buffer From0 { uvec4 tag_0; readonly uint from_0[]; };
 #define FAR_TAG_0 tag_0.x
@@ -63,8 +63,8 @@ layout(std430, binding = 1) buffer Before { uvec4 tag_1; writeonly uint before[]
 layout(std430, binding = 2) buffer Sums { uvec4 tag_2; uint sums[]; };  // of 64^2 numbers, of 64^3, of 64
 #define FAR_TAG_2 tag_2.x
 
-// u_extra: x counter of the total, y how many numbers there are, unless u_work.x says it, z where sums of 64^3 numbers begin, w where
-// those of 64.
+// u_extra: x counter of the total, y how many numbers there are, unless u_work.x says it, z where sums of 64^3 numbers begin, w
+// where sums of 64 numbers begin.
 
 void far_sum(uint a, uint b, inout uint total) {
   total = a + b;

@@ -1,17 +1,17 @@
 // Shared by the programs of FAR pairs, after core/pairs/interval.glsl: uniforms, records, and the loop over work items. A program
-// defines work(w) for each w < far_count(); FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
-// iterations (llvmpipe then stops without a word) and the finished ones are counted together. Where a text has several steps,
-// each is a program of its own with another FAR_STEP, so that none carries the code of the others.
+// defines work(w) for each w < far_count(). One invocation does FAR_BATCH of them, so that it never comes near 65,535
+// iterations (llvmpipe then stops without an error), and counts the finished ones together. If a file has several steps,
+// each is compiled as a program with its own FAR_STEP, so that no program carries the code of the others.
 layout(local_size_x = 64) in;
 
 // Triangles that meet the part of the window are items. Whole ones (one interval in all their pixels) are heads alone until they
 // are listed; the others, and those that are listed, are records.
 // Record: five vec4: corners a, b, c with the three margins (far_margin) in their w; bounds lo, hi within the owner's limits.
-// Head of a record: triangle, code, pixels i0 | j0 << 16, i1 | j1 << 16; of a whole item the last is as far_pack makes it, and
-// until it is a record the first is its position among the active triangles.
+// Head of a record: triangle, code, pixels i0 | j0 << 16, i1 | j1 << 16. A whole item has as its last word what far_pack makes,
+// and as its first word, until it becomes a record, its position among the active triangles.
 // Entry: two uvec4: bits of lo.x, lo.y, near; triangle; bits of hi.x, hi.y, far; code. Beside it: cell, record.
 const uint kRecordSize = 5u;
-// Code: number of the owner << 3 and these.
+// Code: number of the owner << 3, and these bits.
 const uint kWhole = 1u;
 const uint kSelf = 2u;
 const uint kLarge = 4u;
@@ -36,12 +36,12 @@ layout(location = 0) uniform uvec4 u_all[kUniforms];
 #define u_capacity u_all[5].x                  // that the program's output holds
 #define u_items u_all[5].y                     // records of triangles that are not whole
 #define u_extra u_all[6]                       // what one program alone needs
-#define u_numbers uintBitsToFloat(u_all[7])    // the same
+#define u_numbers uintBitsToFloat(u_all[7])    // what one program alone needs, as floats
 // If x is not 0, the total counters[x] says how many work items there are: one for each y of it, times z.
 #define u_work u_all[8]
 
-// The work items of this dispatch. Where the total is beyond what there is room for, or one before it was, there are none: what
-// lies in the buffers is not complete then.
+// The number of work items of this dispatch. It is 0 if the total is beyond the room there is, or if one before it was: then
+// the buffers are not complete.
 uint far_count() {
   if (u_work.x == 0u) return u_count;
   uint total = counters[u_work.x];
@@ -79,7 +79,7 @@ uint far_next_pair() {
   return place;
 }
 
-// The last of the `count` ascending numbers that is <= x, as an index; the first of them is 0.
+// The index of the last of the `count` ascending numbers that is <= x; the first number is 0.
 #define FAR_LAST_AT_MOST(name, numbers)                                        \
   uint name(uint x, uint count) {                                              \
     uint low = 0u;                                                             \

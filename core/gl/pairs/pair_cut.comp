@@ -1,8 +1,9 @@
-// Crowded cells, cut into FAR_SUBDIVISION^2 smaller ones wherever that leaves at most half of the tests: the function subdivide
-// of core/pairs/tile.h. Parents are the crowded cells of a level, u_bins those of the level below. Steps: 0, after
-// the lists of a level are filled in, counts those whose counts are not used up and lists the parents, 1 counts entries of smaller
-// cells, 2 decides and gives their lists places, 3 fills the entries in. In `first` each parent has a place more than its smaller
-// cells have bins, since its entries are followed by those of any other one.
+// Cuts crowded cells into FAR_SUBDIVISION^2 smaller ones wherever that leaves at most half of the tests, as the function
+// subdivide of core/pairs/tile.h does. Parents are the crowded cells of a level; u_bins is about the level below. Step 0, after
+// the lists of a level are filled in, counts the bins whose counts are not used up, and lists the parents. Step 1 counts the
+// entries of smaller cells. Step 2 decides which parents are cut, and gives the lists of their smaller cells places. Step 3
+// fills the entries in. In `first` each parent has one place more than its smaller cells have bins, for the end of its last
+// list: the entries of any other parent may follow.
 layout(std430, binding = 0) buffer Records { uvec4 tag_0; readonly vec4 records[]; };
 #define FAR_TAG_0 tag_0.x
 layout(std430, binding = 1) buffer Above { uvec4 tag_1; readonly uvec4 above[]; };  // the parents of the level before, where there is one
@@ -95,8 +96,8 @@ void work(uint p) {
     FAR_AT(first, begin + p + bins) = 0u;
     return;
   }
-  // A parent has at most 2^32 - 1 entries, of which each is in at most all its 64 cells; with half of the tests they are fewer than
-  // 6 times as many. A sum beyond 32 bits is noticed where it, or that of all parents, passes them.
+  // The 64 cells have at most half of the parent's tests, so they have fewer than 6 times its entries: `sum` fits 32 bits if
+  // the parent has less than 2^29. The first comparison notices if the sum over all parents goes beyond 32 bits.
   uint at = atomicAdd(counters[FAR_ENTRIES + u_extra.x + 1u], sum);
   if (at + sum < at || FAR_AT(parents, p).y > 0x1fffffffu) counters[FAR_OVERFLOW] = 1u;
   if (crowded != 0u) atomicAdd(counters[FAR_CROWDED_CELLS + u_extra.x + 1u], crowded);
@@ -114,7 +115,7 @@ void far_add_entry(uint cell, uvec4 lo, uvec4 hi, uint record, float near, float
   atomicAdd(FAR_AT(counts, bin), 1u);
 #else
   uint left = atomicAdd(FAR_AT(counts, bin), 0xffffffffu);
-  if (left == 0u) return;  // more than was counted: the count is not 0 in the end
+  if (left == 0u) return;  // more entries than were counted: the count wraps, so it is not 0 in the end
   uint at = FAR_AT(first, bin + cell / kSubCells) + left - 1u;
   if (at >= u_capacity) return;
   FAR_AT(sub_entries, 2u * at) = uvec4(lo.xy, floatBitsToUint(near), lo.w);

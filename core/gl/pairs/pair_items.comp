@@ -10,7 +10,7 @@ layout(std430, binding = 8) buffer Heads { uvec4 tag_8; uvec4 heads[]; };  // of
 #if FAR_STEP == 0
 layout(std430, binding = 9) buffer Listed { uvec4 tag_9; writeonly uint listed[]; };  // of the records
 #define FAR_TAG_9 tag_9.x
-layout(std430, binding = 10) buffer Rows { uvec4 tag_10; writeonly uint rows[]; };  // work items that the rows of each record are
+layout(std430, binding = 10) buffer Rows { uvec4 tag_10; writeonly uint rows[]; };  // how many work items the rows of each record are
 #define FAR_TAG_10 tag_10.x
 // u_capacity: records; u_extra.z: whole items. u_numbers.x: pixels that a large triangle meets at least.
 #else
@@ -28,7 +28,7 @@ void far_record(uint at, FarTriangle t, uint code, uint from, uint to) {
   FAR_AT(record_heads, at) = uvec4(t.triangle, code, from, to);
 }
 
-// The pixels i0, j0, i1, j1 of its bounds.
+// The pixels i0, j0, i1, j1 of the triangle's bounds.
 ivec4 far_pixels(FarTriangle t) {
   return ivec4(far_pixel(t.lo.x, u_window.x), far_pixel(t.lo.y, u_window.y), far_pixel(t.hi.x, u_window.x), far_pixel(t.hi.y, u_window.y));
 }
@@ -76,11 +76,11 @@ void work(uint w) {
 #else
 void work(uint w) {
   uvec4 head = FAR_AT(heads, FAR_AT(shown, w));
-  uint at = head.x - u_extra.x;  // beyond u_extra.z where it lies before the first one, too
+  uint at = head.x - u_extra.x;  // wraps around to beyond u_extra.z if the triangle lies before the first one sent
   if (at >= u_extra.z) return;
   FarTriangle t;
-  // Lists follow the pixels and slices of the head, and tests the bounds of the record, which another program computes again: where
-  // the two differ, nothing is believed.
+  // Lists use the pixels and slices of the head; tests use the bounds of the record, which this program computes again. If the
+  // two differ, nothing is believed.
   bool same = far_triangle(at, t);
   ivec4 pixels = far_pixels(t);
   if (!same || (uint(pixels.x) | uint(pixels.y) << 16) != head.z || far_extent(t, pixels) != head.w)

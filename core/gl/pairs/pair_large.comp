@@ -1,5 +1,6 @@
-// Compares large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs/cpu.cpp. Step
-// 0 lists the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with a triangle that was sent.
+// Compares large triangles with each active one, over the rectangle of the active one's bounds, as compare_large of
+// core/pairs/cpu.cpp does. Step 0 lists the large triangles among the records; step 1 compares FAR_LARGE_BATCH of them with a
+// triangle that was sent.
 layout(std430, binding = 5) buffer Records { uvec4 tag_5; readonly vec4 records[]; };
 #define FAR_TAG_5 tag_5.x
 layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
@@ -16,8 +17,9 @@ void work(uint w) {
 layout(std430, binding = 9) buffer Pairs { uvec4 tag_9; writeonly uvec2 pairs[]; };
 #define FAR_TAG_9 tag_9.x
 
-// u_extra.w: large triangles at most. u_cells: triangles that were sent. u_items: the first of the batches of FAR_LARGE_BATCH
-// large triangles; each has a work item for each of those. Work item w is done in the portion w mod u_extra.z; this one is u_extra.x.
+// u_extra.w: large triangles at most. u_cells: triangles that were sent. u_items: the first batch of FAR_LARGE_BATCH large
+// triangles; a batch has a work item for each triangle that was sent. Work item w is done in the portion w mod u_extra.z; the
+// portion to do is u_extra.x.
 
 bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
   vec4 a = FAR_AT(records, kRecordSize * l);

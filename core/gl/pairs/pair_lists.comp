@@ -1,12 +1,12 @@
-// The pixels that items meet. One text for three steps, so that what is counted is what is filled in: 0 marks the slices of each
-// owner, 1 counts the entries of each bin, 2 fills them in. A work item is a whole item or, with FAR_ROWS, one row of another,
-// FAR_SPAN pixels of it.
+// Goes over the pixels that items meet. Three steps share this code, so that exactly the counted entries are filled in: 0 marks
+// the slices of each owner, 1 counts the entries of each bin, 2 fills them in. A work item is a whole item or, with FAR_ROWS,
+// FAR_SPAN pixels of one row of an item that is not whole.
 #define FAR_MARK 0
 #define FAR_COUNT 1
 #define FAR_FILL 2
 #if FAR_STEP != FAR_FILL || defined(FAR_ROWS)
-// Two words a pixel (64 slices) and region. Region 0: slices that two owners touch, or one that collides with itself; 1 + 2 k + b:
-// those that an owner touches whose number has b as bit k.
+// Two words (64 slices) for each pixel and region. Region 0: slices that two owners touch, or one that collides with itself.
+// Region 1 + 2 k + b: slices that some owner touches whose number has b as bit k.
 layout(std430, binding = 2) buffer Masks { uvec4 tag_2; uint masks[]; };
 #define FAR_TAG_2 tag_2.x
 #else
@@ -14,7 +14,7 @@ layout(std430, binding = 2) buffer Masks { uvec4 tag_2; readonly uint masks[]; }
 #define FAR_TAG_2 tag_2.x
 #endif
 #if FAR_STEP != FAR_MARK
-layout(std430, binding = 3) buffer Counts { uvec4 tag_3; uint counts[]; };  // of each bin; what is filled in is taken away
+layout(std430, binding = 3) buffer Counts { uvec4 tag_3; uint counts[]; };  // entries of each bin that are not filled in yet
 #define FAR_TAG_3 tag_3.x
 #endif
 #if FAR_STEP == FAR_FILL
@@ -32,11 +32,11 @@ layout(std430, binding = 0) buffer Records { uvec4 tag_0; readonly vec4 records[
 layout(std430, binding = 6) buffer Heads { uvec4 tag_6; readonly uvec4 heads[]; };
 #define FAR_TAG_6 tag_6.x
 #if FAR_STEP == FAR_COUNT
-layout(std430, binding = 8) buffer Listed { uvec4 tag_8; uint listed[]; };  // FAR_ROWS: not 0: has an entry; else the whole items that have one
+layout(std430, binding = 8) buffer Listed { uvec4 tag_8; uint listed[]; };  // with FAR_ROWS: per record, not 0 if it has an entry; else the whole items that have one
 #define FAR_TAG_8 tag_8.x
 #endif
 #ifdef FAR_ROWS
-layout(std430, binding = 1) buffer Rows { uvec4 tag_1; readonly uint rows[]; };  // of the records before each
+layout(std430, binding = 1) buffer Rows { uvec4 tag_1; readonly uint rows[]; };  // work items of the records before each
 #define FAR_TAG_1 tag_1.x
 FAR_LAST_AT_MOST(far_record_of_row, rows)
 #endif
@@ -72,7 +72,7 @@ bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, ui
   atomicAdd(FAR_AT(counts, bin), 1u);
 #else
   uint left = atomicAdd(FAR_AT(counts, bin), 0xffffffffu);
-  if (left == 0u) return true;  // more than was counted: the count is not 0 in the end
+  if (left == 0u) return true;  // more entries than were counted: the count wraps, so it is not 0 in the end
   uint at = FAR_AT(first, bin) + left - 1u;
   if (at >= u_capacity) return true;
   FAR_AT(entries, 2u * at) = lo;

@@ -1,6 +1,7 @@
-// The loop over work items, and the echo of what the program reads; after the text of a program. The first invocation writes the
-// sum of the program's number, its uniforms and the tags of its buffers, each mixed with its place, beside the counter of finished
-// work items. PairQueue::run computes the same sum from the intended values: a lost call to GL makes the two differ.
+// The loop over work items, and the echo of what the program reads; this file stands after that of a program. The first
+// invocation writes the echo beside the counter of finished work items: the sum of the program's number, its uniforms and the
+// tags of its buffers, each mixed with its place. PairQueue::run computes the same sum from the intended values: a lost call to
+// GL makes the two differ.
 
 uint far_echo() {
   uint sum = 0u;

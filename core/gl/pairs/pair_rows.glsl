@@ -1,4 +1,4 @@
-// The strips of one item over rows of pixels or of parts of a pixel: PairRows of core/pairs/grid.h.
+// The strips of one item over rows of pixels or parts of a pixel, as PairRows of core/pairs/grid.h.
 struct FarRows {
   vec4 a;
   vec4 b;
@@ -20,7 +20,7 @@ bool far_row(inout FarRows rows, float y0, float y1, out float lo, out float hi)
   return lo <= hi;
 }
 
-// The interval over x0 .. x1 of the row; false: none.
+// The depth interval over x0 .. x1 of the row; false: none.
 bool far_cell(inout FarRows rows, float x0, float x1, out float near, out float far) {
   precise float left = x0 - rows.a.w;
   precise float right = x1 + rows.a.w;

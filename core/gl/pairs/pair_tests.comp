@@ -1,9 +1,10 @@
-// Pairs of entries of one cell that overlap in depth and whose bounds overlap in the image. Entries lie in groups by owner, and
-// there by the slice of their near depth, so the partners of an entry are two ranges: of the other group those with a near slice
-// within the entry's slices (for the second group: after its first), and of its own group those after it up to its far slice.
-// Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item. The c-th FAR_UNIT partners
-// of entry e are tested in the portion (e + c) mod u_cells; with FAR_SETTLED all are, and the pair of the records r and s is reported
-// in the portion (r + s) mod u_cells, since it may be in many cells.
+// Finds the pairs of entries of one cell that overlap in depth and whose bounds overlap in the image. Entries lie in groups by
+// owner, and inside a group by the slice of their near depth, so the partners of an entry are two ranges. In the other group
+// they have a near slice within the entry's slices (an entry of the second group leaves out its first slice). In its own group
+// they stand after the entry, up to its far slice. Step 0 tests each entry with up to FAR_UNIT partners. Step 1 tests the
+// partners left, FAR_UNIT in a work item. The c-th FAR_UNIT partners of entry e are tested in the portion (e + c) mod u_cells.
+// With FAR_SETTLED every portion tests all partners, and reports the pair of the records r and s if it is the portion (r + s)
+// mod u_cells, since the pair may be in many cells.
 layout(std430, binding = 2) buffer Pairs { uvec4 tag_2; writeonly uvec2 pairs[]; };
 #define FAR_TAG_2 tag_2.x
 layout(std430, binding = 3) buffer Units { uvec4 tag_3; uvec2 units[]; };  // work items of step 1: entry, its partners / FAR_UNIT
@@ -54,7 +55,7 @@ void work(uint w) {
   }
   uint all = others;
   if (u_extra.y != 0u) all += FAR_AT(first, own + far_slice_bin + 1u) - e - 1u;
-  // If a dispatch was lost, places may be anything: no loop is longer for it than there are entries.
+  // If a dispatch was lost, places may be anything. Even then no loop is longer than the number of entries.
   all = min(all, uint(entries.length()) / 2u);
 #ifdef FAR_SOME_CROWDED
   bool crowded = FAR_AT(first, bins + u_bins.x) - FAR_AT(first, bins) > FAR_CROWDED;

@@ -15,7 +15,7 @@ struct GlPairOptions {
   /// split, down to single pixels. The pairs of a portion, and the further tests of a level, may
   /// each take as many bytes. The answer does not depend on it.
   std::size_t memory = std::size_t{256} << 20;
-  /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
+  /// The most bytes that a storage block is taken to hold. 0: the device's own limit.
   long storage_limit = 0;
   /// Reads counts between the steps even if they can be predicted. It takes more time; the answer
   /// does not depend on it. For tests of the steps.
@@ -42,7 +42,7 @@ class GlPairs final : public PairBackend {
   std::size_t uploaded_bytes() const;
   /// Portions in which pairs were read; one if all of them fitted into one buffer.
   std::size_t portions() const;
-  /// Pairs that the programs reported, the same one as often as they did.
+  /// Pairs that the programs reported, repeats included.
   std::size_t reported_pairs() const;
 
  private:
@@ -52,7 +52,7 @@ class GlPairs final : public PairBackend {
   std::unique_ptr<PairFinder> finder_;  // null after a failure
 };
 
-/// The same behind the interface; memory as in GlPairOptions.
+/// A GlPairs behind the interface PairBackend; memory as in GlPairOptions.
 std::unique_ptr<PairBackend> gl_pair_backend(const GlContext& context,
                                              std::size_t memory = std::size_t{256} << 20);
 

@@ -26,7 +26,7 @@ constexpr GLuint kCounters = 7;           // binding
 constexpr GLint kBindings = 11;           // 0 .. 10
 constexpr std::uint32_t kGroup = 64;      // local_size_x of pair_common.glsl
 constexpr std::uint32_t kScanned = 64;    // numbers of a sum, pair_arrays.comp
-constexpr std::size_t kDispatches = 240;  // that are counted between two reads
+constexpr std::size_t kDispatches = 240;  // the most that are counted between two reads
 
 // Defines of single programs.
 constexpr const char* kRows = "#define FAR_ROWS\n";
@@ -42,7 +42,7 @@ struct Source {
   std::uint32_t batch;  // work items of an invocation
   const char* text;
   int step;
-  const char* before = "";  // a text that it needs
+  const char* before = "";  // a text that stands before it
   const char* defines = "";
 };
 using namespace embedded;
@@ -161,7 +161,7 @@ PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
                     " storage bindings, FAR pairs needs " + std::to_string(kBindings),
                 "use {device} cpu or another device");
   }
-  // Those that every scene needs.
+  // Compiles the programs that every scene needs.
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
   words_.assign(kTotals + 2 * kDispatches, 0);
   counters_.reserve(words_.size() * sizeof(std::uint32_t), block_);

@@ -56,7 +56,7 @@ struct PictureTriangle {
 };
 
 struct PictureSettings {
-  int samples = 3;  // along a side of a pixel: it is the mean of their square
+  int samples = 3;  // along each side of a pixel, which is the mean of samples^2 of them
 };
 
 /// Largest width and height of a picture, px. OpenGL 4.3 allows it with 4 samples.

@@ -1,4 +1,4 @@
-// A4 and A9: what shaders compute, and what reaches them. And kernels on single cases.
+// Probes of A4 and A9: what shaders compute, and what reaches them. Also kernels on single cases.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,8 +27,8 @@ using Operands = std::array<float, 4>;  // a, b, c, unused
 
 float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Error of `got` as an approximation of head + tail (exact, |tail| tiny), in units of 2^-23 of it.
-// Results that may be flushed or overflow count as right where they do so.
+// Error of `got` as an approximation of head + tail (exact, |tail| tiny), in units of 2^-23 of this
+// sum. A result that may be flushed or overflow counts as right if it is flushed or overflows.
 double units(float got, double head, double tail) {
   const double exact = std::abs(head);
   if (exact > kLargest) {
@@ -119,7 +119,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step judged by what the step before gave on the device, so no rounding mode is assumed.
+    // Each step is judged by the device's result of the step before: no rounding mode is assumed.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)

@@ -1,7 +1,8 @@
-// A7, A8 and A10. A7: lost commands are noticed, and the answer after them is right. A8: values
-// that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor double.
-// A missing or weak barrier shows only on devices that reorder: these probes can refute, on the
-// device that they run on. A10: the driver has no threads that are known to damage memory.
+// Probes of A7, A8 and A10. A7: lost commands are noticed, and the answer after them is right. A8:
+// values that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor
+// repeat an update. A missing or weak barrier shows only on devices that reorder commands, so these
+// probes can refute A8 only on the device that they run on. A10: the driver has no threads that are
+// known to damage memory.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -60,7 +61,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
       noticed = true;
     }
     fault.reset();
-    // The pass after it must neither fail nor answer with what the fault left behind.
+    // The pass after the fault must neither fail nor answer with what the fault left behind.
     bool recovered = false;
     try {
       canvas.begin(window(64, 64), drawables);
@@ -111,7 +112,7 @@ Scene waves() {
 
 constexpr std::uint32_t kGroup = 64;      // local_size_x
 constexpr std::uint32_t kTakers = 65536;  // a power of two
-constexpr std::uint32_t kSpread = 16;     // counters, as in the text
+constexpr std::uint32_t kSpread = 16;     // counters, as in probe_memory.comp
 
 GlProgram step_program(int step, bool plain) {
   std::vector<std::string> defines = {"FAR_STEP " + std::to_string(step)};
@@ -128,8 +129,8 @@ void run(GLuint program, GLuint from, GLuint to, std::uint32_t count, std::uint3
   glDispatchCompute((count + kGroup - 1) / kGroup, 1, 1);
 }
 
-// Every ticket of every counter is taken once, every bit is set, and of two invocations one alone
-// finds its mark unset.
+// Checks that every ticket of every counter is taken once, that every bit is set, and that of two
+// invocations exactly one finds their mark unset.
 ProbeResult atomics(const ProbeOptions& options) {
   const GlProgram program = step_program(0, options.plain_atomics);
   Worst wrong;
@@ -170,7 +171,7 @@ ProbeResult atomics(const ProbeOptions& options) {
                 "bits; one winner of two");
 }
 
-// Each dispatch reads what others of the one before wrote, in another order.
+// Each invocation of a dispatch reads what another invocation of the dispatch before wrote.
 ProbeResult dispatches(const ProbeOptions& options) {
   constexpr std::uint32_t kLinks = 48;
   const GlProgram program = step_program(1, false);
@@ -197,9 +198,9 @@ ProbeResult dispatches(const ProbeOptions& options) {
                 "48 in a chain, each reads what other groups of the one before wrote");
 }
 
-// A draw counts the fragments of each pixel, a dispatch reads the counts. The program has a
-// discard, as all programs of the canvas that write to buffers: without one, llvmpipe (Mesa 22.3.6)
-// drops what a tile was to do before a triangle that covers all of it, buffer writes included.
+// A draw counts the fragments of each pixel, a dispatch reads the counts. The drawing program has a
+// discard, like all programs of the canvas that write to buffers: without one, llvmpipe (Mesa
+// 22.3.6) drops all work on a tile, buffer writes included, before a triangle that covers the tile.
 ProbeResult draws(const ProbeOptions& options) {
   constexpr int kSide = 512;
   constexpr std::uint32_t kPixels = kSide * kSide;

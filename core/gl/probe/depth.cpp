@@ -1,4 +1,4 @@
-// A5 and A6: depth tests, the texels that they store, and queries.
+// Probes of A5 and A6: depth tests, the texels that they store, and queries.
 #include <algorithm>
 #include <array>
 
@@ -21,8 +21,9 @@ std::vector<Proxy> pixel_proxies(int side) {
   return out;
 }
 
-// Depths as the canvas uses them (its map's range and its control items) and any others; layers are
-// equal, neighbouring or far apart.
+// Random depths of a layer, one for each pixel: in the range of the canvas's depth map or at its
+// ends, of control items (core/gl/canvas/state.h), any others, and some equal or next to those of
+// the layer `beside`.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -62,7 +63,8 @@ class DepthLayers {
     target_.draw(first * kPixels, count * kPixels);
     return target_.depths();
   }
-  /// All layers stored, then a proxy at each of these depths: pixel i is i + 1 where it passed.
+  /// Stores all layers, then asks a proxy at each of these depths. Pixel i of the result is i + 1
+  /// where the proxy passed.
   std::vector<std::uint32_t> ask(const std::vector<float>& asked) {
     store(0, kLayers);
     target_.upload(proxies_at(asked));
@@ -111,7 +113,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
 
   std::uint64_t extra = 0;
   for (std::size_t k = 0; k < kLayers + 1; ++k) {
-    // The last time each pixel asks at the depth that it stores, and equal depths must pass.
+    // In the last round each pixel asks at the depth that it stores, and equal depths must pass.
     std::vector<float> asked = k < kLayers ? layers.depths(k) : nearest;
     if (k < kLayers) {
       for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
@@ -131,7 +133,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
                 note);
 }
 
-// A shader reads the depth that was stored, to the bit.
+// Checks that a shader reads the very bits of the depth that was stored.
 ProbeResult texels(const ProbeOptions& options) {
   constexpr int kSide = 256;
   constexpr std::uint32_t kPixels = kSide * kSide;
@@ -144,7 +146,7 @@ ProbeResult texels(const ProbeOptions& options) {
   std::vector<float> depths;
   for (std::uint32_t i = 0; i < kPixels; ++i) {
     proxies.push_back(pixel_box(static_cast<int>(i), kSide));
-    // Those of the depth map, its ends, control items', and small ones.
+    // Depths in the range of the depth map, near its ends, of control items, and small ones.
     float d = random.in_float(0.25, 0.75);
     if (i % 4 == 1) d = neighbour(random.below(2) ? 0.25f : 0.75f, random.below(9) - 4);
     if (i % 4 == 2) d = random.in_float(0, 1);

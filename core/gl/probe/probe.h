@@ -38,12 +38,12 @@ struct ProbeOptions {
   std::uint64_t seed = 1;
   std::string only = {};         // an assumption, as in "A3"; empty: all of them
   bool brief = false;            // about a third of the samples
-  ProbeUse use = ProbeUse::all;  // probes that something else relies on are left out
+  ProbeUse use = ProbeUse::all;  // probes on which this use does not rely are left out
 
   int snap_bits = 0;                // A2: demand 2^-snap_bits px instead of what the device says
   bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
   bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
-  bool fat_zero_area = false;       // A3: the triangles without area get one
+  bool fat_zero_area = false;       // A3: the triangles without area get an area
   bool shifted_pixel = false;       // A9: gl_FragCoord is half a pixel off
   bool exact_arithmetic = false;    // A4: operations may not round
   bool loose_text = false;          // A4: shaders without `precise`
@@ -63,8 +63,8 @@ struct ProbeOptions {
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
-// The kernels of this product run on a device as its methods run them: solids by the canvas's own
-// fragment program, intervals and slices by compute shaders with the text of
+// The functions below run farcull's kernels on a device as its methods do: solids by the canvas's
+// own fragment program, intervals and slices by compute shaders that include
 // core/pairs/interval.glsl. verify/kernel_check.h decides whether the answers are right.
 
 /// px: solids are asked on a window of this side, one in each pixel.
@@ -85,14 +85,14 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
                                        std::span<const SolidCase> cases);
 
 /// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
-/// programs of the method, in a window this deep (px): with flags, with queries, and with queries
-/// on 24 bits, all three. Where the two are the same solid and the line hits it, it must be seen.
+/// programs of the method, in a window this deep (px): 1 if it is seen with flags, with queries and
+/// with queries on 24 bits. Where the two are the same solid and the line hits it, it must be seen.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);
 
-/// The answers of the kernel of FAR pairs; `before` stands before its text, for twins that must
-/// fail.
+/// The answers of the kernel of FAR pairs. `before`: source that stands before the kernel, for
+/// twins that must fail.
 std::vector<IntervalAnswer> device_intervals(const GlContext& context,
                                              std::span<const IntervalCase> cases,
                                              const std::string& before = "");

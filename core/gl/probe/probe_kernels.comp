@@ -1,7 +1,8 @@
-// Kernels of FAR pairs on given cases, one for each invocation; core/pairs/interval.glsl and pair_rows.glsl stand before this
-// text. The interval of a triangle over a pixel: a case has the corners a, b, c with the widening in w, and the pixel; an answer
-// has lo, start of the row; hi, end of the row; near, far, and whether there is one. FAR_SLICES: depth slices, and the conversion
-// that chooses a pixel; a case has z, steps per px, first step, slices per step; x.
+// Runs kernels of FAR pairs on given cases, one for each invocation; core/pairs/interval.glsl and pair_rows.glsl stand before
+// this file. Without FAR_SLICES: the depth interval of a triangle over a pixel. A case has the corners a, b, c with the
+// widening in w, and the pixel; an answer has lo, start of the row; hi, end of the row; near, far, and whether there is an
+// interval. With FAR_SLICES: depth slices, and the conversion that chooses a pixel. A case has z, steps per px, first step,
+// slices per step, and x, which is converted.
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Cases { uvec4 cases[]; };
 #ifdef FAR_SLICES

@@ -1,4 +1,5 @@
-// A1 .. A3: the places of edges, and the pixels that triangles cover. Of A9: gl_FragCoord.
+// Probes of A1 to A3 (the places of edges, and the pixels that triangles cover) and of gl_FragCoord
+// (A9).
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -143,8 +144,8 @@ bool has_sides(const Proxy& q) {
   return true;
 }
 
-// One proxy as large as the target: displacement of its sides over all pixels, and pixels inside
-// that are not covered once.
+// Draws one proxy as large as the target. Measures the displacement of its sides over all pixels,
+// and counts pixels inside that are not covered exactly once.
 void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst, Worst* wrong) {
   const int width = coverage.target().width(), height = coverage.target().height();
   const Proxy q = random_quad(random, 0, 0, 0.5 * width - 1, 0.5 * height - 1);
@@ -161,7 +162,7 @@ void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst,
   }
 }
 
-// The worst relative to its bound; samples of all.
+// Keeps the measurement that is worst relative to its own bound; its `samples` count those of all.
 struct Tightest {
   Worst worst;
   double bound = 0;

@@ -31,8 +31,8 @@ Group pair_commands;  // A7
 Group memory;         // A8
 Group driver;         // A10
 
-/// The same numbers with every standard library: its distributions are not specified, its engines
-/// are.
+/// Gives the same numbers with every standard library: the standard specifies its engines, but not
+/// its distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -83,9 +83,8 @@ inline constexpr Configuration kConfigurations[] = {
     {"occlusion queries, 24 bits",
      {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}}};
 
-/// Appends the results of a probe for each configuration. A canvas may refuse (its control items
-/// depend on the depth test and the queries, too): that is a failure of this probe, and the next
-/// goes on.
+/// Appends the results of a probe for each configuration. If a canvas refuses (its control items
+/// depend on the depth test and the queries, too), this probe fails and the next one runs.
 using CanvasProbe = ProbeResult(const std::string& name, const GlContext& context,
                                 const ProbeOptions& options, const GlCanvasOptions& canvas);
 void on_canvases(const std::string& assumption, const std::string& kind, CanvasProbe run,
@@ -137,7 +136,7 @@ class Target {
   GlBuffer elements_, draws_;
 };
 
-/// canvas.vert with proxies, and these fragment texts.
+/// The program of canvas.vert with proxies and of this source of the fragment stage.
 GlProgram proxy_program(const std::string& name, const std::vector<std::string>& fragment,
                         std::vector<std::string> defines = {});
 
@@ -145,7 +144,7 @@ GlProgram proxy_program(const std::string& name, const std::vector<std::string>&
 void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
 std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
-/// The shape that GlCanvas sees.
+/// A window of this size and depth (px), seen along z at 1 px for each world unit.
 Window window(int width, int height, double depth = 100);
 /// A solid without a shape, hit everywhere, with the entry and exit depths of `quad`: s0 = (-, -,
 /// entry, exit).
@@ -159,7 +158,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
 )glsl";
 inline SolidProgram depth_solid() { return {"probe", kDepthSolid, nullptr}; }
 
-/// How often to repeat what is repeated `n` times in full.
+/// The rounds of a probe: `n`, or about a third of that if the options say `brief`.
 inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }
 
 /// Largest target side (px) that a canvas on this device could have.

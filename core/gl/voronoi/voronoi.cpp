@@ -319,7 +319,7 @@ class GlVoronoi : public VoronoiDevice {
       glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * count));
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    // Each fragment adds this, and what is in the echo of its brick.
+    // Each fragment adds this echo, and its triangle's part of the echo of the brick.
     GlEcho echo;
     echo.add({serial, static_cast<std::uint32_t>(pass), width, room});
     echo.add(numbers);
@@ -356,7 +356,8 @@ class GlVoronoi : public VoronoiDevice {
     on_.list.reserve(bytes, block_);
   }
 
-  // Subtracts the echo of each from the sum of its cell, so that a missing one is noticed.
+  // Reads the list. Subtracts the echo of each entry from the sum of its cell, so that a missing
+  // entry is noticed.
   std::vector<VoronoiNear> read_list(std::uint32_t listed) {
     std::vector<Words> words(listed, Words{0xffffffff, 0, 0, 0});
     on_.list.read(16, words.data(), words.size() * sizeof(Words));

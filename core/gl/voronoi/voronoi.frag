@@ -1,6 +1,7 @@
-// One triangle at one cell. Passes: 0 keeps the nearest object by the depth test; 1 the nearest of the others; 2 compares every
-// distance with what 0 and 1 kept. 3 keeps the least upper bound; 4 compares every upper bound with it, and lists the
-// triangles whose lower bound is not much larger. Each adds its echo to the report of the cell; that tells a lost fragment.
+// Computes the distance of one triangle from one cell. Pass 0 keeps the nearest object by the depth test; 1 keeps the nearest
+// of the others; 2 compares every distance with what 0 and 1 kept. 3 keeps the least upper bound; 4 compares every upper bound
+// with it, and lists the triangles whose lower bound is not much larger. Each fragment adds its echo to the report of the cell,
+// so that a lost fragment is noticed.
 layout(std430, binding = 2) buffer Report { uvec4 report_tag; uint report[]; };  // of each cell: echoes, flags, two objects
 layout(std430, binding = 3) buffer List { uvec4 list_tag; uint list[]; };  // how many, 3 unused; cell, triangle, bounds of each
 layout(binding = 0) uniform sampler2D u_first_depth;
@@ -20,7 +21,7 @@ layout(location = 0) out uint o_object;
 
 // Flags of a cell.
 const uint kFirst = 1u;   // what the first pass kept is the distance of some triangle
-const uint kSecond = 2u;  // the same of the second pass
+const uint kSecond = 2u;  // what the second pass kept is the distance of some triangle
 const uint kWrong = 4u;   // a distance is less than what was kept
 const uint kRoot = 8u;    // sqrt is worse than the bounds allow
 

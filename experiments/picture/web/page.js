@@ -262,7 +262,7 @@ function isDark() {
   return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-// Plays the frames; a frame that is slow to unpack delays the next one. Odd: playing.
+// Plays the frames; a frame that is slow to unpack delays the next one. `plays` is odd meanwhile.
 let plays = 0;
 async function play() {
   const turn = ++plays;

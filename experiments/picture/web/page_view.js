@@ -117,7 +117,7 @@ class SceneView {
       side: THREE.DoubleSide, transparent: over, depthTest: !over, depthWrite: !over
     });
     if (part === 1) {
-      // Once per pixel, even if several triangles lie behind one another.
+      // Draws each pixel once, even if several triangles lie behind one another.
       material.stencilWrite = true;
       material.stencilFunc = THREE.EqualStencilFunc;
       material.stencilRef = 0;
@@ -192,7 +192,7 @@ class SceneView {
     this.ask();
   }
 
-  // Sets the state of every triangle, and thereby what is drawn a second time.
+  // Sets the state of every triangle, and with it the triangles that are drawn a second time.
   setStates(states) {
     this.states.image.data.set(states);
     this.states.needsUpdate = true;
@@ -207,7 +207,8 @@ class SceneView {
     return geometry;
   }
 
-  // The corners of the triangles whose state has one of the bits; as edges, or as one point each.
+  // The corners of the triangles whose state has one of the bits: those of their faces or of their
+  // edges, or one corner of each triangle.
   indexOf(bits, kind) {
     const data = this.states.image.data, out = [];
     for (let t = 0; t < this.triangles; ++t) {
@@ -243,7 +244,7 @@ class SceneView {
     };
     add(new THREE.Mesh(this.geometry(null), this.materials[0]), 0);
     some(COLLIDES, 1, ["faces"], 1);
-    // Also draws an edge and a point, so that a miss is visible however small its triangle is.
+    // Also draws edges and a point, so that a miss is visible however small its triangle is.
     some(MISSED, 2, ["faces", "edges", "points"], 2);
     some(PARTNER, 3, ["faces", "edges"], 5);
     some(CHOSEN, 3, ["faces", "edges", "points"], 7);
@@ -398,8 +399,8 @@ class SceneView {
 
 // ---- the camera and the pointer ----------------------------------------------------------------
 
-// The place of the camera; and `fitted`, the place that shows everything. When the window is
-// resized, the view is fitted again if the reader has not moved the camera.
+// cameraText() is the place of the camera; `fitted` is the place that shows everything. When the
+// window is resized, the view is fitted again if the reader has not moved the camera.
 const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
 let fitted = "";
 

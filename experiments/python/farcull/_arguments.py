@@ -11,7 +11,7 @@ from ._errors import InputError
 
 
 def array(name: str, given: Any) -> np.ndarray:
-    """The argument as an array, its memory shared where it is one. No rows at all are (0, 3)."""
+    """The argument as an array, without a copy if it is one. An empty list becomes (0, 3)."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(name, "are a masked array", "give an array without a mask")
     try:
@@ -91,7 +91,7 @@ def text(name: str, given: Any) -> str:
 
 
 def encoded(name: str, given: str) -> str:
-    """The text, where UTF-8 can hold it."""
+    """The text. Raises InputError if UTF-8 cannot hold it."""
     try:
         given.encode()
     except UnicodeEncodeError:
@@ -129,9 +129,9 @@ def require_something(objects: int, all_objects: bool, each: List[bool]) -> None
 
 
 def ignored(given: Any, scene: Any = None) -> List[List[int]]:
-    """Pairs of different objects, by their numbers, or by patterns of their names where there is a
-    compiled scene; None stands for no pair. An object that arrays do not have is found later, by the
-    library."""
+    """Pairs of different objects, given by their numbers or, with a compiled scene, by patterns of
+    their names; None stands for no pair. Without a scene the library refuses numbers that no object
+    has."""
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"

@@ -72,8 +72,8 @@ def colliding_of(group):
 # ---- figures
 
 def add_lines(panel, group, seeds):
-    """Missed pairs of each contestant: the median over the seeds at each resolution; of several also the least and
-    the most."""
+    """Missed pairs of each contestant: the median over the seeds at each resolution; for several seeds also the
+    least and the most."""
     ends = Series("least and most of the seeds", style="points")
     for name, rows in by(group, "contestant"):
         line = Series(name, emphasis=name in OURS)

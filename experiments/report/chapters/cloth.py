@@ -7,7 +7,7 @@ def stiffness_of(scene):
 
 
 def courses_of(study):
-    """By stiffness: the rows of FAR pairs and of FAR by frame, and how many frames the grid has."""
+    """For each stiffness: the rows of FAR pairs by frame, those of FAR, and the number of frames in the grid."""
     stiffness = study.rows.scene.map(stiffness_of)
     wanted = study.points[study.points.method == "far-pairs"].scene.map(stiffness_of).value_counts()
     out = {}
@@ -26,7 +26,7 @@ def gains(pairs):
 
 
 def percentile(values, part):
-    """By nearest rank."""
+    """The percentile of the values by nearest rank; part: 0 to 1."""
     return sorted(values)[max(math.ceil(part * len(values)), 1) - 1]
 
 

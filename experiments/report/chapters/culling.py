@@ -24,7 +24,7 @@ def with_ways(rows):
 
 
 def best_rows(rows):
-    """By scene and way the row with the fewest candidates, of equal ones that of the smallest resolution."""
+    """For each scene and way the row with the fewest candidates, among equal rows that of the least resolution."""
     best = rows.sort_values(["left", "resolution"]).drop_duplicates(["scene", "way"])
     return {scene: {row.way: row for row in best[best.scene == scene].itertuples()} for scene in rows.scene.unique()}
 

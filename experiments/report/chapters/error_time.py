@@ -53,7 +53,7 @@ class Group:
 
     def front(self):
         """The Pareto front: no other entry is as good in both time and error, and better in one. Fastest first; of
-        equal ones the first."""
+        equal entries only the first."""
         out = []
         for entry in sorted(self.entries, key=lambda e: (e.ms, e.error)):
             if not out or entry.error < out[-1].error:

@@ -17,7 +17,7 @@ GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet a
 PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
               "far-away": "distance from the origin, in sizes"}
 WRONG = "wrong answers per million"
-FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # and the ends of their columns
+FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
 TITLES = {"missed": "Missed: pairs that meet and that a library calls apart",
           "false": "False alarms: pairs apart that a library calls meeting"}
 CAPTION = (
@@ -33,8 +33,8 @@ KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "copla
 # ---- rows and their sums
 
 def with_families(rows):
-    """The rows with the columns family (of `small/pairs/random` pairs/random), pairs (else of meshes), group (of
-    figures), and texts that none of them lacks."""
+    """The rows with the columns family (`pairs/random` for `small/pairs/random`), pairs (False: of meshes), group (the
+    panel of figures), and the columns of text without gaps."""
     rows = rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], **{
         name: [text(row, name) for row in rows.itertuples()]
         for name in ("library", "means", "call", "says", "source", "use", "scores", "reason")})
@@ -235,7 +235,7 @@ def own_errors(rows, pairs):
 
 
 def add_others(chapter, rows, pairs):
-    """Adds those that do not promise: those right by their own documentation, the others, and those that died."""
+    """Adds the contestants that do not promise: those right by their own documentation, the others, those that died."""
     right, wrong, published, changing, dead = [], [], [], [], []
     for name, of in by(rows, "method"):
         if flag(next(of.itertuples()), "promises"):

@@ -50,7 +50,7 @@ class Line:
 
 
 def lines_of(rows, name):
-    """By surface, Lines by the value of a column."""
+    """For each surface, a Line for each value of the column."""
     return {surface: {key: Line(of) for key, of in groups(here, name)} for surface, here in groups(rows, "surface")}
 
 
@@ -155,8 +155,8 @@ def lemma_table(name, caption, lines):
 
 
 def add_lemmas(chapter, lemmas):
-    """The lemmas at the budget radius and beyond: with fragment depth they are proved, even if a row does not say that
-    it promises. Rows for which breaks() holds are reported already."""
+    """Adds violations of the lemmas at the budget radius and beyond. With fragment depth the lemmas are proved, so a
+    violation breaks a promise even if its row promises nothing. Rows for which breaks() holds are reported already."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")

@@ -22,12 +22,13 @@ namespace {
 // ---- the field ----
 
 constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
-constexpr double kSpacing = 1.8;           // of the cells, a blob in each
-constexpr double kJitter = 0.3;            // of a blob in its cell, along each axis
+constexpr double kSpacing = 1.8;           // distance of neighbouring cells; each has one blob
+constexpr double kJitter = 0.3;            // largest shift of a blob in its cell, along each axis
 constexpr std::size_t kShapes = 16;
-constexpr std::uint64_t kPartBlobs = 256;  // of one part
+constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Blobs of kFieldBlob triangles: at least one, and the number nearest to the wanted triangles.
+// Makes blobs of kFieldBlob triangles: as many as come nearest to the wanted number of triangles,
+// but at least one.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -62,15 +63,15 @@ class Blobs {
   Random random_;
   std::vector<Mesh> shapes_;
   std::uint64_t count_, next_ = 0;
-  std::uint64_t cells_ = 1;  // along each axis of the cube that the blobs fill from below
+  std::uint64_t cells_ = 1;  // cells along each axis of the cube that the blobs fill from below
 };
 
 // ---- needles ----
 
 constexpr double kLength = 4700;  // of a needle
 constexpr double kWidth = 0.002;
-constexpr double kBending = 1e-4;  // radians that a needle may differ from its direction
-constexpr double kSpan = 24000;    // of a layer, across its needles
+constexpr double kBending = 1e-4;  // largest angle of a needle with Frame::along, radians
+constexpr double kSpan = 24000;    // extent of a layer across its needles
 constexpr double kShear = 1;       // shift of a needle along itself per distance across
 constexpr double kGap = 1;         // between the two layers
 
@@ -94,15 +95,15 @@ Corners hair(const Frame& frame, Random& random) {
   return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
 }
 
-// A random place in the layer of an object, which is a quarter of the gap thick.
+// A random place in the layer of an object; a layer is a quarter of the gap thick.
 Vec3 in_layer(const Frame& frame, int object, Random& random) {
   const double across = random.between(-kSpan / 2, kSpan / 2);
   const double height = kGap * (object + random.between(-0.125, 0.125));
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// The needles of both objects take the frames in turn. One in eight of the second object is moved
-// so that it crosses one of the first.
+// The needles of both objects take the frames in turn. Every eighth needle of the second object is
+// moved so that it crosses a needle of the first.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -213,7 +214,7 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three in four cross the sliver of the first object; the fourth misses it by twice its height.
+    // Three in four cross the sliver of the first object; the fourth is moved by twice its height.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -229,8 +230,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> large, little;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
-    // Eight small triangles at each large one: every other one crosses it, the rest are two of
-    // their sides away.
+    // Each large triangle gets eight small ones: every other one crosses it, the rest are two small
+    // sides away from it.
     for (int k = 0; k < 8; ++k) {
       Vec3 at = inner_point(large.back(), random);
       if (k % 2 == 1) at += 2 * small * normal_of(large.back());
@@ -261,8 +262,8 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are in [1/2, 1), where an ulp is 2^-53, and are multiples of it, so every number
-// is exact.
+// All coordinates are multiples of 2^-53 in [1/2, 1), where that is an ulp, so every number is
+// exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -273,8 +274,8 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // Eighths of the cell along two axes; along the third, quarters of it from below its middle.
-    // The slope avoids triangles parallel to a view, which have no image in it.
+    // u and v count eighths of the cell along two axes, rise counts quarters along the third axis.
+    // The slope u / 32 + v / 64 avoids triangles that a view sees edge-on, without an image.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

@@ -106,11 +106,11 @@ constexpr double kLong = 5.7;         // length of the pins
 constexpr double kPlay = 0.02;        // gap between the faces of plug and socket
 constexpr double kThick = 0.3;        // thickness of the plate of the plug
 constexpr double kRound = 0.2;        // radius of the upright edges
-constexpr double kFillet = 0.06;      // at the root of a pin
-constexpr double kChamfer = 0.1;      // of a bore
-constexpr double kFloor = 0.15;       // of the socket, below its bores
+constexpr double kFillet = 0.06;      // radius of the fillet at the root of a pin
+constexpr double kChamfer = 0.1;      // chamfer of a bore
+constexpr double kFloor = 0.15;       // thickness of the socket below its bores
 constexpr double kTip = 0.05;         // chamfer of a pin
-constexpr double kClearance = 0.005;  // of a loose pin in its bore
+constexpr double kClearance = 0.005;  // radius of a bore minus that of a loose pin
 constexpr std::uint32_t kBores = 6;
 constexpr std::uint32_t kFillets = 2;  // steps of a fillet
 
@@ -296,8 +296,8 @@ Part plug(const std::array<Bore, kBores>& pins, std::uint32_t sides) {
 
 }  // namespace
 
-// The first pin is thinner and pressed into its bore: the same radius, but other corners. The
-// others have a clearance and are off their middle by up to most of it.
+// The first pin is thinner and pressed into its bore: both have the same radius, but other corners.
+// The other pins have a clearance, and are off the middle of the bore by up to 0.7 of it.
 BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kPerSide = 160;  // triangles for each side of a bore
   constexpr double kTube = 0.1;     // wall of a pin
@@ -332,10 +332,11 @@ namespace {
 // A rope of three strands, wound in turns around a ring. The unit of length is the radius of a
 // strand. The strands are one closed tube: after the ring a strand continues as the next one.
 constexpr std::uint32_t kStrands = 3;
-constexpr double kApart = 1.05;  // distance of strands and of turns, where 1 is contact
+constexpr double kApart = 1.05;  // distance of strands; 1 is contact
 constexpr double kWinding = 5;   // radius of the turns
 constexpr double kLay = 20;      // length of rope in which its strands turn once
-constexpr double kStrandAt = kApart * 1.1547005383792517;  // 2 / sqrt(3), of the rope's middle
+// Distance of a strand from the rope's middle; the factor is 2 / sqrt(3).
+constexpr double kStrandAt = kApart * 1.1547005383792517;
 constexpr double kRope = kStrandAt + 1;
 
 struct RopeShape {
@@ -343,7 +344,7 @@ struct RopeShape {
   std::uint32_t sides;  // of a strand
   std::uint32_t steps;  // of one turn
   double ring;          // radius of the middle of the turns
-  double twist;         // turns of the strands, all the way around the ring: whole ones and a third
+  double twist;         // turns of the strands in one way around the ring: a whole number and 1/3
 };
 
 // Below the usual size the rope is shorter; above it, it is divided more finely.
@@ -358,14 +359,14 @@ RopeShape rope_shape(std::uint64_t triangles) {
       std::max(4.0, std::round(kUsualSides * std::sqrt(wanted / kUsual / part))));
   out.steps = static_cast<std::uint32_t>(
       std::max(8.0, std::round(wanted / (2.0 * kStrands * out.sides * out.turns))));
-  // At the inside of the ring, the turns are at kApart.
+  // At the inside of the ring, neighbouring turns are kApart + 0.02 times the rope's width apart.
   out.ring = kWinding + out.turns * kRope * (kApart + 0.02) / std::numbers::pi;
   const double length = out.turns * kTurn * kWinding;
   out.twist = std::round(length / kLay) + 1.0 / kStrands;
   return out;
 }
 
-// The middle of the rope and two directions across it, after so many turns.
+// The middle of the rope and two directions across it, after a number of turns.
 struct RopeFrame {
   Vec3 middle, out, aside;
 };
@@ -415,7 +416,7 @@ BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed) {
   const RopeShape shape = rope_shape(parameters.size);
   const Bend bend(2 * (shape.ring + kWinding), random);
   const double begin = random.unit();
-  const std::uint32_t around = shape.steps * shape.turns;  // rings, once around the ring
+  const std::uint32_t around = shape.steps * shape.turns;  // cross-sections, once around the ring
   const std::uint32_t rings = kStrands * around;
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -484,7 +485,7 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
 }
 
 // Balls of radius 0.5 to 1, settled in a box without a lid. Balls in contact are nearer than the
-// sum of their radii, by kDeep of it, because their meshes lie inside them.
+// sum of their radii, by the fraction kDeep of that sum, because their meshes lie inside them.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;

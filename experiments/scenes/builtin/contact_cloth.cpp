@@ -60,7 +60,7 @@ void keep_distance(Vec3& a, Vec3& b, double least, double most) {
 // Position based dynamics (Müller et al. 2007): moves neighbours in the lattice to their distance
 // in the flat sheet, and limits bends by the distance of every second point.
 void relax(Lattice& sheet, int rounds) {
-  constexpr double kBend = 1.5;  // of the distance of neighbours; 2 is flat
+  constexpr double kBend = 1.5;  // least distance of every second point, over that of neighbours
   const double h = 1.0 / sheet.spans;
   const double across = h * std::sqrt(2.0);
   const std::uint32_t n = sheet.side;
@@ -87,8 +87,8 @@ void relax(Lattice& sheet, int rounds) {
 // A random smooth map of the unit square into a ball, relaxed until it hardly stretches.
 Lattice crumple(Random& random) {
   constexpr std::uint32_t kFolds = 10;  // spans of the random map, which give the size of folds
-  constexpr std::uint32_t kSpans = 84;  // of the sheet that is relaxed
-  constexpr double kReach = 0.26;       // of random control points, the side of the sheet being 1
+  constexpr std::uint32_t kSpans = 84;  // spans of the sheet that is relaxed
+  constexpr double kReach = 0.26;       // radius of the ball; the side of the sheet is 1
   Lattice coarse(kFolds);
   for (Vec3& p : coarse.points) p = kReach * random.in_ball();
   Lattice sheet(kSpans);
@@ -110,8 +110,8 @@ std::uint32_t cells_for(std::uint64_t triangles) {
 
 // The funnel stands upright: a pipe below, a cone above. The cloth hangs in it, a square whose
 // middle was pulled down the pipe. The unit of length is half the side of the cloth.
-constexpr double kCap = 0.22;    // from the middle of the cloth, the part that has no pleats
-constexpr double kPipe = 0.62;   // from the middle of the cloth, where the cone begins
+constexpr double kCap = 0.22;    // pleats begin at 0.3 to 1.3 times this from the cloth's middle
+constexpr double kPipe = 0.62;   // distance from the cloth's middle at which the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
@@ -124,9 +124,9 @@ struct Ring {
   std::vector<std::array<double, 2>> pleat;  // (along, outward) at steps of one pleat, length 1
 };
 
-constexpr std::uint32_t kSteps = 64;  // of a pleat in the table
+constexpr std::uint32_t kSteps = 64;  // steps of a pleat in the table
 constexpr std::uint32_t kRings = 600;
-constexpr double kReachOfCloth = 1.5;  // beyond the corners of the square, sqrt(2)
+constexpr double kReachOfCloth = 1.5;  // last ring; the corners of the square are at sqrt(2)
 
 // Mean of cos(swing sin(u)): the Bessel function J0, which falls from 1 to 0 on [0, 2.4].
 double advance(double swing) {
@@ -146,7 +146,7 @@ std::vector<std::array<double, 2>> pleat_of(double wanted) {
     const double turned = lo * std::sin(kTurn * (k + 0.5) / kSteps);
     out[k + 1] = {out[k][0] + std::cos(turned) / kSteps, out[k][1] + std::sin(turned) / kSteps};
   }
-  // The middle of the curve lies at 0; it goes outward first.
+  // Moves the curve so that its mean lies at 0. The curve goes outward first.
   double mean = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) mean += out[k][1] / kSteps;
   for (auto& [along, outward] : out) outward -= mean;
@@ -201,7 +201,7 @@ Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven)
 
 constexpr std::uint32_t kAround = 96;  // quads around the funnel
 constexpr std::uint32_t kPipeRings = 8, kConeRings = 12;
-constexpr std::uint64_t kRigid = 2 * kAround * (kPipeRings + kConeRings);  // its triangles
+constexpr std::uint64_t kRigid = 2 * kAround * (kPipeRings + kConeRings);  // the funnel's triangles
 
 // A surface of revolution around all of the points, `gap` away from the nearest.
 Mesh funnel_around(const std::vector<Vec3>& points, double gap) {

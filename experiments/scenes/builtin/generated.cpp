@@ -60,7 +60,7 @@ Scene make_random_soup(std::uint64_t seed) {
 }
 
 constexpr std::uint64_t kAxial =
-    0x9e3779b97f4a7c15;  // xor the seed: the seed of the slivers along the axes
+    0x9e3779b97f4a7c15;  // seed ^ kAxial is the seed of the slivers along the axes
 
 Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
 
@@ -70,14 +70,14 @@ Corners axial_needle(std::uint32_t k, double width, Random& random) {
   return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
 }
 
-// The second object turns against the first; the slivers of the fourth slide along themselves.
+// The second object turns against the first; each sliver of the fourth slides along its long axis.
 Motion turning_and_sliding(const Scene& scene) {
   return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
                                                           FrameNotes&) {
     const double swing = std::sin(2 * std::numbers::pi * now.time);
     const Eigen::AngleAxisd turn(0.2 * swing, Vec3(1, 1, 1).normalized());
     const Eigen::Matrix3d matrix = turn.toRotationMatrix();
-    const auto corners = [&](const Object& object) {  // in soups, three for each triangle
+    const auto corners = [&](const Object& object) {  // a soup has three for each triangle
       return std::pair(3 * object.first_triangle,
                        3 * (object.first_triangle + object.triangle_count));
     };
@@ -91,8 +91,8 @@ Motion turning_and_sliding(const Scene& scene) {
   };
 }
 
-// size: slivers in each of the two oblique objects; a larger scene begins with the same ones, bit
-// for bit. The two objects along the axes have three eighths as many each.
+// size: slivers in each of the two oblique objects; a larger scene begins with the same slivers,
+// bit for bit. Each of the two objects along the axes has three eighths as many.
 BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
@@ -100,8 +100,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
-    // Of four slivers one has a random place, two cross the needle of the first object, and one
-    // misses it by twice the smaller width.
+    // Of four slivers one has a random place, two cross a sliver of the first object, and one is
+    // moved off such a sliver by twice the smaller width.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -113,8 +113,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Along the axes: each sliver of one object lies along x, y or z, and one sliver of the other
-  // object crosses it, along each axis in turn, the same one included.
+  // Along the axes: each sliver of one object lies along x, y or z. One sliver of the other object
+  // crosses it; that sliver, too, lies along x, y or z, in all nine combinations in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;

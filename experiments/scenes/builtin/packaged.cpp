@@ -73,8 +73,8 @@ Scene make_dragon_bunny() {
   return two_objects("dragon-bunny", "dragon", dragon, "bunny", bunny, onto(dragon, bunny));
 }
 
-// A mesh and a copy, moved by so many diagonals along (2, 3, 6), which has length 7 and is parallel
-// to no axis.
+// A mesh and its copy, moved by `diagonals` diagonals along (2, 3, 6). That vector has length 7 and
+// is parallel to no axis.
 Scene with_copy(const std::string& name, const char* file, const char* first, const char* second,
                 double diagonals) {
   const Mesh mesh = packaged(file);
@@ -95,16 +95,16 @@ Scene self_colliding(const std::string& name, const char* file) {
 
 constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
 constexpr std::uint32_t kPieces = 200;
-constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times
+constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times of the first and the last piece
 
 // A part of the dragon.
 struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;
   Vec3 middle;      // of its box
-  double late = 0;  // when it comes off
+  double late = 0;  // time at which it comes off
   Vec3 way;         // of its flight, per unit of time
-  Vec3 axis;        // it turns about
+  Vec3 axis;        // that it turns about
   double turn = 0;  // radians per unit of time
 };
 
@@ -116,7 +116,7 @@ struct Breaking {
   double height = 0;                    // of the dragon
 };
 
-// The triangles for which `takes` is true.
+// The piece of all triangles for which `takes` is true.
 template <class Takes>
 Piece part_of(const Mesh& mesh, const Takes& takes) {
   PartMaker maker(mesh.vertices);
@@ -130,8 +130,9 @@ Piece part_of(const Mesh& mesh, const Takes& takes) {
   return piece;
 }
 
-// Breaks the dragon up: kPieces triangles are drawn, and each triangle belongs to the nearest of
-// their centres. Pieces come off by their distance from the hit, the dragon's highest point.
+// Breaks the dragon up. The centres of kPieces random triangles are the seeds of the pieces; each
+// triangle belongs to the piece with the nearest seed. Pieces come off in the order of the distance
+// of their seeds from the hit, the dragon's highest point.
 std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   shapes::Random random(seed);
   auto out = std::make_shared<Breaking>();
@@ -177,7 +178,8 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   return out;
 }
 
-// Sets the topology after the first `off` pieces have come off: the rest, then these pieces.
+// Sets the topology after the first `off` pieces have come off: the rest of the dragon, then these
+// pieces.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();
@@ -225,7 +227,7 @@ BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
                                built.scene.vertices.end());
   const Box small = bounds(bunny);
   const double way =
-      place.hi.y() - place.lo.y() + scale * (small.hi.y() - small.lo.y());  // down, all in all
+      place.hi.y() - place.lo.y() + scale * (small.hi.y() - small.lo.y());  // the whole way down
   built.motion = [rest, first, way, from = Vec3(scale * centre(small)), to = centre(place)](
                      const Instant& now, Scene& out, FrameNotes&) {
     const Eigen::Matrix3d turned =

@@ -1,7 +1,7 @@
 // Scenes that move. Generated versions of the papers' scenes: deforming cylinders and torii
 // (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall from a
 // tree and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004). Shapes, counts and
-// kinds of motion are the papers', the rest is ours. Also open sheets.
+// kinds of motion are those of the papers, the rest is ours. One more scene has open sheets.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ struct Way {
   Vec3 centre;
   Vec3 reach;  // from the centre, along each axis
   Vec3 phase;  // in turns
-  Vec3 axis;   // it turns about
+  Vec3 axis;   // that the object turns about
   double turns = 1;
   double swell = 0;  // phase of its deformation, in turns
 
@@ -49,8 +49,8 @@ Way draw_way(double room, double reach, Random& random) {
   return way;
 }
 
-// Objects of one shape, each on its way. `deformed` gives a vertex of the shape at a time, in the
-// object's own frame.
+// A scene of objects of one shape, each of which moves along its own Way. `deformed` gives a vertex
+// of the shape at a time, in the object's own frame.
 template <class Deformed>
 BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
                          std::vector<Way> ways, Deformed deformed) {
@@ -107,7 +107,7 @@ std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
 // ---- the tree: a trunk, 7 branches, 6 twigs on each, all tubes of 8 by 5 cells ----
 
 constexpr int kBranches = 7, kTwigs = 6;
-constexpr double kTrunk = 3;  // high
+constexpr double kTrunk = 3;  // height
 
 struct Wood {
   Vec3 from, to;
@@ -168,16 +168,16 @@ Mesh make_leaf() {
 
 struct Leaf {
   Vec3 from;
-  double late = 0;   // when it comes off
-  double sway = 0;   // to the side
+  double late = 0;   // time at which the leaf comes off
+  double sway = 0;   // largest way to the side
   double phase = 0;  // of the sway, in turns
   Vec3 axis;
-  double turns = 0;  // while it falls
+  double turns = 0;  // per unit of time, while it falls
 };
 
 // size: cylinders.
 BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed) {
-  constexpr double kRoom = 2.5;  // half of its side for 100 cylinders of length 1
+  constexpr double kRoom = 2.5;  // half the side of the room for 100 cylinders of length 1
   const double room = kRoom * std::cbrt(static_cast<double>(parameters.size) / 100);
   Random random(seed);
   std::vector<Way> ways;
@@ -212,7 +212,7 @@ BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
 
 // size: leaves.
 BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t seed) {
-  constexpr double kFall = 4;  // fall of a leaf in total
+  constexpr double kFall = 4;  // fall of a leaf per unit of time
   Random random(seed);
   SceneBuilder builder("tree-leaves", "tree-leaves");
   const Mesh tree = make_tree(random);
@@ -249,8 +249,8 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   return halfway(std::move(built));
 }
 
-// ---- sheets for which no argument about closed meshes holds: open, with edges of three triangles,
-// and stacked so closely that a depth buffer of 24 bits cannot separate them ----
+// ---- sheets for which no argument about closed meshes holds: they are open, three triangles meet
+// at some edges, and the stack is too close for a depth buffer of 24 bits to separate them ----
 
 constexpr std::uint32_t kCells = 18;  // along a side, which is 1 long
 constexpr double kGrain = 0x1p-40;    // heights are multiples of it
@@ -280,8 +280,8 @@ Mesh sheet() {
 double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
 
 // size: sheets. All heights are multiples of 2^-40 below 2^10, so that sums with the gap, 2^-34,
-// are exact: a sheet of the stack is an exact translate of the one below it and never meets it.
-// Neither do the flaps, which are half a gap high over cells with the same corners.
+// are exact: a sheet of the stack is an exact translate of the one below it and never meets it. The
+// flaps never meet the sheet above: they rise only by half a gap, over cells with the same corners.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();
@@ -310,7 +310,7 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
         if (s < stacked) {
           lift += static_cast<double>(s) * kShellGap;
         } else {
-          // From below the stack to above it; the direction turns with time.
+          // The sheet leads from below the stack to above it; its direction turns with time.
           const double turn = kTurn * (now.time + phases[s]);
           const double across =
               0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);

@@ -20,7 +20,7 @@
 namespace farcull {
 
 // Assembles the entries of built-in scenes, and moves objects. Each motion keeps the vertices at
-// rest and writes those of an instant.
+// rest, and writes the vertices at an instant.
 
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement) {
@@ -64,7 +64,7 @@ constexpr std::uint64_t kDriftSeed = 8;
 
 struct ObjectAtRest {
   Box box;
-  std::vector<std::uint32_t> vertices;  // each once
+  std::vector<std::uint32_t> vertices;  // each vertex once
 };
 
 // The vertices of the scene without frames, and its objects.

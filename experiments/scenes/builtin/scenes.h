@@ -30,7 +30,7 @@ struct SceneSize {
   std::string what;  // what it counts, such as "triangles"
   std::uint64_t least = 0;
   std::uint64_t most = 0;
-  std::uint64_t usual = 0;  // if the name has none
+  std::uint64_t usual = 0;  // used if the name has no number
 };
 
 /// The range of the second number, both ends included.
@@ -70,20 +70,21 @@ struct BuiltinScene {
   std::uint32_t objects = 0;               // of the usual size
   std::uint32_t triangles = 0;             // of the usual size
   std::string motion = {};                 // one line; empty if nothing moves
-  std::optional<SceneSize> size = {};      // empty: of one size
+  std::optional<SceneSize> size = {};      // empty: the scene has one size only
   std::optional<SceneSecond> second = {};  // empty: no second number
-  bool costly = false;            // at its usual size for farcull bench, not for every test
+  bool costly = false;            // its usual size is meant for farcull bench, not for every test
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
-  std::optional<std::uint64_t> seed = {};  // what it was drawn with; empty: nothing in it is random
+  std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random
   std::function<BuiltScene(const SceneParameters&)> build = {};  // Scene::name is name
 
   SceneParameters usual() const;
   Scene make() const { return build(usual()).scene; }
 };
 
-/// The change of a scene by a suffix: every vertex times scale, plus translate, in double; then an
-/// object "ground" of two triangles with these corners, counterclockwise seen from above.
+/// The change of a scene by a suffix. Every vertex is multiplied by scale and moved by translate,
+/// in double. Then an object "ground" of two triangles with the corners `ground`, counterclockwise
+/// seen from above, is added, if there are any.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
@@ -92,7 +93,8 @@ struct SceneChange {
 /// Throws Error naming the scene if a coordinate is not finite afterwards.
 void apply(const SceneChange& change, Scene& scene);
 
-/// Every vertex times scale, plus translate, in double. Throws Error as apply().
+/// The scene with every vertex multiplied by scale, then moved by translate, in double. Throws
+/// Error as apply().
 Scene transformed(Scene scene, double scale, const Vec3& translate);
 
 /// A suffix that any built-in scene takes, as in two-spheres@far; several apply from left to right.
@@ -211,7 +213,7 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
 /// size: sheets; second: distance between neighbours, in units of their width, see stack_gap().
 /// Every fourth sheet leans and crosses both neighbours.
 BuiltScene make_stack(const SceneParameters& parameters);
-/// The nearest power of two (in its exponent), so that no height of the stack is rounded.
+/// 2^round(log2(wanted)): a power of two, so that no height of the stack is rounded.
 double stack_gap(double wanted);
 /// size: large triangles, with eight small ones at each; second: ratio of their sides.
 BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);

@@ -152,13 +152,13 @@ std::string hash_of(const ClothSettings& s) {
   return hash.hex();
 }
 
-// A hash of the results for a small stiff cloth that meets the sphere, which needs interior points
-// as well. Another version of the simulation, or another rounding, gives other doubles. The hash
-// includes the sizes of the caches: Eigen cuts products of large matrices into blocks by them, and
-// the blocks determine the rounding.
+// A hash of the results for a small stiff cloth that meets the sphere: its steps need both Newton's
+// method and interior points. Another version of the simulation, or another rounding, gives other
+// doubles. The hash includes the sizes of the caches: Eigen cuts products of large matrices into
+// blocks of sizes that depend on the caches, and the blocks determine the rounding.
 std::string arithmetic() {
   static const std::string hash = [] {
-    constexpr int kSteps = 12;  // it meets the sphere in step 7
+    constexpr int kSteps = 12;  // the cloth meets the sphere in step 7
     ClothSettings settings;
     settings.triangles = 200;
     settings.stiffness = 1e6;
@@ -229,7 +229,7 @@ class Reader {
   bool at_end() const { return fits_ && at_ == text_.size(); }
 
  private:
-  // The number of the parts that follow, `bytes` bytes each; 0 if the text is too short for them.
+  // Reads how many parts of `bytes` bytes each follow; 0 if the text is too short for them.
   std::uint64_t count(std::size_t bytes) {
     std::uint64_t out = 0;
     get(out);

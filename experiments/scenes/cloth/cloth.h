@@ -27,7 +27,7 @@ namespace farcull {
 
 /// All numbers are finite and in SI units.
 struct ClothSettings {
-  std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000: 2 m^2 for the nearest m
+  std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000; rounded to 2 m^2 for a whole m
   double stiffness = 1e4;           // of the spring along an edge, N/m; > 0
   double side = 1;                  // of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
@@ -43,7 +43,7 @@ struct ClothSettings {
   double stick_speed = 0.01;        // below it friction falls linearly to 0, m/s; > 0
   double height = 0.02;             // of the cloth above the sphere at the start, m; >= 0
   double time_step = 0.01;          // s; > 0
-  double tolerance = 1e-3;          // of the residual, as a part of the weight of the largest
+  double tolerance = 1e-3;          // of the residual, as a fraction of the weight of the largest
                                     // vertex mass (at 9.81 m/s^2); > 0
   int max_iterations = 400;         // factorizations in a step, at most; >= 0
   std::uint64_t seed = 1;           // of the unevenness that breaks the symmetry at the start
@@ -60,7 +60,7 @@ namespace farcull::cloth {
 //
 // Positions, velocities and forces are vectors of 3 numbers per vertex: x0 y0 z0 x1 y1 z1 ...
 
-inline constexpr double kStandardGravity = 9.81;  // m/s^2, of a weight as a unit of force
+inline constexpr double kStandardGravity = 9.81;  // m/s^2, for weights as units of force
 
 /// A spring along an edge. Except near the smooth start below, its force is stiffness * (l -
 /// length), but not less than -buckling_load * l: a shorter spring buckles.
@@ -80,7 +80,7 @@ struct Hinge {
 
 struct Model {
   ClothSettings settings;
-  std::uint32_t cells = 0;  // m, along a side
+  std::uint32_t cells = 0;  // along a side, the m of the comments
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<double> area;  // per vertex, m^2: a third of its triangles
   std::vector<double> mass;  // per vertex, kg
@@ -128,7 +128,7 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
 /// A spring of stiffness c on a length e, with a smooth start: the force f > 0 with
 /// f (f/c - e) = crimp, which is c e far above 0 and crimp/-e far below. Newtons.
 double smooth_force(double c, double crimp, double e);
-/// Its derivative by e, and the energy whose derivative it is.
+/// The derivative of smooth_force() by e, and the energy whose derivative smooth_force() is.
 double smooth_stiffness(double c, double crimp, double e);
 double smooth_energy(double c, double crimp, double e);
 
@@ -143,11 +143,11 @@ void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
 /// The blocks that do not depend on x: inertia, air and bending. A pair may come several times, in
-/// either order; the blocks of a vertex with itself are whole.
+/// either order. The block of a vertex with itself is given in full, not only its lower half.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// The Hessian of one spring by either of its ends; the mixed derivatives are its negative.
-/// Positive semidefinite.
+/// The second derivatives of one spring's energy by the position of either end; the mixed ones are
+/// the negative of this block. Positive semidefinite.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
 /// Contributions of contact and of friction to the block of a vertex. Positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
@@ -162,7 +162,7 @@ struct Dissection {
     std::uint32_t parent = 0;  // index of the part that cuts it off; the last part: its own index
   };
   std::vector<std::uint32_t> places;  // per vertex, row by row
-  std::vector<Part> parts;            // by their places; parents come after what they cut off
+  std::vector<Part> parts;            // in order of places; a parent follows the parts it cuts off
 };
 Dissection dissect(std::uint32_t side);
 
@@ -173,9 +173,9 @@ class Factor {
   /// vertices that are at most two rows and two columns apart.
   Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& matrix);
 
-  /// False iff the matrix, which has the pattern, is not positive definite in double.
+  /// False iff the matrix is not positive definite in double. Precondition: it has the pattern.
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
-  /// Precondition: factorize() was last true. In the order of places.
+  /// x is in the order of places. Precondition: the last factorize() returned true.
   void solve_in_place(Eigen::VectorXd& x) const;
 
  private:
@@ -184,9 +184,9 @@ class Factor {
     std::uint32_t end = 0;
     std::uint32_t parent = 0;
     std::vector<std::uint32_t> rows;   // later places that these are coupled to, ascending
-    std::vector<std::uint32_t> above;  // per row: its index among begin ... end, rows of the parent
-    Eigen::MatrixXd panel;             // columns of the factor: of begin ... end; above the rest
-    Eigen::MatrixXd update;            // what they leave to the parent, lower triangle
+    std::vector<std::uint32_t> above;  // per row: its index in the parent: begin ... end, then rows
+    Eigen::MatrixXd panel;             // columns begin ... end of the factor: own rows, then `rows`
+    Eigen::MatrixXd update;            // added to the parent's matrix after that; lower triangle
   };
   void assemble(const Eigen::SparseMatrix<double>& matrix, Front& front);
   static void extend(const Front& child, Front& parent);
@@ -215,8 +215,9 @@ class Interior {
   /// Mean of the complementarities, J.
   double complementarity() const;
 
-  /// The equations of the next direction, which aims at complementarity `target`. Per spring and
-  /// vertex, what the unknown parts add to the matrix and, for d or x, to the force.
+  /// Sets up the equations of the next direction, which aims at complementarity `target`. Then the
+  /// functions below give the blocks and forces that springs and contacts add to the equations of
+  /// the positions; their own unknowns are eliminated.
   void linearize(const Eigen::VectorXd& x, double target);
   const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
   const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
@@ -224,7 +225,7 @@ class Interior {
   Vec3 contact_force(std::size_t vertex) const;
 
   /// Moves along the direction, and the positions with it, as far as the cones allow. Returns the
-  /// part of the direction that was gone, at most 1. Precondition: linearize() came before, at x.
+  /// fraction of the direction that it moved, at most 1. Precondition: linearize() was called at x.
   double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
 
  private:
@@ -234,12 +235,12 @@ class Interior {
     ConePoint z;
     ConePoint du;
     ConePoint dz;
-    double across = 0;  // of the scaling: t with t, and stiffness
-    double right = 0;   // of the equation of t
-    Vec3 mixed;         // of the scaling: t with d
-    Block whole;        // of the scaling: d with d
-    Block block;        // of the matrix, t eliminated
-    Vec3 force;         // of the right hand side
+    double across = 0;  // scaling of t with t, plus stiffness
+    double right = 0;   // right hand side of the equation of t
+    Vec3 mixed;         // scaling of t with d
+    Block whole;        // scaling of d with d
+    Block block;        // added to the matrix; t is eliminated
+    Vec3 force;         // added to the force
   };
   struct ContactState {
     double stiffness = 0;
@@ -263,7 +264,7 @@ class Interior {
 struct Minimum {
   Eigen::VectorXd x;
   Eigen::VectorXd gradient;  // of the step's function at x, N
-  double residual = 0;       // largest force on a vertex in it, N; infinite where one is not finite
+  double residual = 0;       // largest force on a vertex, N; infinite if a force is not finite
   int iterations = 0;        // factorizations
   bool converged = false;    // residual <= tolerance(x)
   std::string reason = {};   // why it did not converge
@@ -283,7 +284,7 @@ class Solver {
   bool was_stiff() const { return was_stiff_; }
   void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
 
-  /// In N: the setting plus the effect of rounding the positions.
+  /// Largest residual of a converged step, N: the setting plus the effect of rounding positions.
   double tolerance(const Eigen::VectorXd& x) const;
 
   /// The Hessian at x: the lower triangle, in the order of places().
@@ -305,7 +306,7 @@ class Solver {
   Eigen::SparseMatrix<double> matrix_;
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
-  std::vector<Slot> spring_slots_;  // per spring: of its two ends
+  std::vector<Slot> spring_slots_;  // per spring: of the block of its two ends
   bool was_stiff_ = false;
   Factor factor_;
 };
@@ -328,7 +329,7 @@ struct ClothReport {
                              // may have gained
   int iterations = 0;        // factorizations
   bool converged = true;     // residual <= its tolerance
-  std::string warning = {};  // why not, and what was kept instead; empty where it converged
+  std::string warning = {};  // why it did not converge, and what was kept instead; else empty
 
   double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
@@ -373,14 +374,14 @@ class Cloth {
   std::unique_ptr<State> state_;
 };
 
-/// The folder named by the environment variable FARCULL_CLOTH; empty where it is not set.
+/// The folder named by the environment variable FARCULL_CLOTH; empty if that is not set.
 std::string cloth_folder();
 
 /// The states of one cloth, one file per frame: doubles as they are in memory, under a heading that
 /// names the settings and the arithmetic, with a checksum. A file appears whole or not at all.
 class KeptCloth {
  public:
-  /// Creates FOLDER and in it the folder of these settings. Throws Error if that fails.
+  /// Creates `folder` and in it the folder of these settings. Throws Error if that fails.
   KeptCloth(const std::string& folder, const ClothSettings& settings);
 
   /// The file of a frame.

@@ -15,8 +15,8 @@
 namespace farcull::cloth {
 namespace {
 
-// In units of the weight of a cell times its side: an edge that is slack by a ten-thousandth of its
-// length pulls with a ten-thousandth of that weight.
+// Model::crimp in units of the weight of a cell times its side: an edge that is slack by a
+// ten-thousandth of its length pulls with a ten-thousandth of that weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {
@@ -71,8 +71,8 @@ void add_triangles(Model& model) {
   }
 }
 
-// Places the cloth flat above the sphere, a little off its centre, with an unevenness far below a
-// cell: it decides where the cloth folds, which rounding would decide otherwise.
+// Places the cloth flat above the sphere, a little off its centre. Random heights far below the
+// size of a cell decide where the cloth folds; without them rounding would decide.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -89,20 +89,21 @@ void place(Model& model) {
   }
 }
 
-// Adds the hinge of edge a-b, with the opposite corners c and d in its plane. The weights give the
-// point where the line through c and d meets the edge: in the grid the middle of a diagonal, or one
-// end of another edge.
+// Adds the hinge of edge a-b; c and d are the opposite corners of its two triangles. The weights
+// give the point where the line through c and d meets the edge: the middle of an edge that is a
+// diagonal of a cell, one end of any other edge.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // At curvature kappa across it, w is kappa cell^2 / 2 for an edge along the grid, one for each
-  // cell, so rigidity = stiffness cell^2 / 4. A twist kappa gives the same w for a diagonal, one
-  // for each cell; a plate then has 2 rigidity kappa^2 / 2 per area, so the stiffness is doubled.
+  // Each cell has one edge per direction of the grid. At curvature kappa across such an edge, w is
+  // kappa cell^2 / 2, so rigidity = stiffness cell^2 / 4. Each cell has one diagonal. A twist kappa
+  // gives its hinge the same w; a plate then has the energy 2 rigidity kappa^2 / 2 per area, so the
+  // stiffness is doubled.
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
   if (!diagonal) {
-    // Two triangles that mirror each other: the line through c and d meets the edge at one end.
+    // The two triangles mirror each other, so the line through c and d meets the edge at one end.
     const bool at_a = a % side == c % side || a / side == c / side;
     hinge = {{a, b, c, d}, {at_a ? -1.0 : 0.0, at_a ? 0.0 : -1.0, 0.5, 0.5}, stiffness};
   }
@@ -110,7 +111,8 @@ void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, 
 }
 
 void add_springs_and_hinges(Model& model) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;  // of the first side
+  // Per edge: the opposite corner in the first triangle of the edge.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
   const std::uint32_t side = model.cells + 1;
   const double cell = model.settings.side / model.cells;
   for (const auto& corners : model.triangles) {

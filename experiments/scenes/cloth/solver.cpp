@@ -33,7 +33,7 @@ struct Dissector {
     return part;
   }
 
-  // Numbers columns i0 to i1 - 1 of rows j0 to j1 - 1; returns the index of the last part.
+  // Numbers the vertices in columns i0 to i1 - 1 and rows j0 to j1 - 1; returns the last part.
   std::uint32_t cut(std::uint32_t i0, std::uint32_t i1, std::uint32_t j0, std::uint32_t j1) {
     const std::uint32_t width = i1 - i0;
     const std::uint32_t height = j1 - j0;
@@ -177,7 +177,7 @@ void Factor::solve_in_place(Eigen::VectorXd& x) const {
 
 namespace {
 
-constexpr double kWidth = 1e-2;          // of a spring's length: how far inside the cone it begins
+constexpr double kWidth = 1e-2;          // initial distance inside the cone, over a spring's length
 constexpr double kToTheBoundary = 0.95;  // fraction of the way to the boundary
 
 }  // namespace
@@ -188,7 +188,8 @@ double determinant(const ConePoint& u) {
 }
 
 double reach(const ConePoint& u, const ConePoint& du) {
-  // The first zero above 0 of t and of the determinant, c + 2 b a + q a^2 with c > 0, of u + a du.
+  // The least a > 0 at which t or the determinant of u + a du is 0. The determinant is
+  // c + 2 b a + q a^2 with c > 0.
   const double q = determinant(du);
   const double b = u.t * du.t - u.d.dot(du.d);
   const double c = determinant(u);
@@ -272,7 +273,7 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     if (!contact.is_there) continue;
     const double away = step_.normal[v].dot(x.segment<3>(3 * v)) - step_.model.settings.radius;
     contact.scaling = contact.f / contact.s;
-    // s = f/c + away; the same as above in one dimension.
+    // The equation s = f/c + away is treated like that of the springs, in one dimension.
     const double off = contact.s - contact.f / contact.stiffness - away;
     contact.right = (target / contact.s - contact.f) / contact.stiffness - off;
     const double divisor = 1 + contact.scaling / contact.stiffness;
@@ -335,11 +336,11 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
 
 namespace {
 
-constexpr int kTrials = 60;  // along one direction; a double allows no more halvings
+constexpr int kTrials = 60;  // at most, along one direction; a double allows no more halvings
 // These change the time of a step, not its result.
 constexpr int kPatience = 40;      // Newton's iterations before interior points take over
 constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's is short
-constexpr int kCreepsAtMost = 3;   // short steps before them; 1 if the last step needed them
+constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff()
 constexpr double kStart = 1;       // initial complementarity, over weight * length
 constexpr double kEnd = 2;         // final one, over crimp: from there Newton's method is quick
 
@@ -432,14 +433,14 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
 double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  // A coordinate is stored with an error of up to u |x|, at either end of a spring, which changes
-  // its force by (k + T) times the error; a vertex has at most 8 springs, and 3 coordinates.
+  // A coordinate of either end of a spring is stored with an error of up to u |x|. It changes the
+  // spring's force by (k + T) times the error. A vertex has at most 8 springs, and 3 coordinates.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;
 }
 
-// Solves with the assembled matrix; false if it has no factor.
+// Solves with the assembled matrix; false if it has no Cholesky factor.
 bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   if (!factor_.factorize(matrix_)) return false;
   Eigen::VectorXd permuted(right.size());
@@ -454,7 +455,8 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
 
 // Each iteration searches along Newton's direction until |slope| is a tenth of the first one or
 // less. The slope begins below 0 and never falls, as the function is convex, so the value falls.
-// At most `iterations`, and no more after `creeps` short steps. False if it failed for good.
+// Stops after `iterations` iterations or `creeps` short steps. Returns false if a force is not
+// finite, the matrix has no Cholesky factor, or the setting max_iterations is used up.
 bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());
@@ -512,7 +514,7 @@ void Solver::interior(const Step& step, Minimum& best) {
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // smaller after a longer step along the last direction
+  double aim = 0.1;  // next complementarity over this one; smaller after a longer step
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;

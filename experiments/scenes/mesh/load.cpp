@@ -34,8 +34,8 @@ struct Converter {
   // {0}: the file, {1}: the result, each as a shell reads it; {2}: a script for Blender.
   const char* command;
   const char* extension = "";  // of the result
-  const char* import = "";  // of the script: how Blender reads the file, where it does not open it
-  bool packed = false;      // the file is unpacked, not converted
+  const char* import = "";     // Blender's operator that reads the file; empty: Blender opens it
+  bool packed = false;         // the file is unpacked, not converted
 };
 
 constexpr Converter kAssimp = {"assimp export {0} {1} (Debian: assimp-utils)", ".obj"};
@@ -49,7 +49,7 @@ struct Foreign {
   std::string_view name;
   Converter by;
   std::string_view extensions;
-  // The file begins with one of these; with '<', it holds it among its first bytes.
+  // The file begins with one of these, or, if one begins with '<', has it in kTellingBytes bytes.
   std::array<std::string_view, 2> signs = {};
 };
 
@@ -85,7 +85,7 @@ constexpr std::array<Foreign, 22> kForeign = {{
     {"IGES", kGmshShape, ".iges .igs"},
 }};
 
-// A string of Python, in double quotes.
+// The text as a string literal of Python, in double quotes.
 std::string python_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
@@ -106,8 +106,8 @@ std::string command(const Converter& by, const std::string& path) {
   return fmt::format(fmt::runtime(by.command), quoted(path), quoted(to), farcull::quoted(script));
 }
 
-// 3DS begins with the chunk of the whole file: its number and its length. The next chunk's number
-// follows: the version, or the editor's data.
+// A 3DS file is one chunk: it begins with that chunk's number ("MM") and length. The number of the
+// first chunk inside follows: that of the version, or of the editor's data.
 bool is_3ds(std::string_view bytes) {
   if (bytes.size() < 16 || !bytes.starts_with("MM")) return false;
   const std::string_view chunk = bytes.substr(6, 2);
@@ -158,7 +158,7 @@ std::optional<Error> foreign_contents(std::string_view bytes, const std::string&
         return refusal(format, path, "holds ");
     }
   }
-  // bzip2: the size of its blocks follows, then the first digits of pi.
+  // bzip2 begins with BZh, one digit for the size of its blocks, and the first digits of pi.
   if (bytes.size() > 10 && bytes.starts_with("BZh") && bytes.substr(4, 3) == "1AY")
     return refusal(named("compressed by bzip2"), path, "holds ");
   if (is_3ds(bytes)) return refusal(named("3DS"), path, "holds ");

@@ -40,14 +40,14 @@ struct MeshPart {
 
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
-/// The format of a path by its extension, in any case, or by the one before ".gz". Throws Error
-/// naming the path for any other extension: foreign_mesh(path) if there is one.
+/// The format of a path by its extension (before ".gz", if it ends so), in upper or lower case.
+/// Throws Error naming the path for any other extension: the one of foreign_mesh(path), if any.
 MeshFormat mesh_format(const std::string& path);
 /// True iff mesh_format(path) would not throw.
 bool has_mesh_extension(const std::string& path);
-/// The Error for a path or a file in a format that is not read but has a known converter: it names
-/// the format and the command. Looks into the file if the extension is unknown. Empty for an
-/// unknown format.
+/// The Error for a path or a file in a format that is not read but has a known converter. The Error
+/// names the format and the command that converts it. Looks into the file if the extension is
+/// unknown. Empty for an unknown format.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place, as triangulate()
@@ -55,21 +55,21 @@ std::optional<Error> foreign_mesh(const std::string& path);
 /// folded gets some triangulation of its corners, and is named in Mesh::folded. OBJ: `o` and `g`
 /// name the group of the faces that follow, whichever came last. Other formats: one group,
 /// "default". STL: corners at one exact position become one vertex (0.0 and -0.0 are one position),
-/// the first one read. What gzip has compressed is decompressed, whatever the name says; lines are
-/// those of the text. Throws Error (where = path, line where the format has lines) if the file is
-/// missing, is not a regular file, cannot be read, is malformed or shorter or longer than it
+/// the first one read. Contents compressed by gzip are decompressed, whatever their name; lines
+/// count in the decompressed text. Throws Error (where = path, line if the format has lines) if it
+/// is missing, is not a regular file, cannot be read, is malformed or shorter or longer than it
 /// claims, holds NaN, infinity or a value beyond double, an index out of range, a polygon of fewer
 /// than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip data that are cut, damaged
 /// or suspiciously small (text.h). The Error for contents of a known format that is not read names
 /// its converter.
 Mesh load_mesh(const std::string& path);
 
-/// The same on bytes in memory; `name` stands for the path in errors. Any bytes may be given.
+/// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
 /// The part as OFF, each number with 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
-/// The same as an object of OBJ. first: number of its first vertex in the file, from 1.
+/// The part as an object of an OBJ file. first: number of its first vertex in the file, from 1.
 std::string obj_object(const MeshPart& part, const std::string& name, std::uint64_t first);
 
 /// Whether a name holds one place for a number: %d, or %0Nd for N digits (1 to 9) with leading
@@ -80,11 +80,11 @@ std::string numbered(const std::string& name, long number);
 
 class MeshCache {
  public:
-  /// Without frames every name is that of a file.
+  /// Without frames: every name is the name of a file.
   MeshCache() = default;
-  /// Numbered names are files of the frame that set_frame() gives.
+  /// With frames: a numbered name stands for the file of the current frame, see set_frame().
   explicit MeshCache(long first_frame) : frame_(first_frame) {}
-  /// Precondition: made with a frame.
+  /// Precondition: constructed with a first frame.
   void set_frame(long frame) { frame_ = frame; }
 
   /// The mesh of the path; valid until the same path is asked for in another frame. Throws Error as
@@ -92,7 +92,7 @@ class MeshCache {
   /// may differ in their triangles.
   const Mesh& get(const std::string& path);
 
-  /// The numbered names that were asked for.
+  /// The numbered names that get() was called with.
   std::vector<std::string> numbered_paths() const;
 
  private:
@@ -112,7 +112,7 @@ constexpr std::size_t kTellingBytes = 1024;
 /// The Error for a path whose extension names a format that is not read: it names the format and
 /// the command that converts the file. Empty for other extensions.
 std::optional<Error> foreign_name(const std::string& path);
-/// The same for a file whose first bytes show such a format, whatever its name.
+/// The Error for a file whose first bytes show such a format, whatever its name.
 std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path);
 
 /// The extension in lower case, with its dot; for a compressed file the last two: ".obj.gz" for
@@ -164,8 +164,9 @@ bool is_binary_stl(std::string_view bytes);
 /// turns left at b (u to the right, v up), -1 if it turns right, 0 if the three are collinear
 /// there. Exact for finite doubles of any size.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
-/// The same if rounded arithmetic is certain of the sign. Returns 0 where turn() has to add without
-/// rounding: three points close to a line, or products of differences that overflow or underflow.
+/// turn() by rounded arithmetic, if that is certain of the sign. Returns 0 if turn() has to add
+/// without rounding: the three points are close to a line, or products of differences overflow or
+/// underflow.
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 using Turn = int (*)(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 
@@ -177,11 +178,11 @@ enum class Triangulation {
 
 /// Triangles of a polygon, as positions in `corners`: always size - 2 of them (none if too_large),
 /// in the orientation of the polygon; some may be degenerate if corners are collinear. The polygon
-/// is cut in its projection along the axis nearest to its normal, up to a factor of 2 between
-/// components; the projection only drops a coordinate. The result is `whole` for a simple planar
-/// polygon, for a nonplanar one with a simple projection, for collinear corners, and, if possible,
-/// for a polygon that touches itself along a seam. `by` lets tests try another sign. Precondition:
-/// 3 corners or more, finite.
+/// is projected along an axis and cut there; the projection only drops a coordinate. The normal's
+/// component on that axis is its largest, or at least half as large. The result is `whole` for a
+/// simple planar polygon, for a nonplanar one with a simple projection, for collinear corners, and,
+/// if possible, for a polygon that touches itself along a seam. `by` lets tests replace turn().
+/// Precondition: 3 corners or more, finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 

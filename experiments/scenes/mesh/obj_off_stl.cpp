@@ -1,4 +1,4 @@
-// Wavefront OBJ and OFF, read and written; STL, read.
+// Reads and writes Wavefront OBJ and OFF; reads STL.
 //
 // OBJ: polygons, groups and objects. Materials, normals, texture coordinates, points and lines are
 // skipped; free-form surfaces are refused, since skipping them would lose geometry.
@@ -110,8 +110,8 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Reads a count. Each element takes at least `bytes_each` bytes of text; the last one may lack its
-// newline.
+// Reads a number of elements and checks it against the bytes left. Each element takes at least
+// `bytes_each` bytes of text; the last one may lack its newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
   if (value < 0) in.fail(fmt::format("the number of {} is {}", what, value), kDamaged);
@@ -228,7 +228,7 @@ constexpr std::size_t kHeaderBytes = 84;  // 80 arbitrary bytes, then the number
 constexpr std::size_t kTriangleBytes =
     50;  // normal and corners as 12 floats, then 2 bytes of anything
 
-// Vertices by exact position. Adding 0.0 makes -0.0 the same key as 0.0.
+// Finds vertices by their exact positions. Adding 0.0 makes -0.0 the same key as 0.0.
 class Welder {
  public:
   explicit Welder(MeshBuilder& mesh) : mesh_(mesh) {}

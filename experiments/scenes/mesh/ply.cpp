@@ -1,6 +1,6 @@
-// PLY: ASCII and binary of either byte order. Elements and properties other than the position of
-// `vertex` and the index list of `face` are passed over by their declared types. ASCII is read one
-// element per line, as the format says.
+// Reads PLY, ASCII and binary of either byte order. Skips elements and properties other than the
+// position of `vertex` and the index list of `face`; their declared types give their lengths. Reads
+// ASCII one element per line, as the format says.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -131,8 +131,9 @@ Header read_header(TextReader& in) {
   }
 }
 
-// The values of the body of a file. AsciiBody and BinaryBody have the same functions: begin and end
-// of an element, a value by its type, the fewest bytes a value can take, the bytes that are left.
+// Read the values of the body of a file. AsciiBody and BinaryBody have the same functions: they
+// begin and end an element, read or skip a value of a type, and give the fewest bytes that a value
+// can take and the number of bytes that are left.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextReader& in) : in_(in) {}

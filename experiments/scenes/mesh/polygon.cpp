@@ -19,7 +19,7 @@ constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 // square of the least double. 2^32 products are below 2^(2148 + 2048 + 32).
 class ExactSum {
  public:
-  // Adds a b; subtracts it if `minus`.
+  // Adds the product a b, or subtracts it if `minus`.
   void add(double a, double b, bool minus = false) {
     const Parts x(a), y(b);
     Words& sum = sums_[x.negative ^ y.negative ^ static_cast<unsigned>(minus)];
@@ -28,7 +28,7 @@ class ExactSum {
     add_word(sum, x.low * y.high + x.high * y.low, at + 32);  // below 2^54
     add_word(sum, x.high * y.high, at + 64);
   }
-  // a b - c d
+  // Adds a b - c d.
   void add_difference(double a, double b, double c, double d) {
     add(a, b);
     add(c, d, true);
@@ -38,8 +38,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // Orders absolute values by their leading bits: the number of the highest word that is not 0, and
-  // that word.
+  // A key that orders absolute values by their leading bits: the number of the highest word that is
+  // not 0, and that word.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -56,7 +56,7 @@ class ExactSum {
  private:
   using Words = std::array<std::uint64_t, 68>;  // least significant first
 
-  // +-(high 2^32 + low) 2^(shift - 1074)
+  // A double as +-(high 2^32 + low) 2^(shift - 1074).
   struct Parts {
     explicit Parts(double x) {
       const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -84,7 +84,7 @@ class ExactSum {
     }
   }
 
-  std::array<Words, 2> sums_{};  // of the added and of the subtracted products
+  std::array<Words, 2> sums_{};  // sum of the added products, sum of the subtracted ones
 };
 
 // The plane of two coordinates in which the polygon is counterclockwise.
@@ -104,15 +104,16 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// The plane along the axis of the largest component of the normal, or of one at least half as
-// large. With n corners a product of two differences has three roundings and is in at most 2 n
-// sums: a relative error of each product of at most (2 n + 3) kUnit to first order, and less than
-// (4 n + 8) kUnit of the computed products with all higher orders (n < 2^32). Each of the 2 n
-// products errs by kTiny / 2 more if it underflows. If the largest component exceeds that bound for
-// each of the three, it has its sign, and no other one is twice as large.
+// The plane perpendicular to the axis on which the normal has its largest component, or one at
+// least half as large. The normal is rounded. With n corners a product of two differences has three
+// roundings and is in at most 2 n sums. So the relative error of each product is at most (2 n + 3)
+// kUnit to first order, and less than (4 n + 8) kUnit of the computed product with all higher
+// orders (n < 2^32). Each of the 2 n products errs by kTiny / 2 more if it underflows. `bound` adds
+// these errors of all three components. If the largest computed component exceeds `bound`, its sign
+// is right, and no other component is twice as large.
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
-  Vec3 a = Vec3::Zero();  // from the first corner
+  Vec3 a = Vec3::Zero();  // the previous corner minus the first one
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vec3 b = points[i] - points[0];
     const Vec3 plus(a.y() * b.z(), a.z() * b.x(), a.x() * b.y());
@@ -126,7 +127,7 @@ Plane plane_of(std::span<const Vec3> points) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   int sign = normal[axis] > 0 ? 1 : -1;
-  if (!(std::abs(normal[axis]) > bound)) {  // also where that is no number
+  if (!(std::abs(normal[axis]) > bound)) {  // also if it is NaN
     std::array<ExactSum, 3> exact;
     for (int k = 0; k < 3; ++k) exact[k] = exact_area(points, (k + 1) % 3, (k + 2) % 3);
     axis =
@@ -172,7 +173,7 @@ struct Ring {
   bool same(const Vec3& a, const Vec3& b) const { return a[u] == b[u] && a[v] == b[v]; }
 
   // Whether corner i is convex and its triangle holds no reflex corner (only those can reach into
-  // it). Corners at the position of one of the three do not count: they are the seam of a hole.
+  // it). Corners at the position of one of its corners do not count: they are the seam of a hole.
   bool is_ear(std::uint32_t i, std::uint64_t& steps) const {
     if (turn_at(i) <= 0) return false;
     const Vec3& a = at[previous[i]];
@@ -194,8 +195,8 @@ struct Ring {
     classify(next[i]);
   }
 
-  // Whether a polygon without right turns goes round once: then it rises, lexicographically, to one
-  // highest corner and falls again.
+  // Whether a polygon without right turns goes round once. If it does, its corners rise in
+  // lexicographic order to one highest corner and then fall.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
@@ -213,8 +214,8 @@ struct Ring {
     return falls + (before == 1 && first == -1) <= 1;
   }
 
-  // Whether the interiors of two triangles meet; both turn left or are degenerate. They do not if a
-  // line through an edge of one has the other one on its outer side.
+  // Whether the interiors of two triangles meet; both turn left or are degenerate. They do not meet
+  // if the line through an edge of one triangle has the other triangle on its outer side.
   bool overlap(const Triangle& s, const Triangle& t) const {
     for (const auto& [x, y] : {std::pair(&s, &t), std::pair(&t, &s)}) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -257,9 +258,10 @@ struct Ring {
   std::vector<char> reflex;
 };
 
-// The corners times a power of two that brings the largest coordinate to [2^499, 2^500). There
-// certain_turn() neither overflows nor underflows: a product of two differences is below 2^1002,
-// and rounds to a multiple of the least double only if it is 2^-2074 of the largest or less.
+// The corners times a power of two that brings the largest coordinate to [2^499, 2^500). At that
+// size certain_turn() neither overflows nor underflows: a product of two differences is below
+// 2^1002. It rounds to a multiple of the least double only below 2^-1022, and certain_turn() allows
+// for that.
 // Returns the corners unchanged if they are large enough, or if the scaling would round one of
 // them, which requires that a bit of one coordinate is 2^-1573 of another coordinate or less.
 // Otherwise every sum of products of two coordinates is scaled exactly, by the square of the power

@@ -42,8 +42,8 @@ std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
           Vec3(xz - k.y() * s, yz + k.x() * s, zz + c * (xx + yy))};
 }
 
-// Numbers the parts that are connected through shared vertices, by their first triangles. Sets the
-// part of each triangle and returns the number of parts.
+// Finds the parts that are connected through shared vertices, and numbers them in the order of
+// their first triangles. Stores each triangle's part in `part`; returns the number of parts.
 std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -234,8 +234,8 @@ double diagonal(const Box& box) {
   return std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
 }
 
-// Meshes by formula; only square roots, sines and cosines depend on the platform. A mesh is refined
-// by dividing its longest edge again and again; a heap orders the edges.
+// Makes meshes by formula; only sines and cosines depend on the platform. refined() divides the
+// longest edge again and again; a heap orders the edges.
 
 namespace shapes {
 
@@ -355,10 +355,10 @@ Vec3 across(const Vec3& along, double length, Random& random) {
 namespace {
 
 struct Edge {
-  double squared = 0;  // length
+  double squared = 0;  // square of the length
   std::uint32_t a = 0, b = 0;
 
-  // Whether it comes after another edge in the order of division.
+  // Whether this edge is divided after the other one.
   bool operator<(const Edge& other) const {
     if (squared != other.squared) return squared < other.squared;
     return a != other.a ? a > other.a : b > other.b;
@@ -395,7 +395,7 @@ Mesh refined(Mesh mesh, std::uint64_t wanted) {
   while (mesh.triangles.size() < wanted && !longest.empty()) {
     const Edge edge = longest.top();
     longest.pop();
-    if (edge.squared == 0) break;  // points alone
+    if (edge.squared == 0) break;  // all edges that are left have length 0
     const auto found = around.find(edge.key());
     const std::vector<std::uint32_t> of = std::move(found->second);
     around.erase(found);
@@ -409,7 +409,7 @@ Mesh refined(Mesh mesh, std::uint64_t wanted) {
       triangles.push_back(t);
     };
     for (const std::uint32_t t : of) {
-      // (a, b, c) in its own order becomes (a, m, c) and (m, b, c).
+      // Rotates the corners so that a, b is the edge; (a, b, c) becomes (a, m, c) and (m, b, c).
       std::array<std::uint32_t, 3> c = mesh.triangles[t];
       const auto on_edge = [&](std::uint32_t v) { return v == edge.a || v == edge.b; };
       while (!on_edge(c[0]) || !on_edge(c[1])) std::rotate(c.begin(), c.begin() + 1, c.end());

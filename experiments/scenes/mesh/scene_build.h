@@ -23,7 +23,6 @@ namespace farcull {
 /// Scale, then rotate, then translate, each step in double and about the origin. A step that is
 /// absent or does nothing (angle 0, translation 0 along an axis) is skipped, so an identity changes
 /// no bit, not even of -0.0.
-/// every bit as it is, -0.0 included.
 struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
@@ -85,20 +84,20 @@ class PartMaker {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::span<const Vec3> vertices_;
-  std::vector<std::uint32_t> number_;  // of each vertex in the part
+  std::vector<std::uint32_t> number_;  // per vertex: its number in the current part
   std::vector<std::uint32_t> used_;    // vertices of the part
   MeshPart part_;
 };
 
-/// Appends an object with vertices of its own, unchanged and unchecked. Triangles are positions in
-/// `vertices`.
+/// Appends an object with vertices of its own, unchanged and unchecked. Corners of triangles are
+/// positions in `vertices`.
 void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
 
 /// The box around all triangles of a scene; empty without triangles.
 Box bounds(const Scene& scene);
-/// The same of a mesh.
+/// The box around all triangles of a mesh.
 Box bounds(const Mesh& mesh);
 /// The middle of a box that is not empty.
 Vec3 centre(const Box& box);
@@ -111,9 +110,9 @@ double diagonal(const Box& box);
 /// triangles, again and again (Rivara 1984). One division adds as many triangles as the edge has,
 /// two on a closed surface. New vertices are midpoints, so the surface is unchanged up to their
 /// rounding, and a closed one stays closed. A triangle that names a vertex twice is left unchanged.
-/// Edges of equal length are taken in the order of their vertices: the same on every run. The parts
-/// keep the source face and the group of their triangle. Returns a mesh that has enough triangles
-/// unchanged. Precondition: mesh has a triangle.
+/// Edges of equal length are taken in the order of their vertices, so every run gives the same
+/// mesh. The parts of a triangle keep its source face and its group. Returns a mesh that has enough
+/// triangles unchanged. Precondition: mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
@@ -143,7 +142,7 @@ class Random : public RandomNumbers {
       if (p.squaredNorm() > 0.01) return p / p.norm();
     }
   }
-  /// Uniform over the octaves of [2^-octaves, 1).
+  /// A number in [2^-octaves, 1): each octave is equally likely, and the number uniform within it.
   double over_octaves(std::uint32_t octaves) {
     const auto octave = static_cast<int>(below(octaves));
     return std::ldexp(between(0.5, 1), -octave);
@@ -161,8 +160,8 @@ using Corners = std::array<Vec3, 3>;
 Mesh finished(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// A surface of columns * rows cells, two triangles each: vertex (i, j) is at place(i, j). closed:
-/// the last column joins the first, and the last row the first row; else there is one vertex more
-/// in both directions.
+/// the last column joins the first, and the last row the first row. A surface that is not closed
+/// has one vertex more in both directions.
 template <class Place>
 Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place& place) {
   std::vector<Vec3> vertices;
@@ -196,8 +195,9 @@ Mesh grid(std::uint32_t cells);
 /// are (0, 1, 2) and (0, 2, 3).
 std::array<Vec3, 4> square(const Vec3& centre, double side);
 
-/// About the z axis; `around` steps along the ring, `across` around the tube (each >= 3), 2 *
-/// around * across triangles. Vertex i * across + j is at step i along and j around.
+/// A torus about the z axis with radii `ring` and `tube`: `around` steps along the ring, `across`
+/// steps around the tube (each >= 3), 2 * around * across triangles. Vertex i * across + j is at
+/// step i along the ring and step j around the tube.
 Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across);
 
 /// A sphere with bumps and dents of up to about a third of its radius.
@@ -208,7 +208,7 @@ Corners shifted(Corners corners, const Vec3& by);
 /// A vector of this length perpendicular to another one, in a random direction.
 Vec3 across(const Vec3& along, double length, Random& random);
 
-/// A point well inside.
+/// A random point well inside the triangle.
 Vec3 inner_point(const Corners& corners, Random& random);
 
 }  // namespace shapes

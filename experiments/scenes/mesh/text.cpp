@@ -48,9 +48,8 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// Whether a well-formed decimal number that no double holds is too small rather than too large.
-// Doubles reach from 5e-324 to 2e308, so outside this range the sign of the decimal exponent
-// decides.
+// Whether a well-formed decimal number outside the range of doubles is too small rather than too
+// large. Doubles reach from 5e-324 to 2e308, so the sign of the decimal exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
   long exponent = 0;
@@ -185,7 +184,7 @@ void TextReader::skip_blanks() {
 }
 
 bool TextReader::next_line() {
-  // A continued line ends with its last part, so all its tokens are read.
+  // Reads the tokens that are left, since a continued line goes on in the lines that follow.
   if (started_ && rules_.continuation) {
     while (!token().empty()) {
     }

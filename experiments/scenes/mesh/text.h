@@ -80,8 +80,8 @@ class TextReader {
 /// Whether the bytes begin as gzip data do: 1f 8b, and 8 for the method "deflate".
 bool is_gzip(std::string_view bytes);
 
-/// Guards against small files that fill the memory: text can be compressed a thousand times. Beyond
-/// `free_bytes`, contents of more than `most_ratio` times the compressed size are refused.
+/// Guards against small files that fill the memory: gzip can make text a thousand times smaller.
+/// Beyond `free_bytes`, contents of more than `most_ratio` times the compressed size are refused.
 struct GzipLimits {
   std::uint64_t max_bytes = std::uint64_t{4} << 30;
   std::uint64_t free_bytes = std::uint64_t{256} << 20;
