@@ -29,7 +29,7 @@ farcull_setup
 farcull_build farcull
 if [[ ${1-} == stages ]]; then
   bash experiments/meshes.sh
-  exec python3 experiments/report/stages.py build/farcull docs/results/stages.md docs/results/figures/stages.svg "${@:2}"
+  exec /usr/bin/python3 experiments/report/stages.py build/farcull docs/results/stages.md docs/results/figures/stages.svg "${@:2}"
 fi
 commit=$(build/farcull --version)
 commit=${commit##* }
