@@ -173,11 +173,11 @@ constexpr std::size_t kLeast = 4096;
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
 // Makes room for some more pairs, and for as many as there will be if the items to come have as
-// many, but at most for eight times as many: each growth copies the list.
+// many, but at least for twice and at most for eight times as many: each growth copies the list.
 void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
   const std::size_t needed = pairs.size() + more;
   if (needed <= pairs.capacity()) return;
-  const double factor = std::clamp(1 / join.share(), 1.0, 8.0);
+  const double factor = std::clamp(1 / join.share(), 2.0, 8.0);
   pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
 }
 

@@ -22,8 +22,8 @@ struct DrawPlan {
   CullSettings settings;            // without the fattener
   bool self = false;                // triangles of marked objects are owners
   Patches patches;                  // for far, if an object is tested against itself; else empty
-  /// All pairs whose boxes overlap, if boxes of triangles are compared before drawing; then the
-  /// owners of `patches` are set. Empty: only boxes of objects are compared before drawing.
+  /// All pairs whose boxes overlap, if boxes of triangles are compared before drawing; if any of
+  /// them is drawn, the owners of `patches` are set. Empty: only boxes of objects are compared.
   std::optional<PairsToDraw> pairs = {};
 };
 

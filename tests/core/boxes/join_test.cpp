@@ -122,16 +122,19 @@ TEST(SweepJoin, StopsAfterTheMostAndTakesAnyNumberOfThreads) {
     boxes.push_back({at, at + Vec3(random.cube(2).cwiseAbs())});
     owners.push_back(k % 7);
   }
-  const Pairs expected = brute_force(boxes, owners, all(6000));
-  ASSERT_GT(expected.size(), 1000u);
-  for (const unsigned threads : {1u, 3u, 0u}) {
-    EXPECT_EQ(box_join(boxes, owners, all(6000), SIZE_MAX, threads), expected);
-    for (const std::size_t most : {std::size_t{0}, std::size_t{1}, expected.size() - 1}) {
-      const Pairs some = box_join(boxes, owners, all(6000), most, threads);
-      ASSERT_EQ(some.size(), most + 1);
-      EXPECT_TRUE(std::equal(some.begin(), some.end(), expected.begin()));
+  for (const bool ascend : {false, true}) {
+    if (ascend) std::ranges::sort(owners);
+    const Pairs expected = brute_force(boxes, owners, all(6000));
+    ASSERT_GT(expected.size(), 1000u);
+    for (const unsigned threads : {1u, 3u, 0u}) {
+      EXPECT_EQ(box_join(boxes, owners, all(6000), SIZE_MAX, threads), expected);
+      for (const std::size_t most : {std::size_t{0}, std::size_t{1}, expected.size() - 1}) {
+        const Pairs some = box_join(boxes, owners, all(6000), most, threads);
+        ASSERT_EQ(some.size(), most + 1);
+        EXPECT_TRUE(std::equal(some.begin(), some.end(), expected.begin()));
+      }
+      EXPECT_EQ(box_join(boxes, owners, all(6000), expected.size(), threads), expected);
     }
-    EXPECT_EQ(box_join(boxes, owners, all(6000), expected.size(), threads), expected);
   }
 }
 

@@ -130,6 +130,20 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
             Reason::many_in_front);
 }
 
+// An object that is tested against itself is cut into patches, which are no objects, also where
+// boxes leave so few pairs that nothing would be drawn.
+TEST(Planner, RefusesToAskObjectsAloneWhereOneIsCut) {
+  Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far{.method = Method::far};
+  far.objects_alone = true;
+  EXPECT_NO_THROW(plan(scene, far));
+  for (Object& object : scene.objects) object.self = true;
+  for (const BoxLevel boxes : {BoxLevel::enough, BoxLevel::triangles, BoxLevel::objects}) {
+    far.boxes = boxes;
+    EXPECT_THROW(plan(scene, far), Error);
+  }
+}
+
 TEST(Planner, SaysWhatItLeavesOut) {
   const Scene scene = make_builtin_scene("two-spheres");
   RunOptions far{.method = Method::far, .boxes = BoxLevel::objects};
