@@ -26,6 +26,15 @@ std::vector<TrianglePair> Collisions::all() const {
   return both;
 }
 
+void Collisions::append(const Collisions& next) {
+  pairs.insert(pairs.end(), next.pairs.begin(), next.pairs.end());
+  neighbour_pairs.insert(neighbour_pairs.end(), next.neighbour_pairs.begin(),
+                         next.neighbour_pairs.end());
+  neighbours += next.neighbours;
+  apart += next.apart;
+  neighbours_apart += next.neighbours_apart;
+}
+
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers) {
   if (answers.size() != candidates.size())
@@ -289,13 +298,7 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   while (out.decided < candidates.size() && all.pairs.size() + all.neighbour_pairs.size() < limit) {
     const std::span<const TrianglePair> part =
         candidates.subspan(out.decided, std::min(step, candidates.size() - out.decided));
-    const Collisions found = count_answers(part, answers_about(scene, part, question));
-    all.pairs.insert(all.pairs.end(), found.pairs.begin(), found.pairs.end());
-    all.neighbour_pairs.insert(all.neighbour_pairs.end(), found.neighbour_pairs.begin(),
-                               found.neighbour_pairs.end());
-    all.neighbours += found.neighbours;
-    all.apart += found.apart;
-    all.neighbours_apart += found.neighbours_apart;
+    all.append(count_answers(part, answers_about(scene, part, question)));
     out.decided += part.size();
     step *= 2;
   }

@@ -269,13 +269,7 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
   const IgnoredObjects is_ignored(scene, ignored);
   const auto decide_chunk = [&] {
     const Stopwatch start;
-    const Collisions found = decide(scene, chunk, question);
-    const auto append = [](std::vector<TrianglePair>& to, const std::vector<TrianglePair>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(result.pairs, found.pairs);
-    append(result.neighbour_pairs, found.neighbour_pairs);
-    result.neighbours += found.neighbours;
+    result.append(decide(scene, chunk, question));
     result.box_pairs += chunk.size();
     chunk.clear();
     result.predicates_ms += start.ms();

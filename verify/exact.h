@@ -54,6 +54,8 @@ struct Collisions {
 
   /// pairs and neighbour_pairs together; sorted if both lists are sorted.
   std::vector<TrianglePair> all() const;
+  /// Adds the pairs and counts of candidates that come after these.
+  void append(const Collisions& next);
 };
 
 /// Counts the answers in each class and lists the colliding candidates in the order given. Throws
@@ -146,15 +148,12 @@ class FrameDecider {
 
 /// The answers about the pairs that count: two triangles of different objects, or of one object
 /// marked `self`.
-struct ExactResult {
-  std::vector<TrianglePair> pairs;            // all that collide, sorted, each once
-  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide, sorted, each once
-  std::uint64_t neighbours = 0;               // pairs that count and are neighbours
-  std::uint64_t box_pairs = 0;  // pairs that count whose closed boxes overlap; with a clearance,
-                                // are no farther apart along any axis, by differences in double
-  std::uint64_t ignored = 0;    // pairs whose boxes overlap likewise, but whose objects are ignored
-  double join_ms = 0;           // boxes and box join, wall clock
-  double predicates_ms = 0;     // exact decisions on the overlapping pairs, wall clock
+struct ExactResult : Collisions {  // both lists sorted, each pair once
+  std::uint64_t box_pairs = 0;     // pairs that count whose closed boxes overlap; with a clearance,
+                                   // are no farther apart along any axis, by differences in double
+  std::uint64_t ignored = 0;  // pairs whose boxes overlap likewise, but whose objects are ignored
+  double join_ms = 0;         // boxes and box join, wall clock
+  double predicates_ms = 0;   // exact decisions on the overlapping pairs, wall clock
 };
 
 /// The method `exact`: closed boxes by CGAL::box_intersection_d (Zomorodian, Edelsbrunner: Fast

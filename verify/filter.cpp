@@ -105,19 +105,24 @@ struct alignas(64) Batch {
 
 HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, std::size_t from,
                        int count, Batch& batch) {
+  const auto gather_one = [&](std::uint32_t triangle, int row, int i) {
+    for (const std::uint32_t vertex : scene.triangles[triangle]) {
+      const double* p = scene.vertices[vertex].data();
+      for (int axis = 0; axis < 3; ++axis) batch.row[row++][i] = p[axis];
+    }
+  };
+  bool one = true;  // all pairs have the same a
+  for (int i = 0; i < count; ++i) one &= pairs[from + i].a == pairs[from].a;
+  if (one) {
+    gather_one(pairs[from].a, 0, 0);
+    for (int row = 0; row < 9; ++row)
+      std::fill(batch.row[row] + 1, batch.row[row] + count, batch.row[row][0]);
+  }
   for (int i = 0; i < count; ++i) {
     const TrianglePair& pair = pairs[from + i];
     prefetch(scene, pairs[std::min(from + i + kAhead, pairs.size() - 1)].b);
-    const auto& a = scene.triangles[pair.a];
-    const auto& b = scene.triangles[pair.b];
-    for (int k = 0; k < 3; ++k) {
-      const double* p = scene.vertices[a[k]].data();
-      const double* q = scene.vertices[b[k]].data();
-      for (int axis = 0; axis < 3; ++axis) {
-        batch.row[3 * k + axis][i] = p[axis];
-        batch.row[9 + 3 * k + axis][i] = q[axis];
-      }
-    }
+    if (!one) gather_one(pair.a, 0, i);
+    gather_one(pair.b, 9, i);
   }
 }
 

@@ -122,9 +122,6 @@ std::string reason_of(const Stage& stage) {
       return "boxes of runs decide: no view is needed";
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
-    case Reason::many_in_front:
-      return "boxes of triangles do not decide, and only a triangle in front of all that its box "
-             "overlaps is culled: exact tests usually take less time";
     case Reason::boxes_decide_little:
       return "boxes of triangles meet too often, or lie too unevenly, to be compared first";
     case Reason::no_boxes_overlap:
@@ -189,8 +186,8 @@ std::string reason_of(const Stage& stage) {
     case Reason::chosen:
       return stage.detail + (stage.n > 0 ? ": " + number(stage.n) + " x " + number(stage.m) + " px"
                                          : std::string());
-    case Reason::few_pairs:
-      return "exact tests of " + counted(stage.n, "pair", "pairs") + " are cheaper than one view";
+    case Reason::tests_instead:
+      return "exact tests on the cores of a CPU take less time than drawing there";
     case Reason::few_candidates:
       return "exact tests of " + counted(stage.n, "candidate", "candidates") +
              " are cheaper than a further view";

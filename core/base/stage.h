@@ -53,7 +53,6 @@ enum class Reason : std::uint8_t {
                   // `detail` were compared, since a corner moved; empty: all
   only_blocks,    // nothing else can meet: no view is needed
   boxes_meet,     // n pairs of triangles are asked about; triangles in none take no part
-  many_in_front,  // a triangle is culled only in front of all that its box overlaps
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap
@@ -83,7 +82,7 @@ enum class Reason : std::uint8_t {
   views_chosen,         // by the scene
   views_given,          // by the caller
   chosen,               // the view is looked at, for `detail`, n x m px
-  few_pairs,            // exact tests of n pairs are cheaper than one view
+  tests_instead,        // on the cores of a CPU exact tests take less time than drawing
   few_candidates,       // exact tests of n candidates are cheaper than a further view
   enough_views,         // as many as a run looks at
   given_up,             // the view removes no candidate: it is more work than n pairs of intervals

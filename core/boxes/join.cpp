@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <iterator>
 #include <numeric>
@@ -167,7 +168,7 @@ std::uint64_t find_leaves(const BoxTree<double>& tree, const WideBoxes<double>* 
   return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, least, leaves);
 }
 
-// Below so many items a second thread costs more than it saves.
+// Below so many items a second thread costs more than it saves, if it only finds their pairs.
 constexpr std::size_t kLeast = 4096;
 // Pairs that are found at a time, so that they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
@@ -187,15 +188,7 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
                                    std::span<const std::uint32_t> items, std::size_t most,
                                    unsigned threads) {
-  std::vector<TrianglePair> pairs, some;
-  OrderedPairs join(boxes, owners, items, items.size() < kLeast ? 1 : threads);
-  while (!join.at_end() && pairs.size() <= most) {
-    join.next(std::clamp<std::size_t>(most, 1, kPortion), some);
-    make_room(join, some.size(), pairs);
-    pairs.insert(pairs.end(), some.begin(), some.end());
-  }
-  if (pairs.size() > most) pairs.resize(most + 1);
-  return pairs;
+  return OrderedPairs(boxes, owners, items, threads).all(most);
 }
 
 std::vector<std::uint32_t> join_owners(const Scene& scene) {
@@ -208,12 +201,14 @@ std::vector<std::uint32_t> join_owners(const Scene& scene) {
 }
 
 OrderedPairs::OrderedPairs(const Scene& scene, double clearance,
-                           std::span<const ObjectPair> ignored, unsigned threads)
-    : ignored_(IgnoredObjects(scene, ignored)),
+                           std::span<const ObjectPair> ignored, bool neighbours, unsigned threads)
+    : scene_(neighbours ? nullptr : &scene),
+      objects_(neighbours ? std::vector<std::uint32_t>() : owners(scene)),
       threads_(threads),
       owner_(join_owners(scene)),
       items_(scene.triangles.size()),
       boxes_(scene.triangles.size()) {
+  if (!ignored.empty()) ignored_ = IgnoredObjects(scene, ignored);
   std::iota(items_.begin(), items_.end(), 0u);
   for (std::uint32_t t = 0; t < boxes_.size(); ++t) boxes_[t] = grown_box(scene, t, clearance);
   plant();
@@ -277,7 +272,7 @@ void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>
 
 }  // namespace
 
-void OrderedPairs::append(std::uint32_t a, Part& part) const {
+void OrderedPairs::append(std::uint32_t a, bool sorted, Part& part) const {
   std::vector<std::uint32_t>& found = part.found;
   found.clear();
   // Items ascend with their owners then, so as many leaves as items have this owner or one before.
@@ -287,11 +282,60 @@ void OrderedPairs::append(std::uint32_t a, Part& part) const {
   for (std::uint32_t& leaf : found) leaf = order_[leaf];
   if (!by_owner_)
     std::erase_if(found, [&](std::uint32_t b) { return b <= a || owner_[a] == owner_[b]; });
-  sort_marked(found, part.marks);
+  if (sorted) sort_marked(found, part.marks);
   for (const std::uint32_t b : found) {
     const TrianglePair pair{items_[a], items_[b]};
-    if (!ignored_ || !(*ignored_)(pair)) part.pairs.push_back(pair);
+    if (counts(pair)) part.pairs.push_back(pair);
   }
+}
+
+bool OrderedPairs::counts(const TrianglePair& pair) const {
+  if (ignored_ && (*ignored_)(pair)) return false;
+  return scene_ == nullptr || objects_[pair.a] != objects_[pair.b] ||
+         !share_index(scene_->triangles[pair.a], scene_->triangles[pair.b]);
+}
+
+std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
+  std::vector<TrianglePair> pairs, some;
+  while (!at_end() && pairs.size() <= most) {
+    next(std::clamp<std::size_t>(most, 1, kPortion), some);
+    make_room(*this, some.size(), pairs);
+    pairs.insert(pairs.end(), some.begin(), some.end());
+  }
+  if (pairs.size() > most) pairs.resize(most + 1);
+  return pairs;
+}
+
+std::uint64_t OrderedPairs::give(const TakePairs& take) {
+  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
+  constexpr std::size_t kSome = std::size_t{1}
+                                << 14;  // pairs that it collects before it gives them
+  const auto items = static_cast<std::uint32_t>(boxes_.size());
+  const std::size_t chunks = chunks_for(items, kItems, threads_);
+  std::atomic<std::uint32_t> next = 0;
+  std::atomic<std::uint64_t> given = 0, compared = 0;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    Part part;
+    const auto flush = [&](std::size_t least) {
+      if (part.pairs.size() < least) return;
+      given += part.pairs.size();
+      take(part.pairs);
+      part.pairs.clear();
+    };
+    for (;;) {
+      const std::uint32_t begin = next.fetch_add(kItems);
+      if (begin >= items) break;
+      for (std::uint32_t a = begin; a < std::min(items, begin + kItems); ++a) {
+        append(a, false, part);
+        flush(kSome);
+      }
+    }
+    flush(1);
+    compared += part.compared;
+  });
+  next_ = items;
+  compared_ += compared;
+  return given;
 }
 
 void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
@@ -299,7 +343,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   if (at_end()) return;
   const auto left = static_cast<std::uint32_t>(boxes_.size()) - next_;
   const std::uint32_t asked = std::min(asked_, left);
-  const std::size_t chunks = chunks_for(asked, 16, threads_);
+  const std::size_t chunks = chunks_for(asked, 16, items_.size() < kLeast ? 1 : threads_);
   if (parts_.size() < chunks) parts_.resize(chunks);
   const std::size_t most_of_part = std::max<std::size_t>(most / chunks, 1);
   for_chunks(asked, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -309,7 +353,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
     part.compared = 0;
     part.marks.resize(items_.size() / 64 + 1);
     for (std::size_t k = begin; k < end && part.pairs.size() < most_of_part; ++k, ++part.done)
-      append(next_ + static_cast<std::uint32_t>(k), part);
+      append(next_ + static_cast<std::uint32_t>(k), true, part);
     part.complete = part.done == end - begin;
   });
   // A part that is not complete would leave a gap before the next one, which is asked again.

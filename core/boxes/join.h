@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,10 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
 /// owner by itself.
 std::vector<std::uint32_t> join_owners(const Scene& scene);
 
+/// Takes pairs, some thousands at a time, in no order, from several threads at once. May change the
+/// list.
+using TakePairs = std::function<void(std::vector<TrianglePair>& some)>;
+
 /// All pairs a < b of items of different owners whose closed boxes overlap, in ascending order.
 class OrderedPairs {
  public:
@@ -36,9 +41,11 @@ class OrderedPairs {
   /// by half the clearance. Two triangles at the clearance or less are such a pair
   /// (core/boxes/block.h), so none that collides is left out.
   /// clearance: world units, finite, >= 0. ignored: as in_order() gives them; their pairs are left
-  /// out. threads: 0 for as many as there are cores; changes no answer. Memory O(items).
+  /// out. neighbours: false leaves out pairs of one object that share a vertex index. threads: 0
+  /// for as many as there are cores; changes no answer. Memory O(items). The scene must outlive
+  /// this object.
   OrderedPairs(const Scene& scene, double clearance, std::span<const ObjectPair> ignored,
-               unsigned threads);
+               bool neighbours, unsigned threads);
   /// Of `items`, as box_join(); their boxes and owners are copied. threads: as above.
   OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                std::span<const std::uint32_t> items, unsigned threads);
@@ -47,6 +54,10 @@ class OrderedPairs {
   /// one item more for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == boxes_.size(); }
+  /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called.
+  std::uint64_t give(const TakePairs& take);
+  /// All pairs that are left; if there are more than `most`, most + 1 of them.
+  std::vector<TrianglePair> all(std::size_t most = SIZE_MAX);
   /// The share of the items whose pairs have been given, 0 .. 1.
   double share() const {
     return boxes_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(boxes_.size());
@@ -66,10 +77,13 @@ class OrderedPairs {
     std::vector<std::uint32_t> found;
     std::vector<std::uint64_t> marks;
   };
-  void append(std::uint32_t a, Part& part) const;
-
+  void append(std::uint32_t a, bool sorted, Part& part) const;
   void plant();  // the tree
 
+  bool counts(const TrianglePair& pair) const;
+
+  const Scene* scene_ = nullptr;        // if neighbours are left out
+  std::vector<std::uint32_t> objects_;  // per item; likewise
   std::optional<IgnoredObjects> ignored_;
   unsigned threads_;
   std::vector<std::uint32_t> owner_;  // per item

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -46,37 +47,6 @@ bool neighbours_count(const Scene& scene, std::span<const std::uint32_t> owners,
          !share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
 }
 
-// Pairs of the whole scene whose grown boxes overlap. A tree over the boxes finds them in order, so
-// pairs that `keeps` leaves out are never listed. Portions are joined at the end and freed one by
-// one, since a list that grows would take twice the memory.
-template <class Keeps>
-std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& settings,
-                                        unsigned threads, const Keeps& keeps,
-                                        std::uint64_t* compared = nullptr) {
-  constexpr std::size_t kAtOnce = std::size_t{1} << 18;
-  OrderedPairs tree(scene, settings.clearance, settings.ignored, threads);
-  const std::vector<std::uint32_t> owner =
-      settings.neighbours ? std::vector<std::uint32_t>() : owners(scene);
-  std::vector<std::vector<TrianglePair>> portions;
-  std::size_t count = 0;
-  std::vector<TrianglePair> some;
-  while (!tree.at_end()) {
-    tree.next(kAtOnce, some);
-    std::erase_if(some, [&](const TrianglePair& pair) {
-      return !keeps(pair) || !neighbours_count(scene, owner, pair);
-    });
-    count += portions.emplace_back(some).size();
-  }
-  if (compared) *compared = tree.compared();
-  std::vector<TrianglePair> pairs;
-  pairs.reserve(count);
-  for (std::vector<TrianglePair>& portion : portions) {
-    pairs.insert(pairs.end(), portion.begin(), portion.end());
-    std::vector<TrianglePair>().swap(portion);  // `= {}` would keep its memory
-  }
-  return pairs;
-}
-
 // Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
 // for triangles that a view cannot show.
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
@@ -84,10 +54,16 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
                                          const PairSettings& settings, unsigned threads) {
   if (some.size() <= kComparedWithAll)
     return pairs_of_few(scene, regions, some, settings.clearance);
-  return pairs_by_tree(scene, settings, threads, [&](const TrianglePair& pair) {
-    return std::binary_search(some.begin(), some.end(), pair.a) ||
-           std::binary_search(some.begin(), some.end(), pair.b);
-  });
+  std::mutex mutex;
+  std::vector<TrianglePair> found;
+  OrderedPairs(scene, settings.clearance, settings.ignored, settings.neighbours, threads)
+      .give([&](std::vector<TrianglePair>& pairs) {
+        std::erase_if(pairs, [&](const TrianglePair& pair) { return !has_any(some, pair); });
+        const std::scoped_lock lock(mutex);
+        found.insert(found.end(), pairs.begin(), pairs.end());
+      });
+  std::ranges::sort(found);
+  return found;
 }
 
 // How many pairs ahead the corners of second triangles are prefetched. The first triangle is mostly
@@ -136,13 +112,14 @@ std::vector<TrianglePair> merged(const std::vector<TrianglePair>& a,
 class Finding {
  public:
   Finding(const Scene& scene, const PairPlan& plan, PairBackend& backend, PairWorkspace& workspace,
-          const Progress& progress)
+          const Progress& progress, const TakePairs& take)
       : scene_(scene),
         plan_(plan),
         backend_(backend),
         seen_(workspace.seen),
         memory_(workspace.memory),
-        progress_(progress) {}
+        progress_(progress),
+        take_(take) {}
 
   PairResult result() {
     compare_blocks();
@@ -154,6 +131,7 @@ class Finding {
     }
     if (first_) join_boxes();
     if (plan_.remembers) remember();
+    if (out_.given) return std::move(out_);  // with the pairs of the blocks
     if (out_.candidates.empty()) {
       out_.candidates = std::move(of_blocks_);
     } else if (!of_blocks_.empty()) {
@@ -300,18 +278,25 @@ class Finding {
     if (all.empty()) return;
     const Stopwatch start;
     if (progress_) progress_("joining boxes");
-    std::uint64_t compared = 0;
-    out_.candidates = pairs_by_tree(
-        scene_, plan_.settings, backend_.threads(), [](const TrianglePair&) { return true; },
-        &compared);
+    const PairSettings& settings = plan_.settings;
+    OrderedPairs tree(scene_, settings.clearance, settings.ignored, settings.neighbours,
+                      backend_.threads());
+    std::uint64_t count = 0;
+    if (take_) {
+      count = tree.give(take_);
+      out_.given = true;
+    } else {
+      out_.candidates = tree.all();
+      count = out_.candidates.size();
+    }
     Stage stage = given_up_ ? stage_of_join(Reason::join_many_tests, plan_.most_tests, *given_up_)
                   : plan_.join != Reason::none ? stage_of_join(plan_.join, plan_.join_n)
                                                : stage_of_join(Reason::join_unresolvable);
     stage.depends = given_up_.has_value();
-    stage.m = compared;
+    stage.m = tree.compared();
     stage.ms = start.ms();
     stage.in = all.size();
-    stage.out = out_.candidates.size();
+    stage.out = count;
     out_.stages.push_back(stage);
   }
 
@@ -328,6 +313,7 @@ class Finding {
   PairScene& seen_;
   PairMemory& memory_;
   const Progress& progress_;
+  const TakePairs& take_;
   PairResult out_;
   std::vector<TrianglePair> of_blocks_;
   bool first_ = true;  // no view has said anything yet
@@ -339,8 +325,8 @@ class Finding {
 }  // namespace
 
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
-                      PairWorkspace& workspace, const Progress& progress) {
-  return Finding(scene, plan, backend, workspace, progress).result();
+                      PairWorkspace& workspace, const Progress& progress, const TakePairs& take) {
+  return Finding(scene, plan, backend, workspace, progress, take).result();
 }
 
 PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBackend& backend) {

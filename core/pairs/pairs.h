@@ -116,7 +116,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
 std::vector<Stage> planned_stages(const PairPlan& plan);
 
 /// Whether a triangle of the pair is in the list.
-bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair);
+bool has_any(std::span<const std::uint32_t> ascending, const TrianglePair& pair);
 /// The fraction of pairs that a view would keep, from an even sample of `from`. For choices alone:
 /// no pair is lost either way. Precondition: there is a pair.
 double kept_by(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
@@ -145,6 +145,7 @@ struct PairView {
 struct PairResult {
   std::vector<TrianglePair> candidates;  // sorted, each once; the closed boxes, grown by half
                                          // the clearance, overlap
+  bool given = false;                    // all candidates went to `take` instead, as found
   std::vector<PairView> views;
   std::vector<Stage> stages;
 };
@@ -160,9 +161,12 @@ struct PairWorkspace {
 /// if it is marked `self`. The result does not depend on threads, memory limits or earlier
 /// calls; a backend keeps its buffers between calls, and so does `workspace`, whose contents are
 /// replaced. A plan that was made with workspace.memory must be given here with that workspace,
-/// before the next plan is made. Throws Error if the backend cannot vouch for its answer.
+/// before the next plan is made. take: receives the candidates as they are found if a tree of all
+/// boxes decides, where they may be far more than the triangles, so that they are never listed;
+/// empty: they are listed. Throws Error if the backend cannot vouch for its answer.
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
-                      PairWorkspace& workspace, const Progress& progress = {});
+                      PairWorkspace& workspace, const Progress& progress = {},
+                      const TakePairs& take = {});
 
 /// plan_pairs() and find_pairs() in one call, with a new workspace; the stages are those of both.
 PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBackend& backend);

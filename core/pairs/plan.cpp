@@ -13,7 +13,7 @@
 
 namespace farcull {
 
-bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair) {
+bool has_any(std::span<const std::uint32_t> ascending, const TrianglePair& pair) {
   return std::binary_search(ascending.begin(), ascending.end(), pair.a) ||
          std::binary_search(ascending.begin(), ascending.end(), pair.b);
 }

@@ -19,9 +19,6 @@ struct Regions {
 /// Further views and finer offsets are left out where no more triangles than this are kept: the
 /// exact tests of so few take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// Where all pairs of triangles whose boxes overlap are known, nothing is drawn if there are fewer
-/// of them than this for each triangle: their exact tests take less time than one view.
-constexpr std::uint64_t kPairsWorthDrawing = 16;
 /// Below this many objects the level that asks each as a whole is left out: it draws everything
 /// twice, and of few objects that overlap one seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;

@@ -183,7 +183,7 @@ struct ColliderStream::State {
     if (options.device == ColliderDevice::gl)
       throw Error("device", "gl is not used by a stream", "give cpu or best");
     take(input, options.self, options.self_objects, scene);
-    candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()),
+    candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()), true,
                        threads);
   }
 

@@ -2,6 +2,7 @@
 // offset after the other, and the boxes of what is kept are joined.
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -181,13 +182,10 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   plan.trace.back().ms = watch.ms();
 }
 
-// Whether exact tests may take the place of drawing.
-bool may_test_instead(const RunOptions& options) {
-  return boxes_of(options) == BoxLevel::enough && promises(options) &&
+// Whether exact tests take the place of drawing.
+bool tests_instead(const RunOptions& options) {
+  return boxes_of(options) == BoxLevel::enough && promises(options) && !options.objects_alone &&
          (options.device.empty() || is_cpu(options.device));
-}
-bool tests_cost_less(const RunOptions& options, std::size_t pairs, std::size_t triangles) {
-  return may_test_instead(options) && pairs > 0 && pairs < kPairsWorthDrawing * triangles;
 }
 
 // Boxes of triangles: all pairs whose boxes overlap. False: they do not decide here.
@@ -209,9 +207,7 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
   work.regions.triangles = members_of(*pairs, scene.triangles.size());
-  // Who asks objects alone is told, below, if one of them is cut.
-  if (!(options.objects_alone && has_self(scene)) &&
-      tests_cost_less(options, pairs->size(), work.regions.triangles.size())) {
+  if (tests_instead(options)) {
     work.pairs = {.drawn = {}, .other = *std::move(pairs)};
     stage.out = work.regions.triangles.size();
     stage.ms = watch.ms();
@@ -252,13 +248,8 @@ Stage nothing_to_draw(const RunOptions& options, const DrawPlan& work) {
                    : work.pairs             ? Reason::no_box_pairs
                    : regions.places.empty() ? Reason::no_boxes_overlap
                                             : Reason::no_triangle_meets;
-  } else if (may_test_instead(options) && !work.pairs) {
-    stage.reason = Reason::many_in_front;
-  } else if (work.pairs) {
-    const std::size_t drawn = work.pairs->drawn.size();
-    if (drawn > 0 && !tests_cost_less(options, drawn, regions.triangles.size())) return stage;
-    stage.reason = Reason::few_pairs;
-    stage.n = drawn > 0 ? drawn : work.pairs->other.size();
+  } else if (tests_instead(options)) {
+    stage.reason = Reason::tests_instead;
   }
   return stage;
 }
@@ -270,7 +261,14 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   DrawPlan work;
   work.self = tests_self_alone(options.method);
   const bool objects = boxes_of(options) == BoxLevel::objects;
-  if (objects || !compare_boxes(scene, threads, plan, work)) find_places(scene, plan, work);
+  if (objects || !compare_boxes(scene, threads, plan, work)) {
+    if (tests_instead(options)) {  // nothing is drawn: places and patches are not needed
+      work.regions.triangles.resize(scene.triangles.size());
+      std::iota(work.regions.triangles.begin(), work.regions.triangles.end(), 0u);
+    } else {
+      find_places(scene, plan, work);
+    }
+  }
   if (options.objects_alone && work.patches.cut) {
     throw Error("{level}", "an object that is tested against itself is asked in patches",
                 "leave {level} objects or the self-collision out");
@@ -299,21 +297,22 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
 }
 
 Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& session,
-                           const Progress& progress) {
+                           const Progress& progress, const TakePairs& take) {
   const auto& work = std::get<DrawPlan>(plan.work);
   const Stopwatch watch;
   Candidates out;
   out.by = std::vector<ViewReport>();
   if (work.fatteners.empty()) {
-    if (!work.pairs) out.triangles = work.regions.triangles;
     out.device.note = reason_of(plan.trace.back()) + ": nothing to draw";
   } else {
     cull_by_offsets(scene, work, plan.options, session, progress, out);
   }
   const Stopwatch join;
   if (progress) progress("joining boxes");
-  const std::uint64_t left =
-      work.pairs ? work.pairs->drawn.size() + work.pairs->other.size() : out.triangles.size();
+  const bool all = work.fatteners.empty() && !work.pairs;
+  const std::uint64_t left = work.pairs ? work.pairs->drawn.size() + work.pairs->other.size()
+                             : all      ? work.regions.triangles.size()
+                                        : out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
   if (work.pairs) {
     out.pairs = work.pairs->drawn;
@@ -327,10 +326,18 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
     add_members(scene, out);
   } else {
-    out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles,
-                         SIZE_MAX, session.threads());
+    const unsigned threads = session.threads();
+    OrderedPairs pairs = all && left > 0
+                             ? OrderedPairs(scene, 0, {}, plan.options.neighbours, threads)
+                             : OrderedPairs(boxes, join_owners(scene), out.triangles, threads);
+    if (take) {
+      out.count = pairs.give(take);
+      out.given = true;
+    } else {
+      out.pairs = pairs.all();
+    }
   }
-  out.count = out.pairs.size();
+  if (!out.given) out.count = out.pairs.size();
   Stage stage = join_stage(work);
   stage.ms = join.ms();
   stage.in = left;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/stage.h"
+#include "core/boxes/join.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -34,9 +35,10 @@ class Session;      // session.h
 /// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are set.
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
-/// Runs the method: finds the candidates of the scene that was planned.
+/// Runs the method: finds the candidates of the scene that was planned. take: receives them as they
+/// are found, if a tree of boxes finds them (Candidates::given); empty: they are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
-                                const Progress& progress);
+                                const Progress& progress, const TakePairs& take);
 
 /// When a method promises to miss no pair.
 enum class Promises { never, always, at_budget_radius };

@@ -122,7 +122,7 @@ void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
 }
 
 Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
-                      const Progress& progress) {
+                      const Progress& progress, const TakePairs&) {
   if (progress) progress("exact tests of every pair");
   ExactResult result = all_colliding_pairs(scene,
                                            {.clearance = plan.options.clearance,
@@ -137,23 +137,14 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   out.ignored = result.ignored;
   out.ms = result.join_ms;
   out.decided_ms = result.predicates_ms;
-  const std::size_t colliding = result.pairs.size() + result.neighbour_pairs.size();
-  out.decided = Collisions{.pairs = std::move(result.pairs),
-                           .neighbour_pairs = std::move(result.neighbour_pairs),
-                           .neighbours = result.neighbours};
+  out.given = true;
+  out.decided = std::move(result);
   out.trace.push_back({.kind = StageKind::join,
                        .ran = true,
                        .reason = Reason::join_all,
                        .ms = out.ms,
                        .in = scene.triangles.size(),
                        .out = out.count,
-                       .unit = Unit::pairs});
-  out.trace.push_back({.kind = StageKind::exact,
-                       .ran = true,
-                       .reason = Reason::predicates,
-                       .ms = out.decided_ms,
-                       .in = out.count,
-                       .out = colliding,
                        .unit = Unit::pairs});
   return out;
 }
@@ -191,7 +182,7 @@ void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
 }
 
 Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
-                         const Progress& progress) {
+                         const Progress& progress, const TakePairs&) {
   if (progress) progress("sweep and prune");
   const Stopwatch watch;
   if (plan.options.full) session.sweep().forget();
@@ -250,9 +241,10 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
 
 namespace {
 
-void take(PairResult&& result, Candidates& out) {
+void move_to(Candidates& out, PairResult&& result) {
   out.pairs = std::move(result.candidates);
-  out.count = out.pairs.size();
+  out.given = result.given;
+  out.count = out.given ? result.stages.back().out : out.pairs.size();
   out.by = std::move(result.views);
   out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
 }
@@ -260,7 +252,7 @@ void take(PairResult&& result, Candidates& out) {
 }  // namespace
 
 Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session,
-                          const Progress& progress) {
+                          const Progress& progress, const TakePairs& take) {
   const auto& pairs = std::get<PairPlan>(plan.work);
   Candidates out;
   out.by = std::vector<PairView>();
@@ -276,9 +268,8 @@ Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session
     out.device = {.gl = {}, .cpu = true, .note = "boxes of runs decide: no view", .relies = {}};
     out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
     const Stopwatch watch;
-    take(find_pairs(scene, pairs, *cpu_pair_backend(session.threads()), session.pair_workspace(),
-                    progress),
-         out);
+    move_to(out, find_pairs(scene, pairs, *cpu_pair_backend(session.threads()),
+                            session.pair_workspace(), progress, take));
     out.ms = watch.ms();
     return out;
   }
@@ -295,7 +286,7 @@ Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session
                        .ms = out.setup_ms});
 
   const Stopwatch watch;
-  take(find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress), out);
+  move_to(out, find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress, take));
   out.ms = watch.ms();
   return out;
 }

@@ -241,9 +241,9 @@ const Option kOptions[] = {
      .help = "which boxes come before drawing. objects: a triangle\n"
              "is drawn if its box meets that of another object, as\n"
              "published; triangles: that of a triangle of one; enough:\n"
-             "the same, and nothing is drawn if exact tests of the\n"
-             "pairs take less time; default enough for far where\n"
-             "it promises to miss nothing, else objects",
+             "the same, but on the cores of a CPU nothing is drawn,\n"
+             "since exact tests take less time; default enough for\n"
+             "far where it promises to miss nothing, else objects",
      .serves = drawing_levels,
      .take =
          [](Given text, RunOptions& o) {

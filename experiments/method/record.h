@@ -41,15 +41,16 @@ struct SweptObjects {
 };
 
 struct Candidates {
-  std::vector<TrianglePair> pairs;       // sorted; empty if `decided` is set
+  std::vector<TrianglePair> pairs;       // sorted; empty if they were given
+  bool given = false;                    // they were decided as they were found, and not listed
   std::uint64_t count = 0;               // of candidate pairs
   std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
   std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for far-pairs
-                                         // run() fills it from the pairs; empty if `decided`
-                                         // is set, as all are kept
+                                         // run() fills it from the pairs; empty for a method that
+                                         // culls nothing, as all are kept
   std::uint64_t triangle_count = 0;      // of the potentially colliding set
   std::uint64_t object_count = 0;
-  std::optional<Collisions> decided;  // set by a method that decides candidates as it finds them
+  std::optional<Collisions> decided;  // set if they were given
   /// The views of a drawing method, or of far-pairs; or the objects of a sweep.
   std::variant<std::monostate, std::vector<ViewReport>, std::vector<PairView>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
@@ -58,7 +59,7 @@ struct Candidates {
   std::vector<Stage> trace;
   double setup_ms = 0;    // context, shaders; 0 if an earlier run had made them
   double ms = 0;          // of finding, without setup
-  double decided_ms = 0;  // of deciding, if `decided` is set; not part of ms
+  double decided_ms = 0;  // of deciding, if they were given; not part of ms
 
   /// The views in `by`; empty if it holds another kind.
   const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }

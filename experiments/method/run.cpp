@@ -2,8 +2,12 @@
 #include "experiments/method/run.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
@@ -18,51 +22,106 @@ void count_kept(const Scene& scene, Candidates& found) {
   found.object_count = count_objects(scene, found.triangles);
 }
 
+// Decides candidates as they are found, in the threads that find them, and marks their triangles.
+class Deciding {
+ public:
+  Deciding(const Scene& scene, const Plan& plan, const ExactQuestion& question)
+      : scene_(scene),
+        is_ignored_(scene, plan.options.ignored),
+        question_(question),
+        kept_(scene.triangles.size(), 0) {
+    question_.threads = 1;
+  }
+
+  void operator()(std::vector<TrianglePair>& some) {
+    const Stopwatch watch;
+    const std::uint64_t removed = is_ignored_.any() ? std::erase_if(some, is_ignored_) : 0;
+    for (const TrianglePair& pair : some) {
+      std::atomic_ref(kept_[pair.a]).store(1, std::memory_order_relaxed);
+      std::atomic_ref(kept_[pair.b]).store(1, std::memory_order_relaxed);
+    }
+    const Collisions decided = decide(scene_, some, question_);
+    const std::scoped_lock lock(mutex_);
+    collisions_.append(decided);
+    ignored_ += removed;
+    threads_.insert(std::this_thread::get_id());
+    ms_ += watch.ms();
+  }
+
+  // The stage before is that of finding, and its time that of both.
+  void finish(Candidates& found) {
+    if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
+    found.ignored = ignored_;
+    found.count -= ignored_;
+    std::ranges::sort(collisions_.pairs);
+    std::ranges::sort(collisions_.neighbour_pairs);
+    found.decided = std::move(collisions_);
+    found.decided_ms = ms_;
+    found.ms -= ms_;
+    found.trace.back().ms -= ms_;
+    if (!found.triangles.empty()) return;
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (kept_[t] != 0) found.triangles.push_back(t);
+    }
+    found.triangle_count = found.triangles.size();
+    found.object_count = count_objects(scene_, found.triangles);
+  }
+
+ private:
+  const Scene& scene_;
+  const IgnoredObjects is_ignored_;
+  ExactQuestion question_;
+  std::vector<std::uint8_t> kept_;  // per triangle
+  std::mutex mutex_;                // of all below
+  Collisions collisions_;
+  std::uint64_t ignored_ = 0;
+  std::set<std::thread::id> threads_;
+  double ms_ = 0;  // of all threads together
+};
+
 // Plans and finds. The plan's memory is freed on return, for the next stages.
-void find_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
+void find_stage(const Scene& scene, Session& session, const Progress& progress,
+                const ExactQuestion* question, Record& record) {
   const Plan planned =
       plan(scene, record.options, session.threads(), progress, session.pair_memory());
   record.options.ignored = planned.options.ignored;
   record.plan = planned.stages();
-  record.found = find(scene, planned, session, progress);
+  record.found = find(scene, planned, session, progress, question);
   record.trace = planned.trace;
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   record.ms.setup = record.found.setup_ms;
   record.ms.cull = planned.ms + record.found.ms;
 }
 
-// Decides the candidates, or takes the answers of a method that decides each candidate when it
-// finds it. The stage of such a method is in the trace already.
+// Decides the candidates, or takes the answers if they were decided as they were found.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
-                  bool decide_neighbours, Record& record) {
+                  const ExactQuestion& question, Record& record) {
   const RunOptions& options = record.options;
-  if (record.found.decided) {
-    record.collisions = *std::move(record.found.decided);
-    record.found.decided.reset();
-    record.ms.exact = record.found.decided_ms;
-    record.decided = record.found.count;
-    return;
-  }
   Stage stage{.kind = StageKind::exact,
               .depends = !options.full,
               .reason = Reason::no_candidates,
               .unit = Unit::pairs};
-  if (!record.found.pairs.empty() || options.full) {
+  const auto ran = [&](double ms) {
+    stage.ran = true;
+    stage.reason = Reason::predicates;
+    stage.ms = record.ms.exact = ms;
+    stage.in = record.decided;
+    stage.out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size();
+  };
+  if (record.found.decided) {
+    record.collisions = *std::move(record.found.decided);
+    record.found.decided.reset();
+    record.decided = record.found.count;
+    ran(record.found.decided_ms);
+  } else if (!record.found.pairs.empty() || options.full) {
     if (progress) progress("exact tests");
     const Stopwatch watch;
-    const ExactQuestion question{.clearance = options.clearance,
-                                 .threads = session.cpu_threads(),
-                                 .neighbours = options.neighbours && decide_neighbours};
     FirstCollisions first =
         decide(scene, record.found.pairs, question, options.limit, session.frame_decider());
     record.collisions = std::move(first.collisions);
     record.decided = first.decided;
     record.complete = first.complete;
-    stage.ran = true;
-    stage.reason = Reason::predicates;
-    stage.ms = record.ms.exact = watch.ms();
-    stage.in = record.decided;
-    stage.out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size();
+    ran(watch.ms());
   }
   record.trace.push_back(stage);
 }
@@ -72,10 +131,10 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
   if (record.options.verify) {
     if (progress) progress("accounting for every pair");
-    const bool culled = culls(record.options.method);
-    const std::vector<TrianglePair> decided =
-        culled ? std::vector<TrianglePair>() : pairs_left(record);
-    record.verification = account(scene, culled ? record.found.pairs : decided,
+    const bool given = record.found.given;
+    const std::vector<TrianglePair> colliding =
+        given ? record.collisions.all() : std::vector<TrianglePair>();
+    record.verification = account(scene, given ? colliding : record.found.pairs,
                                   {.clearance = record.options.clearance,
                                    .max_examples = std::numeric_limits<std::size_t>::max(),
                                    .ignored = record.options.ignored});
@@ -105,10 +164,16 @@ void contact_stage(const Scene& scene, Session& session, const Progress& progres
 
 }  // namespace
 
-Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress) {
+Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress,
+                const ExactQuestion* question) {
   const FloatingPointGuard guard;
   try {
-    Candidates found = traits(plan.options.method).find(scene, plan, session, progress);
+    std::optional<Deciding> deciding;
+    if (question) deciding.emplace(scene, plan, *question);
+    Candidates found = traits(plan.options.method)
+                           .find(scene, plan, session, progress,
+                                 question ? TakePairs(std::ref(*deciding)) : TakePairs());
+    if (found.given && !found.decided) deciding->finish(found);
     const std::uint64_t removed = remove_ignored(scene, plan.options.ignored, found.pairs);
     found.ignored += removed;
     found.count -= removed;
@@ -142,7 +207,12 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   Record record;
   record.callers = callers_floating_point();
   record.options = options;
-  find_stage(scene, session, progress, record);
+  const ExactQuestion question{.clearance = options.clearance,
+                               .threads = session.cpu_threads(),
+                               .neighbours = options.neighbours && use.decide_neighbours};
+  // A filter and a limit need the list of all candidates.
+  const bool lists = use.filter || options.limit > 0;
+  find_stage(scene, session, progress, lists ? nullptr : &question, record);
   Candidates& found = record.found;
   if (!use.answer_only) {
     record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;
@@ -150,8 +220,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     record.promise = promise_of(options, found.device, session);
   }
   if (use.filter) {
-    if (found.decided)
-      throw std::logic_error("run: no filter, since the method decides as it finds");
+    if (found.given) throw std::logic_error("run: no filter, since the method culls nothing");
     verify_stage(scene, progress, record);
     use.filter(found.pairs);
     found.count = found.pairs.size();
@@ -159,11 +228,11 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   // If the method returns only pairs, their triangles are counted here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
   if (only_pairs && !use.answer_only) count_kept(scene, found);
-  decide_stage(scene, session, progress, use.decide_neighbours, record);
+  decide_stage(scene, session, progress, question, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
-  // A method that decides each candidate when it finds it has given all pairs, also those beyond
-  // the limit. For other methods decide() has kept the limit.
+  // A method that culls nothing has decided all pairs, also those beyond the limit. For other
+  // methods decide() has kept the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too
@@ -199,8 +268,7 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 }
 
 std::vector<TrianglePair> pairs_left(const Record& record) {
-  if (culls(record.options.method)) return record.found.pairs;
-  return record.collisions.all();
+  return record.found.given ? record.collisions.all() : record.found.pairs;
 }
 
 bool broken(const Record& record, bool strict) {

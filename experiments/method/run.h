@@ -15,10 +15,12 @@
 namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// Throws Error for any fault of the device. After any exception the session has forgotten its
-/// device, and can be used again.
+/// question: decides candidates as they are found where a tree of boxes finds them, so that
+/// memory does not grow with their number; null: lists them all, but for a method that culls
+/// nothing. Throws Error for any fault of the device. After any exception the session has forgotten
+/// its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
-                const Progress& progress = {});
+                const Progress& progress = {}, const ExactQuestion* question = nullptr);
 
 /// The promise of the method on the device that it used, by the session's verdict about the device.
 /// After an exception the session has forgotten its device, as after find().
@@ -55,8 +57,8 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
 /// their order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// The pairs that were left to the exact tests, sorted. For a method that culls nothing: the
-/// colliding pairs, neighbours included, so that every other pair has to be accounted for.
+/// The pairs that were left to the exact tests, sorted. If these were decided as they were found:
+/// the colliding pairs, neighbours included, so that every other pair has to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
 /// Whether the record breaks a guarantee: a pair was missed by a method that promises to miss none.

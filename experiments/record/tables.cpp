@@ -243,7 +243,7 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-// Whether boxes left so little that nothing was drawn.
+// Whether exact tests took the place of drawing.
 bool was_not_drawn(const Record& r) {
   return draws(r.options.method) && boxes_of(r.options) == BoxLevel::enough &&
          r.found.views().empty();
@@ -467,8 +467,8 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
               : ".\n";
   if (std::ranges::any_of(records, was_not_drawn)) {
     out +=
-        "- for far: nothing was drawn, since boxes leave few pairs; --boxes triangles draws "
-        "them.\n";
+        "- for far: nothing was drawn, since exact tests take less time on a CPU;\n"
+        "  --boxes triangles draws.\n";
   }
   if (reference) {
     out +=

@@ -5,8 +5,10 @@ of its own. PAGE is written as Markdown, FIGURE as SVG. `bash experiments/result
 """
 import datetime
 import json
+import math
 import os
 import pathlib
+import random
 import statistics
 import subprocess
 import sys
@@ -20,6 +22,8 @@ SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dra
           "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers fans stack "
           "mannequin-devil+self").split()
 FORMS = ["objects", "triangles", "enough", "exact"]
+# Scenes of the list whose exact tests take longer than their views, and in which views are tried.
+LOOKED_AT, DIRECTIONS, SIDES = ("needles-crossed", "needles-layers", "fans", "mannequin-devil+self"), 20, (64, 256, 1024)
 PARTS = {"boxes": "#e69f00", "views": "#0072b2", "pairs": "#56b4e9", "exact tests": "#009e73"}
 
 
@@ -31,16 +35,24 @@ def part_of(stage):
     return {"join": "pairs", "exact": "exact tests"}.get(name, "views")
 
 
-def run(program, scene, form):
-    """Milliseconds of each part, the triangles that boxes and each view of round 1 left, pairs tested, pairs found."""
+def record_of(program, command, scene, *words):
+    """What a command of the program says about a scene, as JSON."""
     name, *flags = scene.split("+")
-    words = ["--method", "exact"] if form == "exact" else ["--method", "far", "--boxes", form, "--device", "native",
-                                                           "--resolution", str(SIDE)]
-    out = subprocess.run([program, "run", name, *words, *(f"--{flag}" for flag in flags), "--no-verify", "--json", "-"],
+    out = subprocess.run([program, command, name, *words, *(f"--{flag}" for flag in flags), "--json", "-"],
                          capture_output=True, text=True)
     if out.returncode not in (0, 1):
-        sys.exit(f"stages: {scene}, {form}: {out.stderr.strip()}")
-    record = json.loads(out.stdout)
+        sys.exit(f"stages: {scene}, {' '.join(words)}: {out.stderr.strip()}")
+    return json.loads(out.stdout)
+
+
+def drawn(form, side, *words):
+    return ("--method", "far", "--boxes", form, "--device", "native", "--resolution", str(side), "--no-verify", *words)
+
+
+def run(program, scene, form):
+    """Milliseconds of each part, the triangles that boxes and each view of round 1 left, pairs tested, pairs found."""
+    words = ("--method", "exact", "--no-verify") if form == "exact" else drawn(form, SIDE)
+    record = record_of(program, "run", scene, *words)
     ms, left = dict.fromkeys(PARTS, 0.0), {}
     for stage in record["stages"]:
         if not stage["ran"]:
@@ -114,6 +126,33 @@ def table(results):
     return rows
 
 
+def looked_along(program, scene):
+    """A row: what one view of `--boxes triangles` leaves at best, in the axes and random directions."""
+    numbers = random.Random(1)
+    directions = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    while len(directions) < DIRECTIONS:
+        at = [numbers.gauss(0, 1) for _ in range(3)]
+        directions.append([x / math.hypot(*at) for x in at])
+    found = []
+    for direction in directions:
+        for side in SIDES:
+            view = ":".join(f"{x:.6g}" for x in direction)
+            record = record_of(program, "run", scene, *drawn("triangles", side, "--views", view, "--rounds", "1"))
+            found.append((record["candidate_pairs"], record["pcs"]["triangles"], side, view))
+    pairs, triangles, side, view = min(found)
+    before = record_of(program, "run", scene, *drawn("enough", SIDE))
+    best = "-" if pairs == before["candidate_pairs"] else f"{view} at {side} px"
+    return (f"| {scene.replace('+', ' --')} | {before['pcs']['triangles']:,} | {before['candidate_pairs']:,} | {triangles:,} | "
+            f"{pairs:,} | {best} |")
+
+
+def beside_peers(program, scene):
+    """A row: FAR beside the fastest of all libraries that `bench` asks."""
+    record = record_of(program, "bench", scene, "--methods", "far", "--device", "cpu", "--repeat", "9", "--limit", "5")
+    (far,) = (row for row in record["rows"] if row["name"] == "far")
+    return f"| {scene.replace('+', ' --')} | {record['fastest_peer']} | {far['ratio_to_fastest_peer']:.2f} |"
+
+
 def main():
     program, page, picture, *scenes = sys.argv[1:]
     results = measure(program, scenes or SCENES)
@@ -133,7 +172,18 @@ def main():
         "**Where pixels add nothing:** compare *tests* of the form `enough` with *views* of the form `triangles`. Even a "
         "culling that removed every pair for nothing could save no more than these tests. A scene gains by drawing only if "
         "its views take less.", "",
-        f"![Stages](figures/{pathlib.Path(picture).name})", "", *table(results), ""]
+        f"![Stages](figures/{pathlib.Path(picture).name})", "", *table(results), "",
+        "## Directions", "",
+        f"What one view of the form `triangles` leaves at best, of {DIRECTIONS} directions (the axes, others at random) at "
+        f"{', '.join(map(str, SIDES))} px, on the scenes whose exact tests take longest. *Triangles* and *pairs* are those "
+        "of boxes. A triangle is culled only if it lies in front of everything in all of its pixels; `far-pairs`, which "
+        "compares two depth intervals at a time, takes most of these pairs away.", "",
+        "| scene | triangles | pairs | triangles left | pairs left | best view |", "|" + "---|" * 6,
+        *(looked_along(program, scene) for scene in LOOKED_AT if scene in results), "",
+        "## Beside other libraries", "",
+        "Time of FAR, exact tests included, over that of the fastest library of `farcull bench`; medians of 9 in turn in one "
+        "process, with all cores.", "", "| scene | fastest library | FAR over it |", "|---|---|---|",
+        *(beside_peers(program, scene) for scene in results), ""]
     pathlib.Path(page).write_text("\n".join(lines), encoding="utf-8")
 
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <mutex>
+
 #include "core/boxes/block.h"
 #include "tests/lab/boxes.h"
 #include "tests/lab/rational.h"
@@ -209,7 +211,7 @@ std::vector<TrianglePair> by_search(const Scene& scene, double clearance,
 std::vector<TrianglePair> streamed(const Scene& scene, double clearance,
                                    const std::vector<ObjectPair>& ignored, unsigned threads,
                                    std::size_t most) {
-  OrderedPairs pairs(scene, clearance, ignored, threads);
+  OrderedPairs pairs(scene, clearance, ignored, true, threads);
   std::vector<TrianglePair> out, part;
   while (!pairs.at_end()) {
     pairs.next(most, part);
@@ -218,6 +220,23 @@ std::vector<TrianglePair> streamed(const Scene& scene, double clearance,
   }
   pairs.next(most, part);
   EXPECT_TRUE(part.empty());
+  return out;
+}
+
+// What give() gives, sorted.
+std::vector<TrianglePair> given(const Scene& scene, double clearance,
+                                const std::vector<ObjectPair>& ignored, bool neighbours,
+                                unsigned threads) {
+  std::vector<TrianglePair> out;
+  std::mutex mutex;
+  OrderedPairs pairs(scene, clearance, ignored, neighbours, threads);
+  const std::uint64_t count = pairs.give([&](std::vector<TrianglePair>& some) {
+    const std::scoped_lock lock(mutex);
+    out.insert(out.end(), some.begin(), some.end());
+  });
+  EXPECT_EQ(count, out.size());
+  EXPECT_TRUE(pairs.at_end());
+  std::ranges::sort(out);
   return out;
 }
 
@@ -231,9 +250,18 @@ TEST(OrderedPairs, AreAllPairsInOrderWhateverThePartsAndThreads) {
     const double clearance = random.coin() ? 0 : 0.25;
     const std::vector<TrianglePair> expected = by_search(scene, clearance, ignored);
     found += expected.size();
-    for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}})
-      for (const unsigned threads : {1u, 3u})
+    for (const unsigned threads : {1u, 3u}) {
+      for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}})
         EXPECT_EQ(streamed(scene, clearance, ignored, threads, most), expected) << triangles;
+      EXPECT_EQ(given(scene, clearance, ignored, true, threads), expected) << triangles;
+      std::vector<TrianglePair> others = expected;
+      const std::vector<std::uint32_t> owner = owners(scene);
+      std::erase_if(others, [&](const TrianglePair& pair) {
+        return owner[pair.a] == owner[pair.b] &&
+               share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
+      });
+      EXPECT_EQ(given(scene, clearance, ignored, false, threads), others) << triangles;
+    }
     // The twin: the search notices a pair of objects that is not ignored.
     if (!ignored.empty() && by_search(scene, clearance, {}) != expected) {
       EXPECT_NE(streamed(scene, clearance, {}, 1, 40), expected);

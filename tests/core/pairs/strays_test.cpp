@@ -161,7 +161,7 @@ TEST(Strays, InFramesAreFoundAsWithoutThem) {
 
 // All pairs, and the blocks that were compared for them.
 std::pair<std::size_t, std::uint64_t> pairs_and_blocks(const Scene& scene) {
-  OrderedPairs pairs(scene, 0, {}, 2);
+  OrderedPairs pairs(scene, 0, {}, true, 2);
   std::vector<TrianglePair> part;
   std::size_t count = 0;
   while (!pairs.at_end()) {

@@ -67,7 +67,7 @@ TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
   RunOptions far{.method = Method::far};
   Plan planned = plan(scene, far);
   EXPECT_EQ(decision(planned, "draw"), "left out");
-  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::few_pairs);
+  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::tests_instead);
   const Record exact = run(scene, {.method = Method::exact});
   const Record enough = run(scene, far);
   EXPECT_EQ(enough.collisions.pairs, exact.collisions.pairs);
@@ -117,7 +117,7 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
                                {{Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}}});
   scene.triangles[1][0] = scene.triangles[0][0];
   const RunOptions far{.method = Method::far};
-  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::few_pairs);
+  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::tests_instead);
   const RunOptions all{.method = Method::far, .boxes = BoxLevel::triangles};
   EXPECT_EQ(stage_named(plan(scene, all), "draw").reason, Reason::nothing_to_look_at);
   EXPECT_EQ(run(scene, far).collisions.pairs.size(), 1u);
@@ -127,7 +127,7 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
   const Scene apart = lab::scene_of({{at(0), at(10)}, {at(5), at(15)}});
   EXPECT_EQ(stage_named(plan(apart, far), "draw").reason, Reason::no_box_pairs);
   EXPECT_EQ(stage_named(plan(make_builtin_scene("needles"), far), "draw").reason,
-            Reason::many_in_front);
+            Reason::tests_instead);
 }
 
 // An object that is tested against itself is cut into patches, which are no objects, also where
