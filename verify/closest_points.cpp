@@ -1,4 +1,4 @@
-// Closest points of two triangles, and the nearest of many pairs.
+// Closest points of two triangles, and the planes between the triangles.
 #include "verify/closest.h"
 
 #include <algorithm>
@@ -6,16 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "core/base/floating_point.h"
 #include "verify/closest_features.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
-#include "verify/rounding.h"
+#include "verify/planes_between.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -295,169 +292,76 @@ SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<
   return squared(pair, solve(pair, a, b).found);
 }
 
-// Finds the nearest of many pairs. Bounds in doubles leave the pairs that can be the nearest one;
-// the squared distances of these are compared exactly.
-//
-// Mostly these pairs are of triangles around one corner or edge, and have the same two closest
-// points. Let F and G be the features of closest points of a pair that was solved, and w the
-// difference of these points. If the triangles of another pair have the corners of F and of G, the
-// pair has points as near. It has no nearer points if w . (x - p) < 0 for the other corners x of
-// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G ("Proof
-// of a guess"). Here p and q may be any corners of F and G, since w is perpendicular to both
-// features.
-//
-// Doubles decide this if rounding leaves no doubt. The computed w is the difference of two rounded
-// points: off by u (|p| + |q|) and by u |w| more per axis, u = 2^-53. x - p is off by u of itself.
-// With products and sums the computed product is off by less than 5.1 u |w|.|x - p| +
-// 1.1 u (|p| + |q|).|x - p|; kTie and kTiePoints are larger, and cover the roundings of these
-// bounds, too. A subnormal coordinate is off by 2^-1075 instead, which kTieSubnormal covers.
-// kTieAbsolute covers the underflow of products.
+struct PlanesBetween::Planes {
+  Vector direction;
+  std::array<Vec3, 2> on;  // a corner of a on the one plane, a corner of b on the other
+  long exponent = 0;       // places are multiplied by 2^exponent, so that none is infinite
+};
+
+PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const Scaled pair(a, b);
+  const Answer answer = solve(pair, a, b);
+  if (answer.found.num == 0) throw std::logic_error("PlanesBetween: the triangles meet");
+  auto planes = std::make_shared<Planes>();
+  planes->direction = answer.found.direction;
+  // The direction is perpendicular to the features, so any of their corners is on its plane.
+  planes->on = {a[answer.of_a.index], b[answer.of_b.index]};
+  std::size_t bits = 0;
+  for (const Integer& x : planes->direction)
+    bits = std::max(bits, mpz_sizeinbase(x.get_mpz_t(), 2));
+  planes->exponent = -static_cast<long>(bits) - 4;
+  planes_ = std::move(planes);
+}
 
 namespace {
 
-using filters::DistanceBounds;
-
-using Triangle = std::array<Vec3, 3>;
-
-/// The closest points of a pair, to recognise pairs that have the same ones.
-class SamePoints {
- public:
-  SamePoints(const Triangle& a, const Triangle& b, const Closest& closest)
-      : w_(closest.points[1] - closest.points[0]),
-        off_(kTie * w_.cwiseAbs() +
-             kTiePoints * (closest.points[0].cwiseAbs() + closest.points[1].cwiseAbs()) +
-             Vec3::Constant(kTieSubnormal)),
-        sides_{side_of(a, closest.features[0]), side_of(b, closest.features[1])} {}
-
-  /// True: these are the closest points of a and b too. False: not known.
-  bool are_those_of(const Triangle& a, const Triangle& b) const {
-    return is_behind(sides_[0], a, 1) && is_behind(sides_[1], b, -1);
+/// x times 2^-least, which is an integer.
+Integer integer_of(double x, int least) {
+  int exponent = 0;
+  Integer out(std::ldexp(std::frexp(x, &exponent), 53));
+  const int up = exponent - 53 - least;
+  if (up >= 0) {
+    out <<= static_cast<mp_bitcnt_t>(up);
+  } else {
+    out >>= static_cast<mp_bitcnt_t>(-up);  // zeros alone are lost
   }
-
- private:
-  struct Side {
-    Triangle corners;  // of the feature
-    int count;
-  };
-  static Side side_of(const Triangle& t, const Feature& feature) {
-    if (feature.kind == FeatureKind::face) return {t, 3};
-    return {{t[feature.index], t[(feature.index + 1) % 3], t[feature.index]},
-            feature.kind == FeatureKind::edge ? 2 : 1};
-  }
-  bool is_behind(const Side& side, const Triangle& t, double sense) const {
-    int own = 0;
-    for (const Vec3& x : t) {
-      bool is_own = false;
-      for (int i = 0; i < side.count; ++i) is_own |= x == side.corners[i];
-      if (is_own) {
-        ++own;
-        continue;
-      }
-      const Vec3 from = x - side.corners[0];
-      if (!(sense * w_.dot(from) < -(off_.dot(from.cwiseAbs()) + kTieAbsolute))) return false;
-    }
-    if (own < side.count) return false;
-    for (int i = 0; i < side.count; ++i) {
-      if (t[0] != side.corners[i] && t[1] != side.corners[i] && t[2] != side.corners[i])
-        return false;
-    }
-    return true;
-  }
-
-  Vec3 w_, off_;
-  std::array<Side, 2> sides_;
-};
-
-/// A pair that may be the nearest one: its index, and bounds of its distance.
-struct Candidate {
-  std::size_t at;
-  DistanceBounds bounds;
-};
-
-DistanceBounds bounds_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  if (filter_planes(a, b) == Triage::yes) return {0, 0};
-  return filters::distance_bounds<FilterBounds>(a, b);
-}
-
-/// The pairs, in order, that can be the first of the nearest pairs. Leaves out pairs[0], which is
-/// at most `least` apart, and pairs with the same closest points (`same`), which come after
-/// pairs[0].
-std::vector<Candidate> candidates_of(const Scene& scene, std::span<const TrianglePair> pairs,
-                                     double least, const SamePoints& same) {
-  std::vector<Candidate> out;
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < pairs.size(); ++i) {
-    const Triangle a = scene.corners(pairs[i].a), b = scene.corners(pairs[i].b);
-    if (same.are_those_of(a, b)) continue;
-    const DistanceBounds bounds = bounds_of(a, b);
-    if (bounds.lower > least) continue;
-    least = std::min(least, bounds.upper);
-    out.push_back({i, bounds});
-    if (least == 0 && bounds.upper == 0) break;  // no later pair is the first at distance 0
-    if (out.size() > 2 * kept + 1000) {
-      std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
-      kept = out.size();
-    }
-  }
-  std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
   return out;
 }
 
-double not_below(const Closest& closest) {
-  if (closest.squared.is_zero()) return 0;
-  return std::nextafter(closest.distance, std::numeric_limits<double>::infinity());
-}
-
-NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) {
-  const auto corners = [&](std::size_t at) {
-    return std::array{scene.corners(pairs[at].a), scene.corners(pairs[at].b)};
-  };
-  const auto [first_a, first_b] = corners(0);
-  Closest closest = closest_points(first_a, first_b);
-  if (closest.squared.is_zero()) return {pairs[0], std::move(closest)};
-  std::size_t best = 0, solved = 0;
-  double at_most = not_below(closest);
-  SamePoints same(first_a, first_b, closest);
-  std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
-  // By lower bound, so that near pairs come early. The sort is stable, so pairs with lower bound 0
-  // stay in order, and the first that touches ends the search.
-  std::stable_sort(left.begin(), left.end(), [](const Candidate& x, const Candidate& y) {
-    return x.bounds.lower < y.bounds.lower;
-  });
-  for (const auto& [at, bounds] : left) {
-    if (bounds.lower > at_most) break;  // all later ones are as far
-    if (at_most == 0 && at > best) continue;
-    const auto [a, b] = corners(at);
-    if (at_most > 0 && same.are_those_of(a, b)) {
-      best = std::min(best, at);
-      continue;
-    }
-    const auto order = squared_distance(a, b) <=> closest.squared;
-    if (order > 0 || (order == 0 && at > best)) continue;
-    best = at;
-    if (order == 0) continue;
-    solved = at;
-    closest = closest_points(a, b);
-    same = SamePoints(a, b, closest);
-    at_most = not_below(closest);
-  }
-  if (best != solved) {
-    const auto [a, b] = corners(best);
-    closest = closest_points(a, b);
-  }
-  return {pairs[best], std::move(closest)};
+/// Whether m times 2^exponent is a double.
+bool is_double(const Integer& m, long exponent) {
+  if (m == 0) return true;
+  const auto first = static_cast<long>(mpz_sizeinbase(m.get_mpz_t(), 2)) + exponent;
+  const long last = static_cast<long>(mpz_scan1(m.get_mpz_t(), 0)) + exponent;
+  return first - last <= 53 && last >= -1074 && first <= 1024;
 }
 
 }  // namespace
 
-std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs) {
-  const FloatingPointGuard guard;
-  for (const TrianglePair& pair : pairs) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size())
-      throw std::logic_error("nearest_pair: a pair names a triangle that the scene lacks");
+// Each corner's place is the product of the direction and its difference from a point of the plane,
+// in integers, rounded outward.
+double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
+  const Vec3& origin = planes_->on[side];
+  double out = 0;
+  for (int i = 0; i < 3; ++i) {
+    int least = 2000;
+    for (int k = 0; k < 3; ++k) {
+      if (t[i][k] == origin[k]) continue;
+      for (const double x : {t[i][k], origin[k]}) {
+        if (x != 0) least = std::min(least, lowest_bit(x));
+      }
+    }
+    Integer sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (t[i][k] == origin[k] || planes_->direction[k] == 0) continue;
+      sum += planes_->direction[k] * (integer_of(t[i][k], least) - integer_of(origin[k], least));
+    }
+    const long exponent = least + planes_->exponent;
+    double place = rounded(sum, exponent);
+    if (!is_double(sum, exponent)) place = std::nextafter(place, side == 0 ? HUGE_VAL : -HUGE_VAL);
+    if (i == 0 || (side == 0 ? place > out : place < out)) out = place;
   }
-  if (pairs.empty()) return std::nullopt;
-  return nearest_of(scene, pairs);
+  return out;
 }
 
 }  // namespace farcull

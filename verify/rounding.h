@@ -1,5 +1,5 @@
 // Bounds on the rounding errors of the doubles that the verification computes: in the filters
-// (verify/filter.h), and in the comparison of closest points (verify/closest_points.cpp).
+// (verify/filter.h), and in the comparison of closest points (verify/nearest_pair.cpp).
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ constexpr double kLeastSquare = 0x1p-900;
 /// Rounding of a clearance times a length.
 constexpr double kNeededRounding = 0x1p-50;
 
-// ---- bounds for SamePoints (verify/closest_points.cpp derives them) ----
+// ---- bounds for SamePoints (verify/nearest_pair.cpp derives them) ----
 
 /// Error of a product w . (x - p), relative to the magnitudes of its terms.
 constexpr double kTie = 8 * 0x1p-53;

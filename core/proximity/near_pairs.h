@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -28,6 +29,18 @@ struct NearHint {
   TrianglePair triangles;
 };
 
+/// The first of the nearest of some pairs of triangles, decided exactly. It shows of other pairs
+/// that they are no nearer: a triangle s of the first object and a triangle t of the second one are
+/// as far apart or farther if reach(s) <= start(t), and farther if reach(s) < start(t).
+struct SettledPair {
+  TrianglePair pair;
+  double distance = 0;  // world units, not below the exact one; 0 only if the triangles meet
+  std::function<double(std::uint32_t)> reach, start;  // of a triangle; empty if the distance is 0
+};
+/// Exact arithmetic for a search in which more pairs are equally near than bounds in doubles can
+/// tell apart. Called by several threads at once, with pairs that are sorted.
+using Settle = std::function<SettledPair(std::span<const TrianglePair>)>;
+
 /// The pairs of triangles of two objects that can be nearest. If the two are the same object, these
 /// are its own pairs, without neighbours.
 struct NearPairs {
@@ -36,7 +49,8 @@ struct NearPairs {
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
   /// All pairs of their triangles at the least distance are among these, where that distance is at
-  /// most the limit; where triangles meet, the first pair of those that meet. Sorted, each once.
+  /// most the limit; the first of these pairs is enough where triangles meet, and where the trees
+  /// settle ties. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 
@@ -52,8 +66,9 @@ struct ProximityCounts {
 /// the thread rounds to nearest and keeps subnormals.
 class ProximityTrees {
  public:
-  /// threads: 0 for as many as there are cores; changes no answer.
-  explicit ProximityTrees(const Scene& scene, unsigned threads = 0);
+  /// threads: 0 for as many as there are cores; changes no answer. settle: if it is not empty,
+  /// searches call it where many pairs may be nearest, and keep the settled pair in place of them.
+  explicit ProximityTrees(const Scene& scene, unsigned threads = 0, Settle settle = {});
   ~ProximityTrees();
   ProximityTrees(ProximityTrees&&) noexcept;
   ProximityTrees& operator=(ProximityTrees&&) noexcept;
@@ -82,6 +97,11 @@ class ProximityTrees {
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
+
+  /// All pairs of objects at most `within` apart, each object marked `self` with itself, and
+  /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error where
+  /// there are more than `most` pairs.
+  std::vector<ObjectPair> objects_within(double within, std::size_t most) const;
 
   /// All pairs of triangles at most `within` apart, of different objects, or of one `self` object
   /// if they are no neighbours; and a few that are farther only by roundings. Sorted, each once.

@@ -1,7 +1,7 @@
 // ProximityTrees of near_pairs.h, in a file of this name because search.h includes that header.
 // Each question is a search (core/proximity/scene_trees.h). Searches go on side by side; one that
 // takes long is divided. For the nearest objects, each object asks about the others in the order of
-// the gaps of their boxes, and stops at a gap above the k-th least upper bound so far. For all
+// the gaps of their parts, and stops at a gap above the k-th least upper bound so far. For all
 // pairs within a distance, each object is searched with those that follow it, by searches whose
 // bound stays the limit and that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
@@ -13,6 +13,8 @@
 #include <queue>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -25,13 +27,15 @@ double square_of_gap(const Box& a, const Box& b) {
   return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
 }
 
-// Gives objects in the order of their boxes' gaps from a box; of objects with the same gap the one
-// with the lower number first. All numbers are in scaled units (core/proximity/scene_trees.h).
+// Gives the objects, also this one, in the order of the least gap between a part of the object and
+// a part of this one; of objects with the same gap the one with the lower number first. All numbers
+// are in scaled units (core/proximity/scene_trees.h).
 class Approach {
  public:
-  Approach(const SceneTrees& trees, const Box& box) : trees_(trees), box_(box) {
-    const BoxTree<double>& tree = trees.objects();
-    if (tree.levels > 0) queue_.push({0, tree.levels, 0});
+  Approach(const SceneTrees& trees, std::uint32_t object)
+      : trees_(trees), parts_(trees.parts(object)) {
+    for (std::uint32_t part = 0; part < parts_.size(); ++part)
+      queue_.push({0, trees.objects().levels, 0, part});
   }
   // False if no object is left, or the squared gap of the next one is above the limit.
   bool next(double square_limit, std::uint32_t& object) {
@@ -40,15 +44,18 @@ class Approach {
       queue_.pop();
       if (at.height == 0) {
         object = at.k;
-        return true;
+        if (parts_.size() == 1 && trees_.parts(object).size() == 1) return true;
+        if (given_.insert(object).second) return true;
+        continue;
       }
       const auto below = static_cast<std::size_t>(at.height - 1);
       const WideBoxes<double>& block = trees_.blocks()[trees_.objects().first[below] + at.k];
       for (std::uint32_t lane = 0; lane < kWide; ++lane) {
-        const double square = square_of_gap(block.get(lane), box_);
+        const double square = square_of_gap(block.get(lane), parts_[at.part]);
         if (!(square <= square_limit)) continue;
         const std::uint32_t child = kWide * at.k + lane;
-        queue_.push({square, at.height - 1, at.height > 1 ? child : trees_.object(child)});
+        const std::uint32_t k = at.height > 1 ? child : trees_.object(child);
+        queue_.push({square, at.height - 1, k, at.part});
       }
     }
     return false;
@@ -59,14 +66,16 @@ class Approach {
     double square;
     int height;
     std::uint32_t k;                           // of height 0: the object
+    std::uint32_t part;                        // of this object
     bool operator<(const Node& other) const {  // the nearest one is the top
       if (square != other.square) return square > other.square;
       return height != other.height ? height < other.height : k > other.k;
     }
   };
   const SceneTrees& trees_;
-  Box box_;
+  std::span<const Box> parts_;
   std::priority_queue<Node> queue_;
+  std::unordered_set<std::uint32_t> given_;  // objects that have several pairs of parts
 };
 
 // Bounds of the distance of one other object.
@@ -108,7 +117,7 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
   limit = std::min(limit, kth_least_upper(begun, k));
   std::vector<double> least;  // the k least upper bounds, as a heap
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
-  Approach approach(trees, trees.box(object));
+  Approach approach(trees, object);
   std::uint32_t other = 0;
   std::size_t meeting = 0;
   while (approach.next(near::square_limit(bound()), other)) {
@@ -196,19 +205,20 @@ constexpr std::size_t kBetweenCounts = 64;
 // Counts the pairs of all threads. Throws if they are too many.
 class Count {
  public:
-  explicit Count(std::size_t most) : most_(most) {}
+  Count(std::size_t most, std::string what) : most_(most), what_(std::move(what)) {}
   void add(std::size_t pairs) {
     if (found_.fetch_add(pairs) + pairs <= most_) return;
     throw Error(
         "within",
-        "has more than " + std::to_string(most_) +
-            " pairs of triangles, which are too many to list",
+        "has more than " + std::to_string(most_) + " pairs of " + what_ +
+            ", which are too many to list",
         "give a smaller distance, or ask for the pairs without their distances: farcull run "
         "{clearance}");
   }
 
  private:
   std::size_t most_;
+  std::string what_;
   std::atomic<std::size_t> found_ = 0;
 };
 
@@ -232,13 +242,13 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
                                        unsigned threads, ProximityCounts& counts) {
   const Scene& scene = trees.scene();
   const std::size_t objects = scene.objects.size();
-  Count count(most);
+  Count count(most, "triangles");
   std::vector<std::vector<TrianglePair>> found(objects);
   std::vector<ProximityCounts> parts(objects);
   for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
-    Approach approach(trees, trees.box(object));
+    Approach approach(trees, object);
     std::uint32_t other = 0;
     while (approach.next(near::square_limit(limit), other)) {
       if (other < object || (other == object && !scene.objects[o].self)) continue;
@@ -257,11 +267,34 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
   return out;
 }
 
+// Does ProximityTrees::objects_within(). limit: scaled.
+std::vector<ObjectPair> objects_within(const SceneTrees& trees, double limit, std::size_t most,
+                                       unsigned threads) {
+  const Scene& scene = trees.scene();
+  Count count(most, "objects");
+  std::vector<std::vector<ObjectPair>> found(scene.objects.size());
+  for_each_shared(found.size(), threads, [&](std::size_t o) {
+    const auto object = static_cast<std::uint32_t>(o);
+    Approach approach(trees, object);
+    std::uint32_t other = 0;
+    while (approach.next(near::square_limit(limit), other)) {
+      if (other < object || (other == object && !scene.objects[o].self)) continue;
+      count.add(1);
+      found[o].push_back({object, other});
+    }
+    std::ranges::sort(found[o]);
+  });
+  std::vector<ObjectPair> out;
+  for (const std::vector<ObjectPair>& pairs : found)
+    out.insert(out.end(), pairs.begin(), pairs.end());
+  return out;
+}
+
 }  // namespace
 
 struct ProximityTrees::State {
-  State(const Scene& scene, unsigned thread_count)
-      : trees(scene, thread_count), threads(thread_count) {}
+  State(const Scene& scene, unsigned thread_count, Settle settle)
+      : trees(scene, thread_count, std::move(settle)), threads(thread_count) {}
 
   SceneTrees trees;
   unsigned threads;
@@ -276,8 +309,8 @@ struct ProximityTrees::State {
   }
 };
 
-ProximityTrees::ProximityTrees(const Scene& scene, unsigned threads)
-    : state_(std::make_unique<State>(scene, threads)) {}
+ProximityTrees::ProximityTrees(const Scene& scene, unsigned threads, Settle settle)
+    : state_(std::make_unique<State>(scene, threads, std::move(settle))) {}
 ProximityTrees::~ProximityTrees() = default;
 ProximityTrees::ProximityTrees(ProximityTrees&&) noexcept = default;
 ProximityTrees& ProximityTrees::operator=(ProximityTrees&&) noexcept = default;
@@ -315,7 +348,7 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
   if (progress) progress("near pairs");
   const double limit = scaled_limit(trees, within);
   std::vector<NearPairs> out(questions.size());
-  std::vector<Search> long_ones(questions.size());
+  std::vector<std::unique_ptr<Search>> long_ones(questions.size());
   for_each_with_memory<SearchMemory>(
       questions.size(), state_->threads, [&](std::size_t k, SearchMemory& memory) {
         const ObjectPair& objects = questions[k];
@@ -327,16 +360,16 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
           out[k] = answer(trees, search);
           state_->add(search.counts);
         } else {
-          long_ones[k] = std::move(search);
+          long_ones[k] = std::make_unique<Search>(std::move(search));
         }
       });
   for (std::size_t k = 0; k < questions.size(); ++k) {
-    Search& search = long_ones[k];
-    if (search.open.empty()) continue;
+    if (!long_ones[k]) continue;
+    Search& search = *long_ones[k];
     go_on_divided(trees, state_->threads, search);
     out[k] = answer(trees, search);
     state_->add(search.counts);
-    search = Search();
+    long_ones[k].reset();
   }
   return out;
 }
@@ -371,6 +404,12 @@ std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double wit
                                                        std::span<const NearHint> hints,
                                                        const Progress& progress) const {
   return state_->nearest(k, within, hints, false, progress);
+}
+
+std::vector<ObjectPair> ProximityTrees::objects_within(double within, std::size_t most) const {
+  if (!(within >= 0)) throw std::logic_error("objects_within: within is not a distance");
+  return farcull::objects_within(state_->trees, scaled_limit(state_->trees, within), most,
+                                 state_->threads);
 }
 
 std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_t most,

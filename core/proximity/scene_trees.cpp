@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 
 namespace farcull {
 
-SceneTrees::SceneTrees(const Scene& scene, unsigned threads)
-    : scene_(&scene), of_(make_ordered_blocks(scene, 0, threads)) {
+SceneTrees::SceneTrees(const Scene& scene, unsigned threads, Settle settle)
+    : scene_(&scene), settle_(std::move(settle)), of_(make_ordered_blocks(scene, 0, threads)) {
   choose_scale();
   make_trees(threads);
   make_object_tree();
@@ -33,7 +34,7 @@ void SceneTrees::make_trees(unsigned threads) {
     first[o] = blocks;
     blocks += blocks_of_tree(of_.count(static_cast<std::uint32_t>(o)));
   }
-  blocks_.resize(blocks + blocks_of_tree(objects));
+  blocks_.resize(blocks);
   least_.resize(blocks);
   trees_.resize(objects);
   place_.resize(of_.ranges.size());
@@ -76,24 +77,113 @@ void SceneTrees::find_least(std::uint32_t object) {
   }
 }
 
+namespace {
+
+// The most parts of an object.
+constexpr std::size_t kMostParts = 64;
+
+// A node of an object's tree; or, with height -1, one triangle of leaf k / kWide.
+struct Part {
+  Box box;
+  double square;  // of the box's diagonal
+  int height;
+  std::uint32_t k;
+};
+Part part_of(const Box& box, int height, std::uint32_t k) {
+  return {box, (box.hi - box.lo).squaredNorm(), height, k};
+}
+
+std::vector<Part> children_of(const SceneTrees& trees, std::uint32_t object, const Part& part) {
+  std::vector<Part> out;
+  if (part.height == 0) {
+    const std::uint32_t leaf = trees.leaf(object, part.k);
+    for (std::uint32_t k = 0; k < trees.count(leaf); ++k) {
+      Box box = Box::empty();
+      for (std::size_t c = 0; c < 3; ++c) box.add(trees.corner(trees.triangle(leaf, k), c));
+      out.push_back(part_of(box, -1, k));
+    }
+    return out;
+  }
+  const auto below = static_cast<std::size_t>(part.height - 1);
+  const WideBoxes<double>& block = trees.blocks()[trees.tree(object).first[below] + part.k];
+  for (std::uint32_t lane = 0; lane < kWide; ++lane) {
+    const Box box = block.get(lane);
+    if (!box.is_empty()) out.push_back(part_of(box, part.height - 1, kWide * part.k + lane));
+  }
+  return out;
+}
+
+}  // namespace
+
+// Divides nodes into their children, the largest first, where the squared diagonals of the children
+// sum to less than half that of the node. Those of a compact surface sum to about as much as that
+// of its box, so it stays one part. Triangles far from each other have small boxes.
+void SceneTrees::add_parts(std::uint32_t object) {
+  const auto is_smaller = [](const Part& x, const Part& y) { return x.square < y.square; };
+  std::vector<Part> open = {part_of(trees_[object].box, trees_[object].levels, 0)};
+  const std::size_t most = parts_.size() + kMostParts;
+  while (!open.empty()) {
+    std::ranges::pop_heap(open, is_smaller);
+    const Part part = open.back();
+    open.pop_back();
+    if (part.height >= 0) {
+      const std::vector<Part> children = children_of(*this, object, part);
+      double sum = 0;
+      for (const Part& child : children) sum += child.square;
+      const bool divides = sum < part.square / 2 || children.size() == 1;
+      if (divides && parts_.size() + open.size() + children.size() <= most) {
+        for (const Part& child : children) {
+          open.push_back(child);
+          std::ranges::push_heap(open, is_smaller);
+        }
+        continue;
+      }
+    }
+    parts_.push_back(part.box);
+  }
+}
+
 void SceneTrees::make_object_tree() {
   std::vector<std::uint32_t> objects;
-  std::vector<Box> boxes;
   for (std::uint32_t o = 0; o < trees_.size(); ++o) {
-    if (trees_[o].levels == 0) continue;
-    objects.push_back(o);
-    boxes.push_back(trees_[o].box);
+    first_part_.push_back(parts_.size());
+    if (trees_[o].levels > 0) add_parts(o);
+    objects.resize(parts_.size(), o);
   }
-  std::vector<std::uint32_t> order(objects.size());
-  spatial_order(boxes, order);
-  std::vector<Box> leaves(objects.size());
-  object_of_leaf_.resize(objects.size());
+  first_part_.push_back(parts_.size());
+  std::vector<std::uint32_t> order(parts_.size());
+  spatial_order(parts_, order);
+  std::vector<Box> leaves(parts_.size());
+  object_of_leaf_.resize(parts_.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
-    leaves[k] = boxes[order[k]];
+    leaves[k] = parts_[order[k]];
     object_of_leaf_[k] = objects[order[k]];
   }
-  objects_ =
-      make_tree<double>(leaves, blocks_, blocks_.size() - blocks_of_tree(scene_->objects.size()));
+  const std::size_t at = blocks_.size();
+  blocks_.resize(at + blocks_of_tree(leaves.size()));
+  objects_ = make_tree<double>(leaves, blocks_, at);
+}
+
+Reaches::Reaches(const SceneTrees& trees, std::uint32_t object,
+                 const std::function<double(std::uint32_t)>& reach) {
+  const BoxTree<double>& tree = trees.tree(object);
+  triangles.assign(kWide * tree.leaves, -std::numeric_limits<double>::infinity());
+  for (std::uint32_t n = 0; n < tree.leaves; ++n) {
+    const std::uint32_t leaf = trees.leaf(object, n);
+    for (std::uint32_t k = 0; k < trees.count(leaf); ++k)
+      triangles[kWide * n + k] = reach(trees.triangle(leaf, k));
+  }
+  const std::vector<double>* below = &triangles;
+  for (int height = 0; height <= tree.levels; ++height) {
+    std::vector<double> own((below->size() + kWide - 1) / kWide);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const auto from = below->begin() + static_cast<std::ptrdiff_t>(kWide * k);
+      const auto left = below->end() - from;
+      own[k] = *std::max_element(from, from + std::min<std::ptrdiff_t>(left, kWide));
+    }
+    nodes.push_back(std::move(own));
+    below = &nodes.back();
+  }
 }
 
 namespace {

@@ -11,7 +11,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/base/uninitialized.h"
@@ -94,9 +96,10 @@ namespace farcull {
 /// with scaled corners.
 class SceneTrees {
  public:
-  SceneTrees(const Scene& scene, unsigned threads);
+  SceneTrees(const Scene& scene, unsigned threads, Settle settle = {});
 
   const Scene& scene() const { return *scene_; }
+  const Settle& settle() const { return settle_; }  // may be empty
   double scale() const { return scale_; }
   const WideBoxes<double>* blocks() const { return blocks_.data(); }
   /// Its leaves are the blocks of the object, counted from 0.
@@ -111,7 +114,12 @@ class SceneTrees {
   Vec3 corner(std::uint32_t triangle, std::size_t k) const {
     return scene_->vertices[scene_->triangles[triangle][k]] * scale_;
   }
-  Box box(std::uint32_t object) const { return trees_[object].box; }
+  /// Boxes that together contain the triangles of an object: one, or several that are small beside
+  /// the object's box where its triangles lie far apart.
+  std::span<const Box> parts(std::uint32_t object) const {
+    return std::span(parts_).subspan(first_part_[object],
+                                     first_part_[object + 1] - first_part_[object]);
+  }
   /// The least triangle below a node of an object's tree.
   std::uint32_t least(std::uint32_t object, std::size_t height, std::uint32_t k) const {
     const BoxTree<double>& tree = trees_[object];
@@ -120,7 +128,7 @@ class SceneTrees {
     return least_[tree.first[height] + k / kWide][k % kWide];
   }
 
-  /// The tree over the objects that have triangles, and which object each leaf is.
+  /// The tree over the parts of all objects, and of which object each leaf is.
   const BoxTree<double>& objects() const { return objects_; }
   std::uint32_t object(std::uint32_t leaf) const { return object_of_leaf_[leaf]; }
 
@@ -128,13 +136,17 @@ class SceneTrees {
   void choose_scale();
   void make_trees(unsigned threads);
   void find_least(std::uint32_t object);
+  void add_parts(std::uint32_t object);
   void make_object_tree();
 
   const Scene* scene_;
+  Settle settle_;
   double scale_ = 1;
   TriangleBlocks of_;
   std::vector<std::uint32_t> place_;  // of each leaf, into of_.ranges
   std::vector<BoxTree<double>> trees_;
+  std::vector<Box> parts_;
+  std::vector<std::size_t> first_part_;  // of each object, and one behind the last
   BoxTree<double> objects_;
   std::vector<std::uint32_t> object_of_leaf_;
   UninitializedVector<WideBoxes<double>> blocks_;
@@ -192,6 +204,22 @@ struct KeptPair {
   double lower, upper;
 };
 
+/// The reach of each triangle of an object, as SettledPair gives it, and the greatest below each
+/// node of its tree.
+struct Reaches {
+  Reaches(const SceneTrees& trees, std::uint32_t object,
+          const std::function<double(std::uint32_t)>& reach);
+  std::vector<std::vector<double>> nodes;  // by height and number
+  std::vector<double> triangles;           // at kWide * leaf + k
+};
+
+/// What a settled pair shows about the triangles of the objects of a search.
+struct Planes {
+  TrianglePair pair;  // is settled
+  Reaches a;          // of the triangles of objects.a
+  Reaches b;          // the starts of those of objects.b, negated
+};
+
 /// A search that has begun.
 struct Search {
   ObjectPair objects;
@@ -199,11 +227,16 @@ struct Search {
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
   /// The first pair so far that meets for certain. Then a pair behind it is no answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
-  Vec3 direction = Vec3::Zero();  // of a pair with about the bound `upper`; 0: none
-  std::vector<NodePair> open;     // to be looked at, the last one first
+  /// The first of the nearest pairs when pairs were settled last; it is kept.
+  TrianglePair settled = {UINT32_MAX, UINT32_MAX};
+  std::shared_ptr<const Planes> planes;  // of this pair, or of one that is as near or farther
+  bool is_part = false;                  // of a search that was divided; makes no planes
+  Vec3 direction = Vec3::Zero();         // of a pair with about the bound `upper`; 0: none
+  std::vector<NodePair> open;            // to be looked at, the last one first
   std::vector<KeptPair> kept;
   bool everything = false;       // all pairs within the limit are kept, near or not
-  std::size_t kept_most = 1024;  // if more are kept, pairs that cannot be nearest are dropped
+  std::size_t kept_most = 1024;  // if more are kept, those that cannot be nearest are dropped, and
+                                 // then, if the trees have exact arithmetic, all but the nearest
   ProximityCounts counts;
 
   double bound() const { return everything ? limit : std::min(upper, limit); }
@@ -235,6 +268,9 @@ void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemo
 /// divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
+/// Keeps only the nearest pair that is kept, where exact arithmetic is at hand. Pairs that are no
+/// nearer than it and come behind it are no answer. Precondition: some pair is kept.
+void settle(const SceneTrees& trees, Search& search);
 /// A limit in world units, scaled and rounded up.
 double scaled_limit(const SceneTrees& trees, double within);
 /// The answer of a search with nothing open. Sets counts.kept.

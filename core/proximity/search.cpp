@@ -64,7 +64,7 @@ class Searcher {
     while (!search_.open.empty() && looked_at < most) {
       const NodePair at = search_.open.back();
       search_.open.pop_back();
-      if (at.square > square_limit_ || is_behind(at)) continue;
+      if (at.square > square_limit_ || is_behind(at) || is_no_nearer(at)) continue;
       if (at.a_height == 0 && at.b_height == 0) {
         compare_leaves(at);
         ++looked_at;
@@ -96,9 +96,34 @@ class Searcher {
   // Whether all pairs of the nodes come behind one that meets for certain.
   bool is_behind(const NodePair& at) const {
     if (search_.first.a == UINT32_MAX) return false;
+    return search_.is_behind(lower_bound(at));
+  }
+  // No pair of the nodes comes before this one.
+  TrianglePair lower_bound(const NodePair& at) const {
     const TrianglePair lowest = least(at);
     // If the objects are one, either node may hold the lower triangle.
-    return self_ ? search_.is_behind({std::min(lowest.a, lowest.b), 0}) : search_.is_behind(lowest);
+    return self_ ? TrianglePair{std::min(lowest.a, lowest.b), 0} : lowest;
+  }
+  // Whether no pair of the nodes is the answer, since they are no nearer than the settled pair.
+  bool is_no_nearer(const NodePair& at) const {
+    if (!search_.planes) return false;
+    const auto &a = search_.planes->a.nodes, &b = search_.planes->b.nodes;
+    const auto is = [&](double reach, double start) {
+      return reach < start || (reach == start && lower_bound(at) > search_.settled);
+    };
+    return is(a[at.a_height][at.a], -b[at.b_height][at.b]) ||
+           (self_ && is(a[at.b_height][at.b], -b[at.a_height][at.a]));
+  }
+  // The same of triangle i of leaf a and triangle j of leaf b.
+  bool is_no_nearer(const NodePair& at, std::size_t i, std::size_t j,
+                    const TrianglePair& pair) const {
+    if (!search_.planes) return false;
+    const auto &a = search_.planes->a.triangles, &b = search_.planes->b.triangles;
+    const std::size_t s = kWide * at.a + i, t = kWide * at.b + j;
+    const auto is = [&](double reach, double start) {
+      return reach < start || (reach == start && pair > search_.settled);
+    };
+    return is(a[s], -b[t]) || (self_ && is(a[t], -b[s]));
   }
 
   // Descends to the pair of leaves that seems nearest; their nearest corners give a first bound.
@@ -201,7 +226,11 @@ class Searcher {
           columns & near_boxes(b.boxes, OneBox(a.boxes, i), square_limit_, squares);
       if (same) bits &= ~((2u << i) - 1);
       if (directed) bits &= before(b.extreme, a.extreme[i], gap_limit);
-      while (bits != 0) add(a, i, b, next_bit(bits));
+      while (bits != 0) {
+        const std::size_t j = next_bit(bits);
+        const auto pair = std::minmax(a.triangle[i], b.triangle[j]);
+        if (!is_no_nearer(at, i, j, {pair.first, pair.second})) add(a, i, b, j);
+      }
     }
   }
 
@@ -321,6 +350,10 @@ class Searcher {
     }
     if (search_.kept.size() <= search_.kept_most) return;
     search_.filter();
+    if (2 * search_.kept.size() > search_.kept_most && !search_.everything) {
+      settle(trees_, search_);
+      new_bound();
+    }
     search_.kept_most = std::max<std::size_t>(search_.kept_most, 2 * search_.kept.size());
   }
 
@@ -379,12 +412,40 @@ Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double l
   out.objects = objects;
   out.limit = limit;
   if (trees.tree(objects.a).levels == 0 || trees.tree(objects.b).levels == 0) return out;
+  // Planes take time for each triangle, so they are not made for a few pairs.
+  const auto count = [&](std::uint32_t object) {
+    return trees.scene().objects[object].triangle_count;
+  };
+  out.kept_most = std::max<std::size_t>(out.kept_most, (count(objects.a) + count(objects.b)) / 4);
   HWY_DYNAMIC_DISPATCH(begin_search_here)(trees, hint, out, memory);
   return out;
 }
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory) {
   if (search.open.empty()) return;
   HWY_DYNAMIC_DISPATCH(go_on_here)(trees, most, search, memory);
+}
+
+void settle(const SceneTrees& trees, Search& search) {
+  if (!trees.settle()) return;
+  std::vector<TrianglePair> pairs;
+  pairs.reserve(search.kept.size());
+  for (const KeptPair& kept : search.kept) pairs.push_back(kept.pair);
+  std::ranges::sort(pairs);
+  const SettledPair settled = trees.settle()(pairs);
+  KeptPair kept = *std::ranges::find(search.kept, settled.pair, &KeptPair::pair);
+  kept.upper =
+      std::min(kept.upper, settled.distance == 0 ? 0 : scaled_limit(trees, settled.distance));
+  search.upper = std::min(search.upper, kept.upper);
+  search.kept.assign(1, kept);
+  search.settled = settled.pair;
+  if (settled.distance == 0) {
+    search.first = std::min(search.first, settled.pair);
+  } else if (!search.is_part && (!search.planes || search.planes->pair != settled.pair)) {
+    const auto back = [&](std::uint32_t triangle) { return -settled.start(triangle); };
+    search.planes = std::make_shared<const Planes>(
+        Planes{settled.pair, Reaches(trees, search.objects.a, settled.reach),
+               Reaches(trees, search.objects.b, back)});
+  }
 }
 
 void Search::filter() {
@@ -406,6 +467,11 @@ std::vector<Search> divide(Search& search) {
     part.upper = search.upper;
     part.first = search.first;
     part.direction = search.direction;
+    part.settled = search.settled;
+    part.planes = search.planes;
+    part.is_part = true;
+    const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
+    if (settled != search.kept.end()) part.kept.push_back(*settled);
   }
   // The last one is looked at first, in each part as well.
   const std::size_t n = search.open.size();
@@ -422,7 +488,9 @@ void join(Search& part, Search& search) {
   }
   search.first = std::min(search.first, part.first);
   search.open.insert(search.open.end(), part.open.begin(), part.open.end());
-  search.kept.insert(search.kept.end(), part.kept.begin(), part.kept.end());
+  for (const KeptPair& kept : part.kept) {
+    if (kept.pair != search.settled) search.kept.push_back(kept);
+  }
   search.counts.box_pairs += part.counts.box_pairs;
   search.counts.triangle_pairs += part.counts.triangle_pairs;
   part = Search();
@@ -453,6 +521,7 @@ void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search, st
                                        });
     for (Search& part : parts) join(part, search);
     search.filter();
+    if (2 * search.kept.size() > search.kept_most) settle(trees, search);
     require_room(trees, search, most);
   }
 }

@@ -16,6 +16,7 @@
 #include "core/base/stopwatch.h"
 #include "verify/exact.h"
 #include "verify/inside.h"
+#include "verify/planes_between.h"
 
 namespace farcull {
 namespace {
@@ -151,13 +152,12 @@ std::uint64_t count_of_questions(const Scene& scene) {
 
 // Refuses too many pairs of objects: each takes memory from the start, and more for its answer.
 void require_few_questions(const Scene& scene, const DistanceOptions& options) {
-  if (options.pairs != DistancePairs::objects) return;
+  if (options.pairs != DistancePairs::objects || std::isfinite(options.within)) return;
   const std::uint64_t questions = count_of_questions(scene);
-  const std::uint64_t most = options.most_pairs * (std::isfinite(options.within) ? 4 : 1);
-  if (questions <= most) return;
+  if (questions <= options.most_pairs) return;
   throw Error("scene",
               "has " + std::to_string(questions) + " pairs of objects, and at most " +
-                  std::to_string(most) + " are answered",
+                  std::to_string(options.most_pairs) + " are answered",
               "ask for the nearest objects of each ({pairs} nearest), or for the triangles within "
               "a distance ({pairs} all {within} D)");
 }
@@ -237,17 +237,34 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   distances.resize(kept);
 }
 
+// Decides ties for the search: one pair is left of many that are equally near.
+SettledPair settled(const Scene& scene, std::span<const TrianglePair> pairs) {
+  const NearestPair nearest = *nearest_pair(scene, pairs);
+  SettledPair out;
+  out.pair = nearest.pair;
+  if (nearest.closest.squared.is_zero()) return out;
+  out.distance = std::nextafter(nearest.closest.distance, std::numeric_limits<double>::infinity());
+  const PlanesBetween planes(scene.corners(out.pair.a), scene.corners(out.pair.b));
+  out.reach = [&scene, planes](std::uint32_t t) { return planes.reach(scene.corners(t)); };
+  out.start = [&scene, planes](std::uint32_t t) { return planes.start(scene.corners(t)); };
+  return out;
+}
+
 void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
   if (progress) progress("boxes");
-  const ProximityTrees trees(scene, options.threads);
+  const ProximityTrees trees(scene, options.threads, [&scene](std::span<const TrianglePair> pairs) {
+    return settled(scene, pairs);
+  });
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
     near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
   } else {
-    const std::vector<ObjectPair> questions = every_two_objects(scene);
+    const std::vector<ObjectPair> questions =
+        std::isfinite(options.within) ? trees.objects_within(options.within, 4 * options.most_pairs)
+                                      : every_two_objects(scene);
     near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
   }
   record.counts = trees.counts();

@@ -60,7 +60,8 @@ struct DistanceOptions {
   bool verify = false;   // accounts for every pair that was culled
   /// The most answers; more are an error, since each takes some hundreds of bytes. With `all` it
   /// limits pairs of triangles, which are counted while they are listed. With `objects` it limits
-  /// pairs of objects, which are counted at the start; four times as many if `within` is finite.
+  /// pairs of objects, which are counted at the start; if `within` is finite, those whose boxes are
+  /// within it, of which there may be four times as many.
   std::size_t most_pairs = std::size_t{1} << 22;
 };
 

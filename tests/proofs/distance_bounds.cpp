@@ -1,5 +1,5 @@
 // The filter of distances: two points near each other, and the direction between them; and the test
-// whether two pairs have the same closest points (verify/closest_points.cpp). R is the largest
+// whether two pairs have the same closest points (verify/nearest_pair.cpp). R is the largest
 // |coordinate| of the corners relative to one of them, exactly; its computed value is one rounding
 // off.
 #include <array>

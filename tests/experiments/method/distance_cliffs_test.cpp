@@ -1,0 +1,91 @@
+// Inputs that were slow: objects whose triangles lie far apart, and many objects of which few are
+// within the distance. The work is counted. Each count has a twin that exceeds it.
+#include "experiments/method/distances.h"
+#include "tests/experiments/method/distance_truth.h"
+#include "tests/lab/test.h"
+
+namespace farcull {
+namespace {
+
+using CliffTriangle = reference::Triangle;
+
+// Objects of two small triangles in opposite corners of the scene; joined: and one from the one to
+// the other corner, so that no box is small.
+Scene far_triangles(int count, bool joined) {
+  rational::Draws random(41);
+  std::vector<std::vector<CliffTriangle>> objects;
+  for (int k = 0; k < count; ++k) {
+    std::vector<CliffTriangle> object;
+    for (const double corner : {0.0, 1e5}) {
+      const auto along = [&] { return corner + random.below(1000); };
+      const Vec3 p(along(), along(), along());
+      object.push_back({p, p + Vec3(0.1, 0, 0), p + Vec3(0, 0.1, 0)});
+    }
+    if (joined) object.push_back({object[0][0], object[1][0], object[0][0]});
+    objects.push_back(object);
+  }
+  return reference::scene_of(objects);
+}
+
+std::uint64_t pairs_for_nearest(const Scene& scene) {
+  return distances(scene, {.pairs = DistancePairs::nearest}).counts.triangle_pairs;
+}
+
+TEST(DistanceCliffs, NearestOfObjectsWithDistantTrianglesTakesFewSearches) {
+  EXPECT_LT(pairs_for_nearest(far_triangles(200, false)), 8u * 200u);
+}
+TEST(DistanceCliffsTwin, ObjectsOfOnePartAreAllCompared) {
+  EXPECT_GT(pairs_for_nearest(far_triangles(200, true)), 8u * 200u);
+}
+
+TEST(DistanceCliffs, AnswersAboutDistantTrianglesEqualABruteForce) {
+  rational::Draws random(42);
+  for (int k = 0; k < trials(25, 10); ++k) {
+    std::vector<std::vector<CliffTriangle>> objects;
+    for (int o = 0; o < 6; ++o) {
+      std::vector<CliffTriangle> object;
+      for (int n = random.below(8); n >= 0; --n) {
+        const Vec3 middle = 1000 * Vec3(random.below(2), random.below(2), random.below(2));
+        CliffTriangle t;
+        for (Vec3& p : t) p = middle + Vec3(random.below(6), random.below(6), random.below(6));
+        object.push_back(t);
+      }
+      objects.push_back(object);
+    }
+    const Scene scene = reference::scene_of(objects);
+    const distance_lab::Truth truth(scene);
+    for (const double within : {3.0, std::numeric_limits<double>::infinity()}) {
+      for (const DistancePairs pairs : {DistancePairs::objects, DistancePairs::nearest}) {
+        const DistanceOptions options = {.pairs = pairs, .k = 2, .within = within, .verify = true};
+        const DistanceRecord record = distances(scene, options);
+        EXPECT_EQ(distance_lab::answers_of(record), truth.answers(options)) << k;
+        EXPECT_TRUE(record.verification->holds()) << k;
+      }
+    }
+    const DistanceOptions options = {.pairs = DistancePairs::all, .within = 3};
+    EXPECT_EQ(distance_lab::answers_of(distances(scene, options)), truth.answers(options)) << k;
+  }
+}
+
+// Cubes in a row, 0.5 apart: of so many objects only those that follow one another are within 0.6.
+TEST(DistanceCliffs, WithinADistanceOnlyObjectsInReachAreAsked) {
+  std::vector<std::vector<CliffTriangle>> objects;
+  for (int k = 0; k < 400; ++k) {
+    const Vec3 p(1.5 * k, 0, 0);
+    objects.push_back({{p, p + Vec3(1, 0, 0), p + Vec3(1, 1, 1)}});
+  }
+  const Scene scene = reference::scene_of(objects);
+  const auto asked = [&](double within) {
+    const DistanceRecord record = distances(scene, {.within = within});
+    return std::pair(record.trace.front().n, record.distances.size());
+  };
+  EXPECT_EQ(asked(0.4), std::pair(std::uint64_t{0}, std::size_t{0}));
+  EXPECT_EQ(asked(0.6), std::pair(std::uint64_t{399}, std::size_t{399}));
+  // Twin: without a limit all are.
+  EXPECT_EQ(asked(std::numeric_limits<double>::infinity()).first, 400u * 399u / 2);
+  EXPECT_NO_THROW(distances(scene, {.within = 0.6, .most_pairs = 100}));
+  EXPECT_THROW(distances(scene, {.within = 0.6, .most_pairs = 99}), Error);
+}
+
+}  // namespace
+}  // namespace farcull
