@@ -20,6 +20,7 @@
 #include "core/base/uninitialized.h"
 #include "core/boxes/join.h"
 #include "core/boxes/lanes-inl.h"
+#include "core/boxes/oriented.h"
 #include "core/scene/pair_sort.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -468,7 +469,10 @@ std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeeting
                                           double clearance, bool neighbours, unsigned threads) {
   if (meetings.pairs.size() == 0) return meetings.kept;
   std::vector<TrianglePair> found =
-      pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
+      meetings.oriented
+          ? pairs_of_oriented(scene, *meetings.oriented, meetings.pairs, clearance, neighbours,
+                              threads)
+          : pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
   if (meetings.kept.empty()) return found;
   std::vector<TrianglePair> out;
   out.reserve(found.size() + meetings.kept.size());
