@@ -20,7 +20,6 @@
 #include "core/base/uninitialized.h"
 #include "core/boxes/join.h"
 #include "core/boxes/lanes-inl.h"
-#include "core/boxes/oriented.h"
 #include "core/scene/pair_sort.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -463,21 +462,6 @@ std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks
     found[chunk] = std::move(findings.certain);
   });
   return sorted_unique(std::move(found), threads);
-}
-
-std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
-                                          double clearance, bool neighbours, unsigned threads) {
-  if (meetings.pairs.size() == 0) return meetings.kept;
-  std::vector<TrianglePair> found =
-      meetings.oriented
-          ? pairs_of_oriented(scene, *meetings.oriented, meetings.pairs, clearance, neighbours,
-                              threads)
-          : pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
-  if (meetings.kept.empty()) return found;
-  std::vector<TrianglePair> out;
-  out.reserve(found.size() + meetings.kept.size());
-  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
-  return out;
 }
 
 }  // namespace farcull

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -480,6 +481,22 @@ std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBl
     found[chunk] = std::move(findings.certain);
   });
   return sorted_unique(std::move(found), threads);
+}
+
+// Declared in join.h. It stands here because it chooses between the two kinds of boxes.
+std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
+                                          double clearance, bool neighbours, unsigned threads) {
+  if (meetings.pairs.size() == 0) return meetings.kept;
+  std::vector<TrianglePair> found =
+      meetings.oriented
+          ? pairs_of_oriented(scene, *meetings.oriented, meetings.pairs, clearance, neighbours,
+                              threads)
+          : pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
+  if (meetings.kept.empty()) return found;
+  std::vector<TrianglePair> out;
+  out.reserve(found.size() + meetings.kept.size());
+  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
+  return out;
 }
 
 }  // namespace farcull
