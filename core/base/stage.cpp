@@ -118,6 +118,10 @@ std::string reason_of(const Stage& stage) {
       return "pairs of runs (of at most 16 triangles) whose boxes overlap: " + n +
              (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
              "; pairs of objects, and objects with themselves: " + m;
+    case Reason::oriented_pairs:
+      return "pairs of runs (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
+             n + (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
+             "; pairs of objects, and objects with themselves: " + m;
     case Reason::only_blocks:
       return "boxes of runs decide: no view is needed";
     case Reason::boxes_meet:

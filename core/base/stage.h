@@ -51,6 +51,7 @@ enum class Reason : std::uint8_t {
   crowded,        // too many such pairs to list; m as above
   block_pairs,    // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                   // `detail` were compared, since a corner moved; empty: all
+  oriented_pairs, // the same, but oriented boxes of the blocks overlap too
   only_blocks,    // nothing else can meet: no view is needed
   boxes_meet,     // n pairs of triangles are asked about; triangles in none take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared

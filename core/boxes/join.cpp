@@ -508,17 +508,5 @@ std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks
   return sorted_unique(std::move(found), threads);
 }
 
-std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
-                                          double clearance, bool neighbours, unsigned threads) {
-  if (meetings.pairs.size() == 0) return meetings.kept;
-  std::vector<TrianglePair> found =
-      pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
-  if (meetings.kept.empty()) return found;
-  std::vector<TrianglePair> out;
-  out.reserve(found.size() + meetings.kept.size());
-  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
-  return out;
-}
-
 }  // namespace farcull
 #endif

@@ -17,6 +17,8 @@
 
 namespace farcull {
 
+struct OrientedBlocks;  // core/boxes/oriented.h
+
 /// All pairs a < b of `items` (indices into boxes and owners) of different owners whose closed
 /// boxes overlap, sorted. Exact: compares doubles only. Empty boxes overlap nothing. If there are
 /// more than `most`, returns most + 1 of them. threads: 0 for as many as there are cores; changes
@@ -144,6 +146,7 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 /// pair here, or their objects are left to views.
 struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
+  std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
   BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
   std::uint64_t overlaps = 0;   // pairs of blocks whose boxes overlap, also those in which nothing

@@ -113,13 +113,12 @@ HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   return bit;
 }
 
-/// Calls visit(leaf) for each leaf from `least` on whose box overlaps, in an order that the tree
-/// fixes. Returns how many blocks were compared.
-template <class Number, class Visit>
-HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
-                                                const WideBoxes<Number>* blocks,
-                                                const OneBox<Number>& box, std::uint32_t least,
-                                                const Visit& visit) {
+/// Calls visit(leaf) for each leaf from `least` on of which bits(block) has its bit at all heights,
+/// in an order that the tree fixes; block: an index of the tree's blocks. Returns how many blocks
+/// were compared.
+template <class Number, class Bits, class Visit>
+HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t least,
+                                    const Bits& bits_of_block, const Visit& visit) {
   struct Node {
     int height;
     std::uint32_t number;
@@ -132,8 +131,7 @@ HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
   for (; size > 0; ++compared) {
     const Node at = stack[--size];
     const int below = at.height - 1;
-    std::uint32_t bits =
-        overlapping_bits(blocks[tree.first[static_cast<std::size_t>(below)] + at.number], box);
+    std::uint32_t bits = bits_of_block(tree.first[static_cast<std::size_t>(below)] + at.number);
     while (bits != 0) {
       const std::uint32_t child = kWide * at.number + next_bit(bits);
       const std::uint64_t begin = std::uint64_t{child} << (4 * below);
@@ -148,6 +146,16 @@ HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
     }
   }
   return compared;
+}
+
+/// for_leaves() whose boxes overlap a box.
+template <class Number, class Visit>
+HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
+                                                const WideBoxes<Number>* blocks,
+                                                const OneBox<Number>& box, std::uint32_t least,
+                                                const Visit& visit) {
+  return for_leaves(
+      tree, least, [&](std::size_t block) { return overlapping_bits(blocks[block], box); }, visit);
 }
 
 }  // namespace farcull::HWY_NAMESPACE::boxes

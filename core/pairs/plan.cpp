@@ -65,7 +65,7 @@ Stage stage_of_blocks(const PairPlan& plan) {
   const std::size_t compared = plan.blocks.pairs.size();
   return {.kind = StageKind::blocks,
           .ran = true,
-          .reason = Reason::block_pairs,
+          .reason = plan.blocks.oriented ? Reason::oriented_pairs : Reason::block_pairs,
           .detail = compared < plan.blocks.overlaps ? std::to_string(compared) : "",
           .n = plan.blocks.overlaps,
           .m = plan.blocks.meetings,

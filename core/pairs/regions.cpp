@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/boxes/join.h"
+#include "core/boxes/oriented.h"
 
 namespace farcull {
 namespace {
@@ -227,9 +228,12 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 // unless `all`. Returns per meeting whether it was not given up; nothing if there are more pairs of
 // the whole scene. Meetings that are given up count as one pair more than they may have, so that
 // the answer does not depend on threads.
-std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks, const BlockTrees& trees,
+// find(meeting, part, most): appends pairs to the part, as pair_blocks().
+template <class Find>
+std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks,
                                       const std::vector<Meeting>& meetings, bool all,
-                                      unsigned threads, std::vector<MeetingPart>& parts) {
+                                      unsigned threads, std::vector<MeetingPart>& parts,
+                                      const Find& find) {
   std::vector<std::atomic<std::size_t>> found(meetings.size());
   std::atomic<std::size_t> sum = 0;
   const std::size_t most_of_all = most_pairs(blocks);
@@ -244,7 +248,7 @@ std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks, const BlockT
           all ? most_of_all : std::min(most_pairs(blocks, meeting), most_of_all);
       if (sum > most_of_all) return;
       if (of_meeting > most) continue;
-      pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      find(meeting, part, most);
       const std::size_t pairs = part.pairs.size(), before = of_meeting.fetch_add(pairs);
       sum += std::min(before + pairs, most + 1) - std::min(before, most + 1);
       if (before + pairs > most) part.pairs = {};
@@ -267,17 +271,23 @@ BlockPairs some_of(const BlockPairs& pairs, std::size_t count) {
   return out;
 }
 
-// Whether boxes of triangles overlap so often that views are worth while, by a sample of the pairs,
-// which is then returned in `sample`.
+// Oriented boxes decide if, in a sample, they leave at most so many pairs for each triangle: exact
+// tests of these take about as long as a view of slivers.
+constexpr std::size_t kOrientedPerTriangle = 64;
+
+// Whether more than `often` pairs of boxes of triangles overlap for each triangle, so that views
+// are worth while, by a sample of the pairs, which is then returned in `sample`.
 bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
-                    BlockPairs& sample) {
+                    std::size_t often, BlockPairs& sample) {
   const std::size_t all = meetings.pairs.size();
   if (all == 0) return false;
   BlockPairs some = some_of(meetings.pairs, kSampled);
-  const std::size_t found = pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
+  const std::size_t found =
+      meetings.oriented
+          ? pairs_of_oriented(scene, *meetings.oriented, some, clearance, false, 1).size()
+          : pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
-  if (each * static_cast<double>(all) <=
-      static_cast<double>(kOverlapsPerTriangle * meetings.triangles)) {
+  if (each * static_cast<double>(all) <= static_cast<double>(often * meetings.triangles)) {
     return false;
   }
   sample = std::move(some);
@@ -326,6 +336,30 @@ PairParts joined(const Scene& scene, const TriangleBlocks& blocks, const Meeting
   return out;
 }
 
+// All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
+std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
+                                               const std::vector<Meeting>& meetings,
+                                               std::span<const Box> regions, double clearance,
+                                               unsigned threads) {
+  BlockMeetings out;
+  out.oriented = make_oriented(scene, clearance, regions, threads);
+  if (!out.oriented) return std::nullopt;
+  out.of = {out.oriented, &out.oriented->blocks};
+  std::vector<MeetingPart> parts = parts_of(*out.of, meetings);
+  const std::vector<std::uint8_t> complete = find_blocks(
+      *out.of, meetings, false, threads, parts,
+      [&](const Meeting& meeting, MeetingPart& part, std::size_t most) {
+        pair_oriented(*out.oriented, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      });
+  BlockPairs sample;
+  if (complete.size() < meetings.size() ||
+      !sort_in(meetings, parts, complete, false, out).empty() ||
+      overlaps_often(scene, out, clearance, kOrientedPerTriangle, sample)) {
+    return std::nullopt;
+  }
+  return out;
+}
+
 // The meetings of a scene whose blocks have their boxes or lanes. regions: where its objects meet.
 PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<Box>& regions,
                 double clearance, unsigned threads, bool all,
@@ -336,16 +370,26 @@ PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<
   const BlockTrees trees(blocks, regions);
   std::vector<MeetingPart> parts = parts_of(blocks, meetings.all);
   const std::vector<std::uint8_t> complete =
-      find_blocks(blocks, trees, meetings.all, all, threads, parts);
+      find_blocks(blocks, meetings.all, all, threads, parts,
+                  [&](const Meeting& meeting, MeetingPart& part, std::size_t most) {
+                    pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+                  });
   if (complete.size() < meetings.all.size()) {
     return joined(scene, blocks, meetings, Reason::join_many_blocks, most_pairs(blocks));
   }
   std::vector<Meeting> left = sort_in(meetings.all, parts, complete, all, out.blocks);
   BlockPairs sample;
-  if (!all && !out.blocks.empty() && overlaps_often(scene, out.blocks, clearance, sample)) {
+  if (!all && !out.blocks.empty() &&
+      overlaps_often(scene, out.blocks, clearance, kOverlapsPerTriangle, sample)) {
     left = meetings.all;
   } else if (!left.empty()) {
     sample = sample_of(blocks, trees, left);
+  }
+  if (!left.empty()) {
+    if (auto oriented = oriented_meetings(scene, meetings.all, regions, clearance, threads)) {
+      out.blocks = *std::move(oriented);
+      left.clear();
+    }
   }
   if (!left.empty()) out.sample = pairs_of_sample(scene, blocks, sample, clearance);
   out.rest = regions_in(blocks, boxes_of_meetings(blocks, left));
@@ -447,7 +491,8 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
     return *std::move(parts);
   PairParts out = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
                         threads, all, memory.blocks);
-  if (out.rest.triangles.empty() && !out.blocks.empty())
+  // Oriented blocks are made anew in each frame.
+  if (out.rest.triangles.empty() && !out.blocks.empty() && !out.blocks.oriented)
     keep_unmoved(scene, moved, memory.pairs, out.blocks);
   return out;
 }
@@ -456,7 +501,9 @@ std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads) {
   const PairParts parts = split_meetings(scene, 0, threads, false, ignored);
-  if (parts.join != Reason::none || !parts.rest.triangles.empty()) return std::nullopt;
+  // Oriented boxes leave out pairs whose boxes along the axes overlap.
+  if (parts.join != Reason::none || !parts.rest.triangles.empty() || parts.blocks.oriented)
+    return std::nullopt;
   return pairs_of_blocks(scene, parts.blocks, 0, neighbours, threads);
 }
 

@@ -226,6 +226,7 @@ BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 
 /// A scene of two objects, the second one placed.

@@ -40,6 +40,7 @@ TEST(ContactScenes, HaveTheSizeOfTheirNameAndFollowTheirSeed) {
                                               {"rope", make_rope},
                                               {"spheres", make_spheres},
                                               {"fans", make_fans},
+                                              {"cad-cut", make_cad_cut},
                                               {"funnel", make_funnel}};
   for (const auto& [name, make] : makers) {
     const BuiltinScene& entry = *find_builtin_scene(name);
@@ -134,6 +135,22 @@ TEST(ContactScenes, FansAreSliversWhoseBoxesOverlapAndOnePinIsPressedIn) {
     const ExactResult all = all_colliding_pairs(scene);
     EXPECT_EQ(all.pairs.size(), between.pairs.size());
     EXPECT_EQ(all.neighbour_pairs.size(), 0u);
+  }
+}
+
+TEST(ContactScenes, APartThatIsCutIsSliversOfWhichFewMeet) {
+  for (const std::uint64_t seed : {21u, 1u, 2u}) {
+    SCOPED_TRACE(seed);
+    const Scene scene = of(make_cad_cut, 4'000, seed);
+    const ExactResult result = all_colliding_pairs(scene);
+    EXPECT_GT(result.pairs.size(), 10u);
+    EXPECT_LT(result.pairs.size(), scene.triangles.size());
+    const std::uint64_t pairs =
+        std::uint64_t{scene.objects[0].triangle_count} * scene.objects[1].triangle_count;
+    EXPECT_GT(result.box_pairs, pairs / 12);
+    std::vector<double> thin;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) thin.push_back(thickness(scene, t));
+    EXPECT_LT(part_of(thin, 0.9), 0.05);
   }
 }
 

@@ -1,0 +1,71 @@
+// Oriented boxes of blocks of triangles. Boxes along the axes say little about long thin triangles
+// that lie obliquely. So each block gets three directions of its own, by the principal directions
+// of its corners, and two triangles are compared along those of both blocks.
+//
+// If the images of two sets under one linear map have no common point, the sets have none. So any
+// direction may be compared; good ones separate more. All is computed in floats relative to one
+// origin, and margins contain what rounding can do (docs/reliability.md, "Oriented boxes").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/uninitialized.h"
+#include "core/boxes/block.h"
+#include "core/boxes/join.h"
+#include "core/boxes/triangle_blocks.h"
+
+namespace farcull {
+
+/// Three directions: those of an oriented box, of length 1 and perpendicular up to rounding.
+using Frame = std::array<std::array<float, 3>, 3>;
+
+/// A box along three directions: its middle, and half of its sides.
+struct OrientedBox {
+  Frame frame;
+  std::array<float, 3> middle, half;
+};
+
+/// Sixteen oriented boxes as columns.
+struct alignas(64) WideOriented {
+  std::array<std::array<std::array<float, kWide>, 3>, 3> frame;
+  std::array<std::array<float, kWide>, 3> middle, half;
+};
+
+/// The triangles of a block, in the lanes of its BlockLanes.
+struct alignas(64) OrientedLanes {
+  std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate
+  Frame frame;
+  WideBoxes<float> boxes;  // along the frame, grown by the margin of triangles
+  FloatBox bound;          // of all of them
+};
+
+/// The blocks of objects that meet others, in the order of spatial_order().
+struct OrientedBlocks {
+  TriangleBlocks blocks;                     // all objects with a region are gathered
+  UninitializedVector<OrientedLanes> lanes;  // as blocks.lanes
+  std::vector<OrientedBox> boxes;            // as blocks.lanes
+  std::vector<BoxTree<float>> trees;         // per object, over its blocks; without boxes
+  std::vector<WideOriented> nodes;
+  float margin = 0;  // of oriented boxes: they are apart if a direction leaves more than that
+};
+
+/// regions: per object, as gather_scattered() takes them. Null if the coordinates are too large for
+/// floats. threads: 0 for as many as there are cores.
+std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double clearance,
+                                                    std::span<const Box> regions, unsigned threads);
+
+/// As pair_blocks(), of oriented boxes that may have a common point.
+void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t b,
+                   std::uint32_t from, std::uint32_t to, std::size_t most,
+                   std::vector<BlockPair>& out);
+
+/// As pairs_of_some(), of triangles whose boxes overlap also along the frames of both blocks.
+std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
+                                            const BlockPairs& pairs, double clearance,
+                                            bool neighbours, unsigned threads);
+
+}  // namespace farcull

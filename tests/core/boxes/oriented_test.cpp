@@ -1,0 +1,168 @@
+// Oriented boxes of blocks: no colliding pair is lost, on every instruction set and whatever the
+// order of the triangles, and slivers leave few pairs. Each property has a twin that must fail.
+#include "core/boxes/oriented.h"
+
+#include "core/pairs/regions.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/lanes.h"
+#include "tests/lab/pairs.h"
+
+namespace farcull {
+namespace {
+
+using lab::missed;
+using lab::Random;
+using lab::random_scene;
+using lab::truth_of;
+using lab::with_self;
+
+// All pairs of blocks of a scene whose oriented boxes may meet.
+BlockPairs block_pairs(const Scene& scene, const OrientedBlocks& blocks) {
+  BlockPairs out;
+  const auto n = static_cast<std::uint32_t>(scene.objects.size());
+  for (std::uint32_t a = 0; a < n; ++a) {
+    const std::uint32_t first = blocks.blocks.first[a], end = first + blocks.blocks.count(a);
+    for (std::uint32_t b = a; b < n; ++b) {
+      if (a == b && !scene.objects[a].self) continue;
+      pair_oriented(blocks, a, b, first, end, SIZE_MAX, a == b ? out.inside : out.between);
+    }
+  }
+  return out;
+}
+
+std::shared_ptr<const OrientedBlocks> oriented(const Scene& scene, double clearance) {
+  return make_oriented(scene, clearance, make_blocks(scene, clearance, 1).objects, 2);
+}
+
+std::vector<TrianglePair> pairs_of(const Scene& scene, const OrientedBlocks& blocks,
+                                   double clearance) {
+  return pairs_of_oriented(scene, blocks, block_pairs(scene, blocks), clearance, true, 2);
+}
+
+std::vector<Scene> some_scenes() {
+  std::vector<Scene> out;
+  for (const char* name : {"cad-cut:2000", "fans:2000", "needles", "crowd", "cad-cut:2000@far"}) {
+    out.push_back(make_builtin_scene(name));
+  }
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
+    out.push_back(seed % 2 ? with_self(random_scene(seed)) : random_scene(seed));
+  return out;
+}
+
+TEST(Oriented, LoseNoPairThatCollides) {
+  std::size_t found = 0;
+  for (const Scene& scene : some_scenes()) {
+    SCOPED_TRACE(scene.name);
+    for (const double clearance : {0.0, 0.003}) {
+      const auto blocks = oriented(scene, clearance);
+      if (!blocks) continue;
+      const std::vector<TrianglePair> truth = truth_of(scene, clearance);
+      const std::vector<TrianglePair> pairs = pairs_of(scene, *blocks, clearance);
+      EXPECT_EQ(missed(truth, pairs), 0u);
+      for (const TrianglePair& pair : pairs)
+        ASSERT_TRUE(boxes_meet(scene, pair, half_of(clearance)));
+      found += truth.size();
+      on_every_target([&] { EXPECT_EQ(pairs_of(scene, *blocks, clearance), pairs); });
+    }
+  }
+  EXPECT_GT(found, 5000u);
+}
+
+TEST(Oriented, DecideAPartThatIsCut) {
+  const Scene scene = make_builtin_scene("cad-cut:4000");
+  const PairParts parts = split_meetings(scene, 0, 2);
+  ASSERT_NE(parts.blocks.oriented, nullptr);
+  EXPECT_TRUE(parts.rest.triangles.empty());
+  const std::vector<TrianglePair> pairs = pairs_of_blocks(scene, parts.blocks, 0, true, 2);
+  EXPECT_EQ(missed(truth_of(scene), pairs), 0u);
+  EXPECT_LT(pairs.size(), 16 * scene.triangles.size());
+  EXPECT_EQ(pairs_of_boxes(scene, {}, true, 2), std::nullopt);
+  // Boxes along the axes leave many more.
+  EXPECT_GT(all_colliding_pairs(scene).box_pairs, 10 * pairs.size());
+}
+
+TEST(Oriented, AreNotMadeOfCoordinatesThatFloatsCannotHold) {
+  for (const double scale : {0x1p70, 0x1p-80}) {
+    const Scene scene = transformed(make_builtin_scene("cad-cut:2000"), scale, Vec3::Zero());
+    EXPECT_EQ(oriented(scene, 0), nullptr);
+    EXPECT_NE(oriented(transformed(scene, 1 / scale, Vec3::Zero()), 0), nullptr);
+  }
+}
+
+// Triangles of an oblique plane, and others that stand on the middles of their edges.
+Scene standing(std::uint64_t seed) {
+  Random random(seed);
+  const auto whole = [&] { return static_cast<double>(random.below(200) - 100); };
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int k = 0; k < 400; ++k) {
+    const auto corner = [&] {
+      const double x = whole(), y = whole();
+      return Vec3(x, y, 3 * x - 5 * y);
+    };
+    const std::array<Vec3, 3> flat = {corner(), corner(), corner()};
+    const Vec3 foot = 0.5 * (flat[0] + flat[1]), up(-30, 50, 10);
+    objects[0].push_back(flat);
+    objects[1].push_back({foot, foot + up + Vec3(1, 0, 0), foot + up});
+  }
+  return lab::scene_of(objects);
+}
+
+// The boxes of triangles as they are without a margin.
+std::shared_ptr<OrientedBlocks> without_margin(const OrientedBlocks& blocks) {
+  auto out = std::make_shared<OrientedBlocks>(blocks);
+  for (OrientedLanes& lanes : out->lanes) {
+    for (std::size_t lane = 0; lane < kWide; ++lane) {
+      FloatBox box = kNowhere;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& d = lanes.frame[k];
+        for (const auto& c : lanes.corner) {
+          const float at = d[0] * c[0][lane] + d[1] * c[1][lane] + d[2] * c[2][lane];
+          box.lo[k] = std::min(box.lo[k], at);
+          box.hi[k] = std::max(box.hi[k], at);
+        }
+      }
+      lanes.boxes.set(lane, box);
+    }
+  }
+  return out;
+}
+
+TEST(OrientedTwin, WithoutAMarginPairsThatTouchAreLost) {
+  const Scene scene = standing(1);
+  const std::vector<TrianglePair> truth = truth_of(scene);
+  ASSERT_GE(truth.size(), 400u);
+  const auto blocks = oriented(scene, 0);
+  EXPECT_EQ(missed(truth, pairs_of(scene, *blocks, 0)), 0u);
+  EXPECT_GT(missed(truth, pairs_of(scene, *without_margin(*blocks), 0)), 0u);
+}
+
+TEST(OrientedTwin, BlocksThatAreNotGrownMissPairsOfAClearance) {
+  const Scene scene = make_builtin_scene("cad-cut:2000");
+  constexpr double kClearance = 0.01;
+  const std::vector<TrianglePair> truth = truth_of(scene, kClearance);
+  EXPECT_EQ(missed(truth, pairs_of(scene, *oriented(scene, kClearance), kClearance)), 0u);
+  EXPECT_GT(missed(truth, pairs_of(scene, *oriented(scene, 0), kClearance)), 0u);
+}
+
+TEST(OrientedTwin, BoxesOfHalfTheirSizeMiss) {
+  const Scene scene = make_builtin_scene("cad-cut:4000");
+  const auto blocks = oriented(scene, 0);
+  const std::vector<TrianglePair> truth = truth_of(scene);
+  const auto with = [&](auto&& change) {
+    OrientedBlocks smaller = *blocks;
+    change(smaller);
+    return missed(truth, pairs_of(scene, smaller, 0));
+  };
+  EXPECT_EQ(with([](OrientedBlocks&) {}), 0u);
+  const auto halve = [](std::array<std::array<float, kWide>, 3>& half) {
+    for (auto& column : half)
+      for (float& side : column) side *= 0.5f;
+  };
+  EXPECT_GT(with([&](OrientedBlocks& b) {
+              for (WideOriented& node : b.nodes) halve(node.half);
+            }),
+            0u);
+}
+
+}  // namespace
+}  // namespace farcull
