@@ -499,11 +499,13 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
 
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool neighbours, unsigned threads) {
+                                                        bool oriented, bool neighbours,
+                                                        unsigned threads) {
   const PairParts parts = split_meetings(scene, 0, threads, false, ignored);
-  // Oriented boxes leave out pairs whose boxes along the axes overlap.
-  if (parts.join != Reason::none || !parts.rest.triangles.empty() || parts.blocks.oriented)
+  if (parts.join != Reason::none || !parts.rest.triangles.empty() ||
+      (parts.blocks.oriented && !oriented)) {
     return std::nullopt;
+  }
   return pairs_of_blocks(scene, parts.blocks, 0, neighbours, threads);
 }
 

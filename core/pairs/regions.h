@@ -95,11 +95,13 @@ constexpr std::size_t kMostPairsPerBlock = 1024;
 /// All pairs a < b of triangles whose boxes overlap: of different objects that are not ignored, and
 /// of one object that is tested against itself. Sorted, each once. Empty where boxes of blocks do
 /// not decide the whole scene, because too many of them overlap or triangles lie too unevenly.
-/// neighbours: false leaves out pairs of one object that share a vertex index. threads: 0 for as
-/// many as there are cores.
+/// oriented: where oriented boxes of blocks do, gives the pairs whose oriented boxes overlap as
+/// well, which are all that collide; else these are empty too. neighbours: false leaves out pairs
+/// of one object that share a vertex index. threads: 0 for as many as there are cores.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool neighbours, unsigned threads);
+                                                        bool oriented, bool neighbours,
+                                                        unsigned threads);
 
 /// The regions that drawing needs to decide about these pairs: their triangles, and the places in
 /// which boxes of two overlap, one for each object that is the first one of a pair. Every common

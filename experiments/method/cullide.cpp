@@ -195,7 +195,7 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   Stage stage{.kind = StageKind::boxes, .unit = Unit::triangles};
   stage.in = stage.out = scene.triangles.size();
   std::optional<std::vector<TrianglePair>> pairs =
-      pairs_of_boxes(scene, options.ignored, options.neighbours, threads);
+      pairs_of_boxes(scene, options.ignored, tests_instead(options), options.neighbours, threads);
   if (!pairs) {
     stage.kind = StageKind::blocks;
     stage.reason = Reason::boxes_decide_little;
