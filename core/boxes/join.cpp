@@ -285,11 +285,11 @@ void OrderedPairs::append(std::uint32_t a, bool sorted, Part& part) const {
   if (sorted) sort_marked(found, part.marks);
   for (const std::uint32_t b : found) {
     const TrianglePair pair{items_[a], items_[b]};
-    if (counts(pair)) part.pairs.push_back(pair);
+    if (is_asked(pair)) part.pairs.push_back(pair);
   }
 }
 
-bool OrderedPairs::counts(const TrianglePair& pair) const {
+bool OrderedPairs::is_asked(const TrianglePair& pair) const {
   if (ignored_ && (*ignored_)(pair)) return false;
   return scene_ == nullptr || objects_[pair.a] != objects_[pair.b] ||
          !share_index(scene_->triangles[pair.a], scene_->triangles[pair.b]);
@@ -312,7 +312,7 @@ std::uint64_t OrderedPairs::give(const TakePairs& take) {
                                 << 14;  // pairs that it collects before it gives them
   const auto items = static_cast<std::uint32_t>(boxes_.size());
   const std::size_t chunks = chunks_for(items, kItems, threads_);
-  std::atomic<std::uint32_t> next = 0;
+  std::atomic<std::uint64_t> next = 0;  // wide, as each thread adds once more at the end
   std::atomic<std::uint64_t> given = 0, compared = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
     Part part;
@@ -322,15 +322,21 @@ std::uint64_t OrderedPairs::give(const TakePairs& take) {
       take(part.pairs);
       part.pairs.clear();
     };
-    for (;;) {
-      const std::uint32_t begin = next.fetch_add(kItems);
-      if (begin >= items) break;
-      for (std::uint32_t a = begin; a < std::min(items, begin + kItems); ++a) {
-        append(a, false, part);
-        flush(kSome);
+    try {
+      for (;;) {
+        stop_point();
+        const std::uint64_t begin = next.fetch_add(kItems);
+        if (begin >= items) break;
+        for (std::uint64_t a = begin; a < std::min<std::uint64_t>(items, begin + kItems); ++a) {
+          append(static_cast<std::uint32_t>(a), false, part);
+          flush(kSome);
+        }
       }
+      flush(1);
+    } catch (...) {
+      next = items;  // the other threads end early too
+      throw;
     }
-    flush(1);
     compared += part.compared;
   });
   next_ = items;

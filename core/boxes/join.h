@@ -56,7 +56,8 @@ class OrderedPairs {
   /// one item more for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == boxes_.size(); }
-  /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called.
+  /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. An
+  /// exception of `take` is thrown again here, and some pairs are not given then.
   std::uint64_t give(const TakePairs& take);
   /// All pairs that are left; if there are more than `most`, most + 1 of them.
   std::vector<TrianglePair> all(std::size_t most = SIZE_MAX);
@@ -80,9 +81,9 @@ class OrderedPairs {
     std::vector<std::uint64_t> marks;
   };
   void append(std::uint32_t a, bool sorted, Part& part) const;
-  void plant();  // the tree
+  bool is_asked(const TrianglePair& pair) const;  // not ignored, and no neighbours left out
 
-  bool counts(const TrianglePair& pair) const;
+  void plant();  // the tree
 
   const Scene* scene_ = nullptr;        // if neighbours are left out
   std::vector<std::uint32_t> objects_;  // per item; likewise

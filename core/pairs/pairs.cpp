@@ -131,12 +131,13 @@ class Finding {
     }
     if (first_) join_boxes();
     if (plan_.remembers) remember();
-    if (out_.given) return std::move(out_);  // with the pairs of the blocks
+    if (out_.given) return std::move(out_);  // the tree has the pairs of the blocks too
     if (out_.candidates.empty()) {
       out_.candidates = std::move(of_blocks_);
     } else if (!of_blocks_.empty()) {
       out_.candidates = merged(out_.candidates, of_blocks_);
     }
+    out_.count = out_.candidates.size();
     return std::move(out_);
   }
 
@@ -155,7 +156,8 @@ class Finding {
 
   // Keeps what blocks decided for the next frame; views tell nothing about it.
   void remember() {
-    memory_.complete = plan_.regions.triangles.empty();
+    // Oriented boxes leave out pairs that boxes along the axes would give in the next frame.
+    memory_.complete = plan_.regions.triangles.empty() && !plan_.blocks.oriented;
     memory_.pairs = memory_.complete ? of_blocks_ : std::vector<TrianglePair>();
     memory_.overlaps = plan_.blocks.overlaps;
     memory_.meetings = plan_.blocks.meetings;
@@ -280,14 +282,13 @@ class Finding {
     if (progress_) progress_("joining boxes");
     const PairSettings& settings = plan_.settings;
     OrderedPairs tree(scene_, settings.clearance, settings.ignored, settings.neighbours,
-                      backend_.threads());
-    std::uint64_t count = 0;
+                      plan_.threads);
     if (take_) {
-      count = tree.give(take_);
+      out_.count = tree.give(take_);
       out_.given = true;
     } else {
       out_.candidates = tree.all();
-      count = out_.candidates.size();
+      out_.count = out_.candidates.size();
     }
     Stage stage = given_up_ ? stage_of_join(Reason::join_many_tests, plan_.most_tests, *given_up_)
                   : plan_.join != Reason::none ? stage_of_join(plan_.join, plan_.join_n)
@@ -296,7 +297,7 @@ class Finding {
     stage.m = tree.compared();
     stage.ms = start.ms();
     stage.in = all.size();
-    stage.out = count;
+    stage.out = out_.count;
     out_.stages.push_back(stage);
   }
 

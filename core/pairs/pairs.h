@@ -146,6 +146,7 @@ struct PairResult {
   std::vector<TrianglePair> candidates;  // sorted, each once; the closed boxes, grown by half
                                          // the clearance, overlap
   bool given = false;                    // all candidates went to `take` instead, as found
+  std::uint64_t count = 0;               // of candidates
   std::vector<PairView> views;
   std::vector<Stage> stages;
 };

@@ -491,7 +491,7 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
     return *std::move(parts);
   PairParts out = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
                         threads, all, memory.blocks);
-  // Oriented blocks are made anew in each frame.
+  // Oriented boxes are made anew in each frame.
   if (out.rest.triangles.empty() && !out.blocks.empty() && !out.blocks.oriented)
     keep_unmoved(scene, moved, memory.pairs, out.blocks);
   return out;

@@ -255,7 +255,8 @@ PairAdvice advise(const std::string& device) {
   const Scene scene = make_builtin_scene(kPairScene);
   std::vector<TrianglePair> candidates;
   const auto measure = [&](const std::string& on) {
-    const RunOptions options{.method = Method::far_pairs, .device = on};
+    // With a resolution views decide.
+    const RunOptions options{.method = Method::far_pairs, .resolution = 256, .device = on};
     Session session(on, 0, Say());
     constexpr int kRuns = 5;
     std::vector<double> ms;

@@ -69,11 +69,13 @@ Stage offset_stage(const Fattener& fattener) {
 }
 
 Stage join_stage(const DrawPlan& work) {
+  const bool draws = !work.fatteners.empty() || work.regions.triangles.empty();
   return {.kind = StageKind::join,
           .ran = true,
           .reason = work.pairs               ? Reason::not_cleared
                     : work.patches.count > 0 ? Reason::join_patches
-                                             : Reason::join_kept,
+                    : draws                  ? Reason::join_kept
+                                             : Reason::join_all,
           .unit = Unit::pairs};
 }
 
@@ -309,10 +311,10 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   }
   const Stopwatch join;
   if (progress) progress("joining boxes");
-  const bool all = work.fatteners.empty() && !work.pairs;
+  const bool draws = !work.fatteners.empty();
   const std::uint64_t left = work.pairs ? work.pairs->drawn.size() + work.pairs->other.size()
-                             : all      ? work.regions.triangles.size()
-                                        : out.triangles.size();
+                             : draws    ? out.triangles.size()
+                                        : work.regions.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
   if (work.pairs) {
     out.pairs = work.pairs->drawn;
@@ -325,14 +327,14 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
     add_members(scene, out);
-  } else {
-    const unsigned threads = session.threads();
-    OrderedPairs pairs = all && left > 0
-                             ? OrderedPairs(scene, 0, {}, plan.options.neighbours, threads)
-                             : OrderedPairs(boxes, join_owners(scene), out.triangles, threads);
-    if (take) {
+  } else if (draws) {
+    out.pairs = box_join(boxes, join_owners(scene), out.triangles, SIZE_MAX, session.threads());
+  } else if (left > 0) {
+    // Of all triangles; who takes or lists the pairs leaves out the ignored ones, and counts them.
+    OrderedPairs pairs(scene, 0, {}, plan.options.neighbours, session.threads());
+    out.given = static_cast<bool>(take);
+    if (out.given) {
       out.count = pairs.give(take);
-      out.given = true;
     } else {
       out.pairs = pairs.all();
     }

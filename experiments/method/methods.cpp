@@ -244,7 +244,7 @@ namespace {
 void move_to(Candidates& out, PairResult&& result) {
   out.pairs = std::move(result.candidates);
   out.given = result.given;
-  out.count = out.given ? result.stages.back().out : out.pairs.size();
+  out.count = result.count;
   out.by = std::move(result.views);
   out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
 }

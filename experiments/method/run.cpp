@@ -35,7 +35,8 @@ class Deciding {
 
   void operator()(std::vector<TrianglePair>& some) {
     const Stopwatch watch;
-    const std::uint64_t removed = is_ignored_.any() ? std::erase_if(some, is_ignored_) : 0;
+    const std::uint64_t removed =
+        is_ignored_.any() ? std::erase_if(some, std::cref(is_ignored_)) : 0;
     for (const TrianglePair& pair : some) {
       std::atomic_ref(kept_[pair.a]).store(1, std::memory_order_relaxed);
       std::atomic_ref(kept_[pair.b]).store(1, std::memory_order_relaxed);
@@ -48,18 +49,18 @@ class Deciding {
     ms_ += watch.ms();
   }
 
-  // The stage before is that of finding, and its time that of both.
+  // Moves the answers to `found`, whose last stage found the candidates and holds the time of both.
   void finish(Candidates& found) {
+    const Stopwatch watch;
     if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
     found.ignored = ignored_;
     found.count -= ignored_;
     std::ranges::sort(collisions_.pairs);
     std::ranges::sort(collisions_.neighbour_pairs);
     found.decided = std::move(collisions_);
-    found.decided_ms = ms_;
+    found.decided_ms = ms_ + watch.ms();
     found.ms -= ms_;
     found.trace.back().ms -= ms_;
-    if (!found.triangles.empty()) return;
     for (std::uint32_t t = 0; t < kept_.size(); ++t) {
       if (kept_[t] != 0) found.triangles.push_back(t);
     }
@@ -98,7 +99,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
                   const ExactQuestion& question, Record& record) {
   const RunOptions& options = record.options;
   Stage stage{.kind = StageKind::exact,
-              .depends = !options.full,
+              .depends = !options.full && culls(options.method),
               .reason = Reason::no_candidates,
               .unit = Unit::pairs};
   const auto ran = [&](double ms) {
@@ -112,7 +113,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     record.collisions = *std::move(record.found.decided);
     record.found.decided.reset();
     record.decided = record.found.count;
-    ran(record.found.decided_ms);
+    if (record.decided > 0 || !stage.depends) ran(record.found.decided_ms);
   } else if (!record.found.pairs.empty() || options.full) {
     if (progress) progress("exact tests");
     const Stopwatch watch;

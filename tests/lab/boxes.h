@@ -10,7 +10,6 @@ namespace farcull::lab {
 using Boxes = std::vector<Box>;
 using Indices = std::vector<std::uint32_t>;
 using Pairs = std::vector<TrianglePair>;
-using rational::Random;
 
 /// Its own comparison, so that overlap() is not what tests itself.
 inline bool meet(const Box& a, const Box& b) {
@@ -38,7 +37,7 @@ inline Box along_x(double lo, double hi) { return {Vec3(lo, 0, 0), Vec3(hi, 1, 1
 
 /// One step of boxes that move: small steps, jumps, coordinates of few values, boxes that are
 /// points or empty, and the ends of the doubles.
-inline void move(Boxes& boxes, Random& random, int kind) {
+inline void move(Boxes& boxes, rational::Random& random, int kind) {
   for (Box& box : boxes) {
     if (random.below(3) == 0) continue;
     Vec3 by = random.cube(kind == 3 ? 9 : 0.3);
@@ -75,7 +74,7 @@ inline void move(Boxes& boxes, Random& random, int kind) {
   }
 }
 
-inline Boxes some_boxes(Random& random, int count) {
+inline Boxes some_boxes(rational::Random& random, int count) {
   Boxes boxes;
   for (int i = 0; i < count; ++i) {
     const Vec3 at(random.below(9), random.below(9), random.below(9));

@@ -195,12 +195,20 @@ TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
   EXPECT_GT(found, 100'000u);
 }
 
+// Without oriented boxes, which leave pairs out.
+PairParts split_along_axes(const Scene& scene, double clearance,
+                           std::span<const ObjectPair> ignored = {}) {
+  PairParts parts = split_meetings(scene, clearance, 2, false, ignored);
+  if (parts.blocks.oriented) parts = split_meetings(scene, clearance, 2, true, ignored);
+  return parts;
+}
+
 TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
   std::size_t pairs = 0, by_blocks = 0;
   for (const Scene& scene : small_scenes()) {
     for (const double clearance : {0.0, 0.01}) {
       for (const bool neighbours : {true, false}) {
-        const PairParts parts = split_meetings(scene, clearance, 2);
+        const PairParts parts = split_along_axes(scene, clearance);
         if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
         ++by_blocks;
         const std::vector<TrianglePair> expected = overlapping(scene, clearance, neighbours);
@@ -226,7 +234,7 @@ TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
     for (std::uint32_t b = 1; b < scene.objects.size(); ++b)
       for (std::uint32_t a = b % 2; a < b; a += 2) ignored.push_back({a, b});
     ignored = in_order(std::move(ignored));
-    const PairParts parts = split_meetings(scene, 0, 2, false, ignored);
+    const PairParts parts = split_along_axes(scene, 0, ignored);
     if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
     std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     removed += remove_ignored(scene, ignored, expected);
@@ -241,6 +249,7 @@ TEST(Blocks, SplitAlikeWhateverTheThreads) {
   scenes.push_back(
       shuffled(make_builtin_scene("crumpled:60000"), 1));  // ordered in several threads
   scenes.push_back(make_builtin_scene("needles"));
+  scenes.push_back(make_builtin_scene("needles-layers"));
   std::size_t ordered = 0, sampled = 0;
   for (const Scene& scene : scenes) {
     const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
@@ -283,16 +292,15 @@ TEST(Blocks, AsManyPairsAsAreAllowedAreAllFound) {
   const Scene scene = ladders(162, 36);
   for (const unsigned threads : {1u, 2u}) {
     const PairParts parts = split_meetings(scene, 0, threads);
+    EXPECT_EQ(parts.blocks.oriented, nullptr);
     ASSERT_EQ(parts.blocks.pairs.between.size(), kPairsPerBlock * 2 * 162);
     EXPECT_TRUE(parts.rest.triangles.empty());
     const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     EXPECT_GT(expected.size(), 162u);
     EXPECT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, threads), expected);
   }
-  // The twin: beyond it the objects are left to views.
-  const PairParts parts = split_meetings(ladders(162, 37), 0, 1);
-  EXPECT_TRUE(parts.blocks.empty());
-  EXPECT_FALSE(parts.rest.triangles.empty());
+  // The twin: beyond it boxes along the axes are given up, and oriented ones tried.
+  EXPECT_NE(split_meetings(ladders(162, 37), 0, 1).blocks.oriented, nullptr);
 }
 
 // Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.

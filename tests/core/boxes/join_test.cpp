@@ -270,6 +270,19 @@ TEST(OrderedPairs, AreAllPairsInOrderWhateverThePartsAndThreads) {
   EXPECT_GT(found, 200u);
 }
 
+// Two objects of triangles that all overlap.
+TEST(OrderedPairs, GivesManyPairsFromSeveralThreadsAndEndsAtAFailure) {
+  const std::array<Vec3, 3> one = {Vec3(0, 0, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)};
+  const std::vector<std::array<Vec3, 3>> many(400, one);
+  const Scene scene = lab::scene_of({many, many});
+  EXPECT_EQ(given(scene, 0, {}, true, 3), by_search(scene, 0, {}));
+  for (const unsigned threads : {1u, 3u}) {
+    OrderedPairs pairs(scene, 0, {}, true, threads);
+    const auto fail = [](std::vector<TrianglePair>&) { throw std::runtime_error("full"); };
+    EXPECT_THROW(pairs.give(fail), std::runtime_error);
+  }
+}
+
 TEST(OrderedPairs, OfAClearanceBeyondTheDoublesAreAllPairs) {
   Random random(622);
   Scene scene = some_scene(random, 40);

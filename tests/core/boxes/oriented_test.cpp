@@ -11,7 +11,6 @@ namespace farcull {
 namespace {
 
 using lab::missed;
-using lab::Random;
 using lab::random_scene;
 using lab::truth_of;
 using lab::with_self;
@@ -92,7 +91,7 @@ TEST(Oriented, AreNotMadeOfCoordinatesThatFloatsCannotHold) {
 
 // Triangles of an oblique plane, and others that stand on the middles of their edges.
 Scene standing(std::uint64_t seed) {
-  Random random(seed);
+  lab::Random random(seed);
   const auto whole = [&] { return static_cast<double>(random.below(200) - 100); };
   std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
   for (int k = 0; k < 400; ++k) {

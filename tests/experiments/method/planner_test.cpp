@@ -131,7 +131,7 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
 }
 
 // An object that is tested against itself is cut into patches, which are no objects, also where
-// boxes leave so few pairs that nothing would be drawn.
+// nothing else would be drawn.
 TEST(Planner, RefusesToAskObjectsAloneWhereOneIsCut) {
   Scene scene = make_builtin_scene("two-spheres");
   RunOptions far{.method = Method::far};

@@ -102,42 +102,76 @@ TEST(RunPairs, AClearanceOfZeroIsAPlainRun) {
   EXPECT_EQ(plain.collisions.neighbour_pairs, zero.collisions.neighbour_pairs);
 }
 
-// One vertex far away makes most of the box of an object empty, so a tree over all boxes decides.
+// A crumpled sheet and another one across it, each with one vertex far away, which makes most of
+// its box empty: a tree over all boxes decides.
+Scene strays() {
+  const Scene sheet = self_scene("crumpled:6000");
+  Scene scene;
+  scene.name = "strays";
+  for (std::uint32_t o = 0; o < 2; ++o) {
+    const auto before = static_cast<std::uint32_t>(scene.vertices.size());
+    Object object = sheet.objects[0];
+    object.name += std::to_string(o);
+    object.first_triangle = static_cast<std::uint32_t>(scene.triangles.size());
+    ++object.triangle_count;
+    for (const Vec3& p : sheet.vertices) scene.vertices.push_back(p + Vec3(0.1 * o, 0, 0));
+    for (auto triangle : sheet.triangles) {
+      for (std::uint32_t& corner : triangle) corner += before;
+      scene.triangles.push_back(triangle);
+    }
+    scene.vertices.push_back(Vec3(1e6, 1e6, 1e6 + o));
+    scene.triangles.push_back(
+        {before, before + 1, static_cast<std::uint32_t>(scene.vertices.size() - 1)});
+    scene.objects.push_back(object);
+  }
+  scene.source_face.resize(scene.triangles.size(), 0);
+  return scene;
+}
+
 // Its pairs are decided as they are found, and only a limit asks for their list.
 TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
-  Scene scene = self_scene("crumpled:6000");
-  const auto end = static_cast<std::uint32_t>(scene.vertices.size());
-  scene.vertices.push_back(Vec3(1e6, 1e6, 1e6));
-  scene.triangles.push_back({0, 1, end});
-  scene.source_face.push_back(0);
-  ++scene.objects.back().triangle_count;
-  const Record exact = run(scene, on_cpu(Method::exact));
-  EXPECT_GT(exact.collisions.pairs.size(), 100u);
-  for (const Method method : {Method::far_pairs, Method::far}) {
-    const Record record = run(scene, on_cpu(method));
-    EXPECT_TRUE(record.found.given) << to_string(method);
-    EXPECT_TRUE(record.found.pairs.empty());
-    EXPECT_EQ(record.found.count, exact.found.count);
-    EXPECT_EQ(record.decided, record.found.count);
-    EXPECT_EQ(record.found.triangles.size(), record.found.triangle_count);
-    EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs);
-    EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
-    EXPECT_EQ(record.collisions.neighbours, exact.collisions.neighbours);
-    ASSERT_TRUE(record.verification);
-    EXPECT_TRUE(record.verification->adds_up());
-    EXPECT_FALSE(broken(record, true));
-    // The twin: the accounting notices an answer that lost one of its pairs.
-    Collisions lost = record.collisions;
-    lost.pairs.pop_back();
-    EXPECT_EQ(account(scene, lost.all()).false_negatives, 1u);
-    RunOptions first = on_cpu(method);
-    first.limit = 3;
-    const Record some = run(scene, first);
-    EXPECT_FALSE(some.found.given);
-    EXPECT_EQ(some.found.count, record.found.count);
-    EXPECT_EQ(some.found.triangles, record.found.triangles);
-    const std::vector<TrianglePair> all = exact.collisions.all();
-    EXPECT_EQ(some.collisions.all(), std::vector(all.begin(), all.begin() + 3));
+  const Scene scene = strays();
+  for (const std::vector<ObjectPair>& ignored :
+       {std::vector<ObjectPair>(), std::vector<ObjectPair>{{0, 1}}}) {
+    const auto asked = [&](Method method) {
+      RunOptions options = on_cpu(method);
+      options.ignored = ignored;
+      return options;
+    };
+    const Record exact = run(scene, asked(Method::exact));
+    EXPECT_GT(exact.collisions.pairs.size(), 100u);
+    for (const Method method : {Method::far_pairs, Method::far}) {
+      const Record record = run(scene, asked(method));
+      EXPECT_TRUE(record.found.given) << to_string(method);
+      EXPECT_TRUE(record.found.pairs.empty());
+      EXPECT_EQ(record.found.count, exact.found.count);
+      EXPECT_EQ(record.decided, record.found.count);
+      EXPECT_EQ(record.found.triangles.size(), record.found.triangle_count);
+      EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs);
+      EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
+      EXPECT_EQ(record.collisions.neighbours, exact.collisions.neighbours);
+      ASSERT_TRUE(record.verification);
+      EXPECT_TRUE(record.verification->adds_up());
+      EXPECT_FALSE(broken(record, true));
+      // The twin: the accounting notices an answer that lost one of its pairs.
+      Collisions lost = record.collisions;
+      lost.pairs.pop_back();
+      EXPECT_EQ(account(scene, lost.all(), {.ignored = ignored}).false_negatives, 1u);
+      RunOptions first = asked(method);
+      first.limit = 3;
+      const Record some = run(scene, first);
+      EXPECT_FALSE(some.found.given);
+      EXPECT_EQ(some.found.count, record.found.count);
+      EXPECT_EQ(some.found.triangles, record.found.triangles);
+      const std::vector<TrianglePair> all = exact.collisions.all();
+      EXPECT_EQ(some.collisions.all(), std::vector(all.begin(), all.begin() + 3));
+      Session session("cpu");
+      const Record alone =
+          run(scene, asked(method), session, {}, {.answer_only = true, .decide_neighbours = false});
+      EXPECT_EQ(alone.collisions.pairs, exact.collisions.pairs);
+      EXPECT_TRUE(alone.collisions.neighbour_pairs.empty());
+      EXPECT_EQ(alone.collisions.neighbours, exact.collisions.neighbours);
+    }
   }
 }
 
