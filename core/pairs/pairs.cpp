@@ -156,8 +156,9 @@ class Finding {
 
   // Keeps what blocks decided for the next frame; views tell nothing about it.
   void remember() {
-    // Oriented boxes leave out pairs that boxes along the axes would give in the next frame.
-    memory_.complete = plan_.regions.triangles.empty() && !plan_.blocks.oriented;
+    memory_.complete = plan_.regions.triangles.empty();
+    // While nothing moves the plan has no blocks, and the pairs are those of the frame before.
+    if (plan_.blocks.of) memory_.oriented = plan_.blocks.oriented != nullptr;
     memory_.pairs = memory_.complete ? of_blocks_ : std::vector<TrianglePair>();
     memory_.overlaps = plan_.blocks.overlaps;
     memory_.meetings = plan_.blocks.meetings;

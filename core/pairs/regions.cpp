@@ -491,8 +491,8 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
     return *std::move(parts);
   PairParts out = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
                         threads, all, memory.blocks);
-  // Oriented boxes are made anew in each frame.
-  if (out.rest.triangles.empty() && !out.blocks.empty() && !out.blocks.oriented)
+  // Oriented boxes are made anew in each frame, and leave out pairs that others give.
+  if (out.rest.triangles.empty() && !out.blocks.empty() && !out.blocks.oriented && !memory.oriented)
     keep_unmoved(scene, moved, memory.pairs, out.blocks);
   return out;
 }

@@ -71,6 +71,7 @@ struct PairMemory {
   /// yet. Its plan has it too, until it is destroyed.
   std::shared_ptr<TriangleBlocks> blocks;
   std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
+  bool oriented = false;  // by oriented boxes, so they are of use only while nothing moves
   /// Counts of that frame: of BlockMeetings and PairRegions.
   std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
 };

@@ -9,6 +9,7 @@
 #include "core/boxes/block.h"
 #include "tests/lab/boxes.h"
 #include "tests/lab/rational.h"
+#include "tests/lab/scenes.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

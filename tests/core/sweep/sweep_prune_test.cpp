@@ -11,6 +11,7 @@ namespace farcull {
 namespace {
 
 using namespace lab;
+using rational::Random;
 
 // ---- triangles ----
 
