@@ -269,7 +269,8 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 }
 
 std::vector<TrianglePair> pairs_left(const Record& record) {
-  return record.found.given ? record.collisions.all() : record.found.pairs;
+  const bool listed = !record.found.given && culls(record.options.method);
+  return listed ? record.found.pairs : record.collisions.all();
 }
 
 bool broken(const Record& record, bool strict) {

@@ -57,8 +57,9 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
 /// their order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// The pairs that were left to the exact tests, sorted. If these were decided as they were found:
-/// the colliding pairs, neighbours included, so that every other pair has to be accounted for.
+/// The pairs that were left to the exact tests, sorted. If these were decided as they were found,
+/// as by a method that culls nothing: the colliding pairs, neighbours included, so that every other
+/// pair has to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
 /// Whether the record breaks a guarantee: a pair was missed by a method that promises to miss none.
