@@ -45,15 +45,15 @@ enum class Unit : std::uint8_t { none, triangles, pairs, views };
 /// Why a stage runs, was left out, or how it went. n, m and `detail` are those of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,           // --full: nothing is left out
-  regions,        // n pairs of objects' boxes overlap
-  meetings,       // n such pairs, m objects are tested against themselves
-  crowded,        // too many such pairs to list; m as above
-  block_pairs,    // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
-                  // `detail` were compared, since a corner moved; empty: all
-  oriented_pairs, // the same, but oriented boxes of the blocks overlap too
-  only_blocks,    // nothing else can meet: no view is needed
-  boxes_meet,     // n pairs of triangles are asked about; triangles in none take no part
+  full,            // --full: nothing is left out
+  regions,         // n pairs of objects' boxes overlap
+  meetings,        // n such pairs, m objects are tested against themselves
+  crowded,         // too many such pairs to list; m as above
+  block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
+                   // `detail` were compared, since a corner moved; empty: all
+  oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
+  only_blocks,     // nothing else can meet: no view is needed
+  boxes_meet,      // n pairs of triangles are asked about; triangles in none take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap

@@ -36,12 +36,9 @@ double part_of(std::vector<double> values, double part) {
 }
 
 TEST(ContactScenes, HaveTheSizeOfTheirNameAndFollowTheirSeed) {
-  const std::map<std::string, Make> makers = {{"crumpled", make_crumpled},
-                                              {"rope", make_rope},
-                                              {"spheres", make_spheres},
-                                              {"fans", make_fans},
-                                              {"cad-cut", make_cad_cut},
-                                              {"funnel", make_funnel}};
+  const std::map<std::string, Make> makers = {{"crumpled", make_crumpled}, {"rope", make_rope},
+                                              {"spheres", make_spheres},   {"fans", make_fans},
+                                              {"cad-cut", make_cad_cut},   {"funnel", make_funnel}};
   for (const auto& [name, make] : makers) {
     const BuiltinScene& entry = *find_builtin_scene(name);
     for (const std::uint64_t size :
