@@ -162,9 +162,6 @@ struct BlockMeetings {
 std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
                                         const BlockPairs& pairs, double clearance, bool neighbours,
                                         unsigned threads);
-/// The same for all pairs of the meetings, with the pairs that were kept.
-std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
-                                          double clearance, bool neighbours, unsigned threads);
 
 /// The vertex indices of the triangles of a block, by corner.
 struct alignas(64) VertexBlock {

@@ -483,7 +483,6 @@ std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBl
   return sorted_unique(std::move(found), threads);
 }
 
-// Declared in join.h. It stands here because it chooses between the two kinds of boxes.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads) {
   if (meetings.pairs.size() == 0) return meetings.kept;

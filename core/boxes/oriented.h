@@ -68,4 +68,9 @@ std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBl
                                             const BlockPairs& pairs, double clearance,
                                             bool neighbours, unsigned threads);
 
+/// The pairs of triangles of all pairs of blocks of the meetings, with those that were kept; by
+/// oriented boxes if the meetings have these, else as pairs_of_some().
+std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
+                                          double clearance, bool neighbours, unsigned threads);
+
 }  // namespace farcull

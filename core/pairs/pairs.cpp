@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
+#include "core/boxes/oriented.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

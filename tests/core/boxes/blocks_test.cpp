@@ -4,6 +4,7 @@
 
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
+#include "core/boxes/oriented.h"
 #include "core/pairs/regions.h"
 #include "core/pairs/sweep.h"
 #include "experiments/scenes/builtin/scenes.h"
