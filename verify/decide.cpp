@@ -320,48 +320,43 @@ bool keep_first(std::uint64_t limit, Collisions& collisions) {
 }
 
 Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair> candidates,
-                                const ExactQuestion& question) {
+                                const MovedCorners& moved, const ExactQuestion& question) {
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  const bool complete = std::exchange(complete_, false);  // false while this call decides
+  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // while this call decides
   decided_ = candidates.size();
-  if (patience_.waits()) {
-    moved_.forget();
-    return count_answers(candidates, answers_about(scene, candidates, question));
-  }
-  bool known = moved_.update(scene) && complete && clearance_ == question.clearance &&
-               neighbours_ == question.neighbours;
-  clearance_ = question.clearance;
-  neighbours_ = question.neighbours;
   const bool sorted =
       std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();
-  if (known) {
-    known = mostly_unmoved(scene, moved_, candidates);
-    patience_.notify(known);
-  }
-  std::vector<PairAnswer> answers = known && sorted ? answers_with_kept(scene, candidates, question)
-                                                    : answers_about(scene, candidates, question);
+  const bool keeps = sorted && before && moved.follows(*before) &&
+                     clearance_ == question.clearance && neighbours_ == question.neighbours &&
+                     mostly_unmoved(moved, candidates);
+  clearance_ = question.clearance;
+  neighbours_ = question.neighbours;
+  std::vector<PairAnswer> answers = keeps ? answers_with_kept(scene, candidates, moved, question)
+                                          : answers_about(scene, candidates, question);
   const Collisions out = count_answers(candidates, answers);
   if (sorted) {
     pairs_.assign(candidates.begin(), candidates.end());
     answers_ = std::move(answers);
-    complete_ = true;
+    frame_ = moved.frame();
   }
   return out;
 }
 
 std::vector<PairAnswer> FrameDecider::answers_with_kept(const Scene& scene,
                                                         std::span<const TrianglePair> candidates,
+                                                        const MovedCorners& moved,
                                                         const ExactQuestion& question) {
-  const std::vector<std::uint8_t> moved = moved_.triangles(scene);
+  decided_ = 0;
+  if (!moved.any() && std::ranges::equal(candidates, pairs_)) return answers_;
   std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
   std::vector<TrianglePair> left;
   std::vector<std::uint32_t> where;  // indices of `left` in the candidates
   std::size_t before = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const TrianglePair& pair = candidates[k];
-    if ((moved[pair.a] | moved[pair.b]) == 0) {
+    if (!moved.triangle(pair.a) && !moved.triangle(pair.b)) {
       while (before < pairs_.size() && pairs_[before] < pair) ++before;
       if (before < pairs_.size() && pairs_[before] == pair) {
         answers[k] = answers_[before];

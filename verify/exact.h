@@ -24,6 +24,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <thread>
 #include <vector>
@@ -124,21 +125,20 @@ bool keep_first(std::uint64_t limit, Collisions& collisions);
 class FrameDecider {
  public:
   /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses the
-  /// answers of the last call if that call ended normally, the question is the same (threads may
-  /// differ), and the scene has the same triangles and objects.
+  /// answers of the last call if that call ended normally and was about the frame before, and the
+  /// question is the same (threads may differ). Precondition: moved.update(scene) began this frame.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
-                    const ExactQuestion& question = {});
+                    const MovedCorners& moved, const ExactQuestion& question = {});
   /// Pairs that the last call decided anew.
   std::size_t decided() const { return decided_; }
 
  private:
   std::vector<PairAnswer> answers_with_kept(const Scene& scene,
                                             std::span<const TrianglePair> candidates,
+                                            const MovedCorners& moved,
                                             const ExactQuestion& question);
 
-  MovedCorners moved_;
-  BackoffCounter patience_;
-  bool complete_ = false;
+  std::optional<std::uint64_t> frame_;  // that the answers are about
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;

@@ -118,12 +118,12 @@ class Comparison {
 }  // namespace
 
 void pair_blocks_here(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
-                      std::uint32_t to, std::size_t most, std::vector<BlockPair>& out) {
+                      std::uint32_t to, std::size_t most, std::vector<BlockPair>& out, bool twice) {
   const std::uint32_t first_a = trees.first_block(a), first_b = trees.first_block(b);
   for (std::uint32_t block = from; block < to && out.size() <= most; ++block) {
     const std::uint32_t own = block - first_a;
     const OneBox box(trees.nodes()[trees.tree(a).first[0] + own / kWide], own % kWide);
-    boxes::for_overlapping_leaves(trees.tree(b), trees.nodes(), box, a == b ? own : 0,
+    boxes::for_overlapping_leaves(trees.tree(b), trees.nodes(), box, a == b && !twice ? own : 0,
                                   [&](std::uint32_t other) {
                                     out.push_back({block, first_b + other});
                                   });
@@ -384,8 +384,8 @@ HWY_EXPORT(pair_blocks_here);
 HWY_EXPORT(compare_blocks_here);
 
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
-                 std::uint32_t to, std::size_t most, std::vector<BlockPair>& out) {
-  HWY_DYNAMIC_DISPATCH(pair_blocks_here)(trees, a, b, from, to, most, out);
+                 std::uint32_t to, std::size_t most, std::vector<BlockPair>& out, bool twice) {
+  HWY_DYNAMIC_DISPATCH(pair_blocks_here)(trees, a, b, from, to, most, out, twice);
 }
 void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
                     std::span<const LanePair> pairs, BlockFindings& out) {
@@ -393,7 +393,7 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 }
 
 BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions)
-    : blocks_(&blocks), trees_(blocks.objects.size()) {
+    : first_(blocks.first), trees_(blocks.objects.size()) {
   std::vector<FloatBox> leaves;
   for (std::uint32_t o = 0; o < trees_.size(); ++o) {
     if (regions[o].is_empty()) continue;
@@ -402,6 +402,19 @@ BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> region
     const std::size_t at = nodes_.size();
     nodes_.resize(at + blocks_of_tree(leaves.size()));
     trees_[o] = make_tree<float>(leaves, nodes_, at);
+  }
+}
+
+void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed) {
+  std::vector<std::uint32_t> leaves;
+  for (std::size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
+    const auto behind = std::ranges::upper_bound(first_, changed[begin]);
+    const auto object = static_cast<std::uint32_t>(behind - first_.begin() - 1);
+    leaves.clear();
+    for (; end < changed.size() && changed[end] < *behind; ++end)
+      leaves.push_back(changed[end] - first_[object]);
+    update_tree<float>([&](std::uint32_t k) { return blocks.bound(object, k); }, leaves, nodes_,
+                       trees_[object]);
   }
 }
 

@@ -110,14 +110,17 @@ class BlockTrees {
  public:
   /// Objects with an empty region have no tree.
   BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions);
+  /// Brings the trees up to date where these blocks (ascending, each once) have other boxes than
+  /// before. Precondition: blocks.origin is that of before, and every object has a tree.
+  void update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed);
 
   /// Its leaves are the blocks of the object, counted from 0.
   const BoxTree<float>& tree(std::uint32_t object) const { return trees_[object]; }
   const WideBoxes<float>* nodes() const { return nodes_.data(); }
-  std::uint32_t first_block(std::uint32_t object) const { return blocks_->first[object]; }
+  std::uint32_t first_block(std::uint32_t object) const { return first_[object]; }
 
  private:
-  const TriangleBlocks* blocks_;
+  std::vector<std::uint32_t> first_;  // as TriangleBlocks::first
   std::vector<BoxTree<float>> trees_;
   std::vector<WideBoxes<float>> nodes_;
 };
@@ -129,9 +132,11 @@ struct BlockPair {
 };
 
 /// Appends the pairs of a block in from .. to - 1 (of object a) and a block of object b whose boxes
-/// overlap; if a and b are one object, those with a <= b. Stops after more than `most` pairs.
+/// overlap; if a and b are one object and not `twice`, those with a <= b. Stops after more than
+/// `most` pairs.
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
-                 std::uint32_t to, std::size_t most, std::vector<BlockPair>& out);
+                 std::uint32_t to, std::size_t most, std::vector<BlockPair>& out,
+                 bool twice = false);
 
 struct BlockPairs {
   std::vector<BlockPair> between;  // of different objects

@@ -157,10 +157,11 @@ class Finding {
 
   // Keeps what blocks decided for the next frame; views tell nothing about it.
   void remember() {
-    memory_.complete = plan_.regions.triangles.empty();
+    const bool complete = plan_.regions.triangles.empty();
+    memory_.frame = complete ? std::optional(memory_.moved.frame()) : std::nullopt;
     // While nothing moves the plan has no blocks, and the pairs are those of the frame before.
     if (plan_.blocks.of) memory_.oriented = plan_.blocks.oriented != nullptr;
-    memory_.pairs = memory_.complete ? of_blocks_ : std::vector<TrianglePair>();
+    memory_.pairs = complete ? of_blocks_ : std::vector<TrianglePair>();
     memory_.overlaps = plan_.blocks.overlaps;
     memory_.meetings = plan_.blocks.meetings;
     memory_.triangles = plan_.blocks.triangles;

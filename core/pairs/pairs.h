@@ -105,7 +105,8 @@ struct PairPlan {
 
 /// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
 /// there are cores. memory: keeps the scene's last frame, if that was planned and found with the
-/// same object; null: nothing is kept. The memory may change which triangles are left to views, but
+/// same object; null: nothing is kept. Precondition: memory->moved.update(scene) began this frame.
+/// The memory may change which triangles are left to views, but
 /// loses no colliding pair. Throws Error for a scene that is too large, std::logic_error for a
 /// clearance that is negative or not finite.
 PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0,

@@ -176,29 +176,20 @@ std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
   return static_cast<std::uint64_t>(std::ranges::count(takes_part, 1));
 }
 
-enum class LastFrame : std::uint8_t { unknown, known, ignored };
-
-// Whether the memory knows the scene's last frame. Afterwards the memory holds this frame, unless
-// the answer is `ignored`.
-LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemory& memory) {
-  const bool complete = std::exchange(memory.complete, false);  // until this frame is found
-  if (memory.patience.waits()) {
-    memory.moved.forget();
-    return LastFrame::ignored;
-  }
-  const bool known = memory.moved.update(scene) && complete &&
-                     memory.clearance == settings.clearance &&
-                     memory.neighbours == settings.neighbours && memory.ignored == settings.ignored;
-  if (known) {
-    const bool worth_while = mostly_unmoved(scene, memory.moved, memory.pairs);
-    memory.patience.notify(worth_while);
-    if (worth_while) return LastFrame::known;
-  }
+// Whether the memory knows the scene's last frame, and that is of use. If not, the memory is made
+// ready to keep this one.
+bool knows_last_frame(const PairSettings& settings, PairMemory& memory) {
+  const std::optional<std::uint64_t> last =
+      std::exchange(memory.frame, {});  // until this frame is found
+  if (last && memory.moved.follows(*last) && memory.clearance == settings.clearance &&
+      memory.neighbours == settings.neighbours && memory.ignored == settings.ignored &&
+      (!memory.oriented || !memory.moved.any()) && mostly_unmoved(memory.moved, memory.pairs))
+    return true;
   memory.clearance = settings.clearance;
   memory.neighbours = settings.neighbours;
   memory.ignored = settings.ignored;
   memory.blocks.reset();
-  return LastFrame::unknown;
+  return false;
 }
 
 // The words for pairs that a stage of boxes leaves out.
@@ -237,12 +228,11 @@ Stage stage_of_choice(Reason reason, double ms, std::size_t in, std::size_t out)
 void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, PairPlan& plan) {
   const PairSettings& settings = plan.settings;
   const Stopwatch planning;
-  const LastFrame last = memory ? last_frame(scene, settings, *memory) : LastFrame::ignored;
-  plan.remembers = last != LastFrame::ignored;
+  const bool known = memory && knows_last_frame(settings, *memory);
+  plan.remembers = memory != nullptr;
   const auto split = [&](bool all) {
-    return last == LastFrame::known
-               ? split_next_frame(scene, threads, all, *memory)
-               : split_meetings(scene, settings.clearance, threads, all, settings.ignored);
+    return known ? split_next_frame(scene, threads, all, *memory)
+                 : split_meetings(scene, settings.clearance, threads, all, settings.ignored);
   };
   PairParts parts = split(false);
   const double split_ms = planning.ms();
@@ -320,7 +310,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
   if (settings.blocks && settings.views.empty() && settings.resolution == 0 && !settings.full) {
     split_and_choose(scene, threads, memory, plan);
   } else {
-    if (memory) memory->complete = false;
+    if (memory) memory->frame.reset();
     leave_to_views(scene, threads, plan);
   }
   if (!plan.choices.empty()) plan.most_tests = most_tests_of(scene, plan);

@@ -167,6 +167,14 @@ void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
   for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
 }
 
+// Triangles in all blocks of some pairs.
+std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks) {
+  std::uint64_t out = 0;
+  for (const std::uint32_t block : blocks_in(pairs, blocks.ranges.size()))
+    out += blocks.ranges[block].count;
+  return out;
+}
+
 // Puts the pairs of each meeting where they belong; returns those that are left to views.
 std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<MeetingPart> parts,
                              const std::vector<std::uint8_t>& complete, bool none_left,
@@ -193,8 +201,7 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<MeetingP
     }
     ++out.meetings;
   }
-  for (const std::uint32_t block : blocks_in(out.pairs, out.of->ranges.size()))
-    out.triangles += out.of->ranges[block].count;
+  out.triangles = triangles_in(out.pairs, *out.of);
   out.overlaps = out.pairs.size();
   return left;
 }
@@ -398,37 +405,62 @@ PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<
   return out;
 }
 
-// Leaves out pairs of blocks of which neither moved, and keeps the pairs that they gave before.
-void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
-                  const std::vector<TrianglePair>& before, BlockMeetings& out) {
-  const auto rests = [&](const BlockPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
-  std::erase_if(out.pairs.between, rests);
-  std::erase_if(out.pairs.inside, rests);
-  std::vector<std::uint8_t> of_moved(scene.triangles.size(), 0);
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    if (!moved[k]) continue;
-    const TriangleBlock& range = out.of->ranges[k];
-    for (std::uint32_t i = 0; i < range.count; ++i) of_moved[out.of->triangle(range.first + i)] = 1;
+// Per triangle the block that it is in.
+std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std::size_t triangles) {
+  std::vector<std::uint32_t> out(triangles);
+  for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
+    const TriangleBlock& range = blocks.ranges[k];
+    for (std::uint32_t i = 0; i < range.count; ++i) out[blocks.triangle(range.first + i)] = k;
   }
-  std::ranges::copy_if(before, std::back_inserter(out.kept), [&](const TrianglePair& pair) {
-    return !of_moved[pair.a] && !of_moved[pair.b];
-  });
+  return out;
 }
 
-// Per block whether a corner of its triangles moved.
-std::vector<std::uint8_t> moved_blocks(const Scene& scene, const MovedCorners& moved,
-                                       const TriangleBlocks& blocks, unsigned threads) {
-  const std::size_t n = blocks.ranges.size();
-  std::vector<std::uint8_t> out(n, 0);
-  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const TriangleBlock& range = blocks.ranges[k];
-      std::uint8_t any = 0;
-      for (std::uint32_t i = 0; i < range.count; ++i)
-        any |= moved.triangle(scene, blocks.triangle(range.first + i));
-      out[k] = any;
+// Pairs of blocks that overlap and of which one moved, each once. moved: per block; moved_blocks:
+// the blocks that did, ascending.
+BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<Meeting>& meetings,
+                          const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
+                          const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
+  struct Question {
+    std::uint32_t block, of, with;  // block of object `of`, and the other object
+    bool second;                    // `of` is the second object of its meeting
+  };
+  std::vector<Question> questions;
+  const auto ask = [&](std::uint32_t of, std::uint32_t with, bool second) {
+    for (auto k = std::ranges::lower_bound(moved_blocks, blocks.first[of]);
+         k != moved_blocks.end() && *k < blocks.first[of + 1]; ++k)
+      questions.push_back({*k, of, with, second});
+  };
+  for (const Meeting& meeting : meetings) {
+    ask(meeting.a, meeting.b, false);
+    if (meeting.a != meeting.b) ask(meeting.b, meeting.a, true);
+  }
+  const std::size_t chunks = chunks_for(questions.size(), 64, threads);
+  std::vector<BlockPairs> found(chunks);
+  for_chunks(questions.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<BlockPair> own;
+    for (std::size_t q = begin; q < end; ++q) {
+      const auto& [block, of, with, second] = questions[q];
+      own.clear();
+      pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
+      for (const auto& [a, b] : own) {
+        // Of two that moved, each finds the other.
+        if (of == with) {
+          if (!moved[b] || a <= b) {
+            found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
+          }
+        } else if (!second) {
+          found[chunk].between.push_back({a, b});
+        } else if (!moved[b]) {
+          found[chunk].between.push_back({b, a});
+        }
+      }
     }
   });
+  BlockPairs out;
+  for (const BlockPairs& some : found) {
+    out.between.insert(out.between.end(), some.between.begin(), some.between.end());
+    out.inside.insert(out.inside.end(), some.inside.begin(), some.inside.end());
+  }
   return out;
 }
 
@@ -472,29 +504,80 @@ PairParts split_meetings(const Scene& scene, double clearance, unsigned threads,
   return split(scene, meetings, regions, clearance, threads, all, blocks);
 }
 
-PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory) {
-  const double clearance = memory.clearance;
-  if (!memory.moved.any()) return unmoved_parts(scene, memory);
-  const bool ordered = memory.blocks != nullptr;
-  if (!ordered) {
-    memory.blocks =
-        std::make_shared<TriangleBlocks>(make_ordered_blocks(scene, clearance, threads));
-  } else if (memory.blocks.use_count() > 1) {  // somebody has the last frame's plan
+namespace {
+
+// The parts of a frame in which some blocks moved: the boxes, trees and pairs of these are made
+// anew. Nothing if many more pairs of blocks overlap than when the blocks were made, or if blocks
+// do not decide.
+std::optional<PairParts> parts_of_moved(const Scene& scene, unsigned threads, PairMemory& memory) {
+  constexpr std::size_t kMostGrowth = 2;
+  if (memory.blocks.use_count() > 1)  // somebody has the last frame's plan
     memory.blocks = std::make_shared<TriangleBlocks>(*memory.blocks);
-  }
   TriangleBlocks& blocks = *memory.blocks;
-  const std::vector<std::uint8_t> moved = moved_blocks(scene, memory.moved, blocks, threads);
-  if (ordered) update_boxes(scene, clearance, moved, threads, blocks);
+  std::vector<std::uint8_t> moved(blocks.ranges.size(), 0);
+  for (const std::uint32_t t : memory.moved.triangles()) moved[memory.block_of[t]] = 1;
+  std::vector<std::uint32_t> moved_blocks;
+  for (std::uint32_t k = 0; k < moved.size(); ++k) {
+    if (moved[k]) moved_blocks.push_back(k);
+  }
+  const Vec3 origin = blocks.origin;
+  update_boxes(scene, memory.clearance, moved, threads, blocks);
   const Meetings meetings = meetings_of(scene, blocks, memory.ignored);
-  if (auto parts =
-          parts_without_blocks(scene, blocks, meetings, clearance, threads, memory.ignored))
-    return *std::move(parts);
-  PairParts out = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
-                        threads, all, memory.blocks);
-  // Oriented boxes are made anew in each frame, and leave out pairs that others give.
-  if (out.rest.triangles.empty() && !out.blocks.empty() && !out.blocks.oriented && !memory.oriented)
-    keep_unmoved(scene, moved, memory.pairs, out.blocks);
+  if (meetings.crowded || is_uneven(blocks, meetings)) return std::nullopt;
+  if (origin == blocks.origin) {
+    memory.trees->update(blocks, moved_blocks);
+  } else {
+    memory.trees.emplace(blocks, blocks.objects);
+  }
+  PairParts out;
+  out.rest.objects.assign(scene.objects.size(), Box::empty());
+  count_meetings(scene, meetings, out.rest);
+  out.blocks.of = memory.blocks;
+  out.blocks.meetings = meetings.all.size();
+  out.blocks.pairs =
+      pairs_of_moved(*memory.trees, meetings.all, blocks, moved, moved_blocks, threads);
+  const auto has_moved = [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; };
+  const auto renew = [&](std::vector<BlockPair>& all, const std::vector<BlockPair>& anew) {
+    std::erase_if(all, has_moved);
+    all.insert(all.end(), anew.begin(), anew.end());
+  };
+  renew(memory.overlapping.between, out.blocks.pairs.between);
+  renew(memory.overlapping.inside, out.blocks.pairs.inside);
+  out.blocks.overlaps = memory.overlapping.size();
+  if (out.blocks.overlaps > kMostGrowth * memory.usual + blocks.ranges.size()) return std::nullopt;
+  out.blocks.triangles = triangles_in(memory.overlapping, blocks);
+  std::ranges::copy_if(memory.pairs, std::back_inserter(out.blocks.kept),
+                       [&](const TrianglePair& pair) {
+                         return !moved[memory.block_of[pair.a]] && !moved[memory.block_of[pair.b]];
+                       });
   return out;
+}
+
+}  // namespace
+
+PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory) {
+  if (!memory.moved.any()) return unmoved_parts(scene, memory);
+  if (memory.blocks) {
+    if (auto parts = parts_of_moved(scene, threads, memory)) return *std::move(parts);
+  }
+  const double clearance = memory.clearance;
+  memory.blocks = std::make_shared<TriangleBlocks>(make_ordered_blocks(scene, clearance, threads));
+  const TriangleBlocks& blocks = *memory.blocks;
+  const Meetings meetings = meetings_of(scene, blocks, memory.ignored);
+  auto parts = parts_without_blocks(scene, blocks, meetings, clearance, threads, memory.ignored);
+  if (!parts) {
+    parts = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance, threads, all,
+                  memory.blocks);
+  }
+  if (parts->blocks.of == memory.blocks && parts->rest.triangles.empty()) {
+    memory.trees.emplace(blocks, blocks.objects);
+    memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
+    memory.overlapping = parts->blocks.pairs;
+    memory.usual = memory.overlapping.size();
+  } else {
+    memory.blocks.reset();
+  }
+  return *std::move(parts);
 }
 
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,

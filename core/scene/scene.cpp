@@ -200,53 +200,95 @@ std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ign
 
 // ---- corners that moved ----
 
-bool MovedCorners::update(const Scene& scene) {
-  // If an allocation below throws, the copy is partial, so it is invalidated first.
-  const bool known = std::exchange(known_, false);
+void MovedCorners::update(const Scene& scene, const SceneChange* change) {
+  ++frame_;
+  triangles_.clear();
+  known_ = false;
+  SceneChange own;
+  if (waits_ > 0) {
+    --waits_;
+    last_.reset();
+    change = &own;
+  } else if (change == nullptr) {
+    own = compare(scene);
+    change = &own;
+  }
+  if (!change->same) {
+    first_of_.clear();
+    return;
+  }
+  mark(scene, change->vertices);
+  known_ = true;
+}
+
+SceneChange MovedCorners::compare(const Scene& scene) {
+  constexpr std::size_t kAtOnce = 64;  // most vertices lie among others that did not move either
+  // If an allocation below throws, the copy is partial and is lost.
+  std::optional<Copy> copy = std::exchange(last_, {});
+  SceneChange out;
   std::vector<Part> objects;
   objects.reserve(scene.objects.size());
   for (const Object& o : scene.objects) {
     objects.push_back({o.first_triangle, o.triangle_count, o.self});
   }
   const std::size_t n = scene.vertices.size();
-  const bool same =
-      known && vertices_.size() == n && objects_ == objects && triangles_ == scene.triangles;
-  any_ = false;
-  if (same) {
-    moved_.resize(n);
-    for (std::size_t v = 0; v < n; ++v) {
-      // By their bits: -0.0 and 0.0 count as different, which costs a comparison at most.
-      const bool moved =
-          std::memcmp(vertices_[v].data(), scene.vertices[v].data(), 3 * sizeof(double)) != 0;
-      moved_[v] = moved;
-      any_ |= moved;
-      if (moved) vertices_[v] = scene.vertices[v];
-    }
-  } else {
-    objects_ = std::move(objects);
-    triangles_ = scene.triangles;
-    vertices_ = scene.vertices;
+  out.same = copy && copy->vertices.size() == n && copy->objects == objects &&
+             copy->triangles == scene.triangles;
+  if (!out.same) {
+    last_ = {std::move(objects), scene.triangles, scene.vertices};
+    return out;
   }
-  known_ = true;
-  return same;
-}
-
-std::vector<std::uint8_t> MovedCorners::triangles(const Scene& scene) const {
-  std::vector<std::uint8_t> out(scene.triangles.size(), 0);
-  if (!any_) return out;
-  for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = triangle(scene, t);
+  // By their bits: -0.0 and 0.0 count as different, which costs a comparison at most.
+  const auto equal = [&](std::size_t from, std::size_t count) {
+    return std::memcmp(copy->vertices[from].data(), scene.vertices[from].data(),
+                       count * sizeof(Vec3)) == 0;
+  };
+  for (std::size_t from = 0; from < n; from += kAtOnce) {
+    const std::size_t end = std::min(from + kAtOnce, n);
+    if (equal(from, end - from)) continue;
+    for (std::size_t v = from; v < end; ++v) {
+      if (!equal(v, 1)) out.vertices.push_back(static_cast<std::uint32_t>(v));
+    }
+    for (std::size_t v = from; v < end; ++v) copy->vertices[v] = scene.vertices[v];
+  }
+  last_ = std::move(copy);
   return out;
 }
 
-bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
-                    std::span<const TrianglePair> pairs) {
+void MovedCorners::mark(const Scene& scene, const std::vector<std::uint32_t>& vertices) {
+  if (vertices.empty()) return;
+  if (first_of_.empty()) {
+    first_of_.assign(scene.vertices.size() + 2, 0);
+    of_vertex_.resize(3 * scene.triangles.size());
+    for (const auto& corners : scene.triangles)
+      for (const std::uint32_t v : corners) ++first_of_[v + 2];
+    for (std::size_t v = 2; v < first_of_.size(); ++v) first_of_[v] += first_of_[v - 1];
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+      for (const std::uint32_t v : scene.triangles[t]) of_vertex_[first_of_[v + 1]++] = t;
+  }
+  triangle_moved_.assign(scene.triangles.size(), 0);
+  for (const std::uint32_t v : vertices) {
+    for (std::uint32_t k = first_of_[v]; k < first_of_[v + 1]; ++k) {
+      const std::uint32_t t = of_vertex_[k];
+      if (std::exchange(triangle_moved_[t], std::uint8_t{1}) == 0) triangles_.push_back(t);
+    }
+  }
+}
+
+void MovedCorners::notify(bool worth_while) {
+  if (!known_) return;
+  waits_ = worth_while ? 0 : next_waits_;
+  next_waits_ = worth_while ? 1 : std::min(2 * next_waits_, kMostWaits);
+}
+
+bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs) {
   constexpr std::size_t kSampled = 256;
   if (pairs.empty()) return !moved.any();
   const std::size_t count = std::min(kSampled, pairs.size());
   std::size_t unmoved = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const TrianglePair& pair = pairs[pairs.size() * k / count];
-    unmoved += !moved.triangle(scene, pair.a) && !moved.triangle(scene, pair.b);
+    unmoved += !moved.triangle(pair.a) && !moved.triangle(pair.b);
   }
   return 2 * unmoved >= count;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -155,22 +156,36 @@ class IgnoredObjects {
 
 // ---- which corners moved from one frame to the next ----
 
-/// Which corners moved between two frames of the same triangles and objects.
+/// What is new in a frame of a scene.
+struct SceneChange {
+  bool same = false;  // as many vertices as in the frame before, the same triangles and objects
+  std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
+};
+
+/// Which corners moved between two frames of the same triangles and objects. Whoever keeps
+/// something of a frame keeps its number too, and uses what it kept only in the frame that follows.
 class MovedCorners {
  public:
-  /// Compares the scene with that of the last call, and keeps a copy. Returns false if there was
-  /// none or its triangles or objects differ; then nothing else may be asked.
-  bool update(const Scene& scene);
-  /// The next update() returns false.
-  void forget() { known_ = false; }
-  bool any() const { return any_; }
-  bool triangle(const Scene& scene, std::uint32_t t) const {
-    const auto& [p, q, r] = scene.triangles[t];
-    return (moved_[p] | moved_[q] | moved_[r]) != 0;
-  }
-
-  /// Per triangle whether a corner of it moved.
-  std::vector<std::uint8_t> triangles(const Scene& scene) const;
+  /// Begins the next frame. change: what is new in it, if the caller knows; null: the scene is
+  /// compared with that of the last frame, and a copy is kept. In a frame that waits() nothing is
+  /// compared.
+  void update(const Scene& scene, const SceneChange* change = nullptr);
+  /// True in some frames after those that were not worth while.
+  bool waits() const { return waits_ > 0; }
+  /// Says whether it was worth while to know what moved in this frame, if it is known. At most once
+  /// a frame.
+  void notify(bool worth_while);
+  /// Frames begun, the present one included.
+  std::uint64_t frame() const { return frame_; }
+  /// Whether this is the frame after the given one and has the same triangles and objects, so that
+  /// the others may be asked what moved since.
+  bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
+  /// Whether a triangle has a corner that moved.
+  bool any() const { return !triangles_.empty(); }
+  bool triangle(std::uint32_t t) const { return any() && triangle_moved_[t] != 0; }
+  /// All these triangles, each once.
+  const std::vector<std::uint32_t>& triangles() const { return triangles_; }
+  static constexpr int kMostWaits = 16;  // frames
 
  private:
   struct Part {
@@ -178,31 +193,27 @@ class MovedCorners {
     bool self;
     bool operator==(const Part&) const = default;
   };
-  bool known_ = false, any_ = false;
-  std::vector<Part> objects_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<Vec3> vertices_;
-  std::vector<std::uint8_t> moved_;  // per vertex: bits changed
-};
+  struct Copy {
+    std::vector<Part> objects;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> vertices;
+  };
+  SceneChange compare(const Scene& scene);
+  void mark(const Scene& scene, const std::vector<std::uint32_t>& vertices);
 
-/// Says whether comparing frames is worth while: not for some frames after most corners moved.
-class BackoffCounter {
- public:
-  /// True if this frame is not to be compared. To be asked once a frame.
-  bool waits() { return frames_left_ > 0 && frames_left_-- > 0; }
-  void notify(bool worth_while) {
-    frames_left_ = worth_while ? 0 : next_;
-    next_ = worth_while ? 1 : std::min(2 * next_, kMostFrames);
-  }
-  static constexpr int kMostFrames = 16;
-
- private:
-  int frames_left_ = 0, next_ = 1;
+  std::uint64_t frame_ = 0;
+  bool known_ = false;
+  int waits_ = 0, next_waits_ = 1;  // frames
+  std::optional<Copy> last_;
+  // Per vertex v the triangles that have it: of_vertex_[first_of_[v]] to of_vertex_[first_of_[v +
+  // 1]]. Empty: not made yet.
+  std::vector<std::uint32_t> first_of_, of_vertex_;
+  std::vector<std::uint8_t> triangle_moved_;  // if any did
+  std::vector<std::uint32_t> triangles_;      // that moved
 };
 
 /// Whether less than half of an even sample of the pairs have a triangle that moved. Without a
 /// pair: whether nothing moved.
-bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
-                    std::span<const TrianglePair> pairs);
+bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

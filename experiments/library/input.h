@@ -57,9 +57,10 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// Copies the input into `scene`, which holds the scene of the last call, and reuses its memory.
 /// self: every object is tested against itself; self_objects: the same for each object, empty or
-/// one for each. Throws Error for input that is not as ColliderInput says.
+/// one for each. change: receives what is new since the last call; may be null. Throws Error for
+/// input that is not as ColliderInput says, and leaves the scene empty then.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene);
+          Scene& scene, SceneChange* change = nullptr);
 
 /// Throws Error naming an option that is bad for any input.
 void check(const ColliderOptions& options);

@@ -63,6 +63,7 @@ struct Collider::State {
   RunOptions run;
   Session session;
   Scene scene;  // of the last call
+  SceneChange change;
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
@@ -85,6 +86,8 @@ struct Collider::State {
   // Reports the device of an answer; `used` may have none.
   void report_device(const UsedDevice& used, ColliderReport& report);
 
+  // Takes the scene of a call; from the third call on, what is new in it as well.
+  void take_scene(const ColliderInput& input);
   /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
   /// device can be trusted.
   ColliderResult find(const Stopwatch& start);
@@ -107,13 +110,21 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
   report.promises_reason = kept.reason + (risk.empty() ? "" : "; " + risk);
 }
 
+void Collider::State::take_scene(const ColliderInput& input) {
+  // Remembering takes more memory, which is of no use to a single call.
+  if (++calls == 2) session.remember_frames();
+  const PairMemory* const memory = session.pair_memory();
+  const bool compares = memory && !memory->moved.waits();
+  change = {};
+  take(input, options.self, options.self_objects, scene, compares ? &change : nullptr);
+}
+
 ColliderResult Collider::State::find(const Stopwatch& start) {
   device();
   run.ignored = ignored_of(options, scene.objects.size());
-  // Remembering takes two more copies of the scene, which are of no use to a single call.
-  if (++calls == 2) session.remember_frames();
   const Record record = farcull::run(
-      scene, run, session, {}, {.answer_only = true, .decide_neighbours = options.neighbours});
+      scene, run, session, {},
+      {.answer_only = true, .change = &change, .decide_neighbours = options.neighbours});
   ColliderResult out;
   ColliderReport& report = out.report;
   report.candidates_ms = start.ms() - record.ms.exact - record.ms.contacts;
@@ -147,7 +158,7 @@ Collider& Collider::operator=(Collider&&) noexcept = default;
 ColliderResult Collider::find(const ColliderInput& input) {
   return exclusive(state_, "Collider", [&](State& state) {
     const Stopwatch start;
-    take(input, state.options.self, state.options.self_objects, state.scene);
+    state.take_scene(input);
     try {
       return state.find(start);
     } catch (...) {
@@ -210,7 +221,7 @@ void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
   const ExactQuestion question{
       .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
   const std::uint64_t limit = part.empty() || options.limit == 0 ? 0 : options.limit - given;
-  const auto [found, count, whole] = decide(scene, part, question, limit, nullptr);
+  const auto [found, count, whole] = decide(scene, part, question, limit);
   decided += count;
   if (limit > 0) complete = whole && candidates->at_end();
   const auto append = [&](const std::vector<TrianglePair>& those, bool neighbours) {

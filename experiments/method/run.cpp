@@ -82,16 +82,19 @@ class Deciding {
 
 // Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
-                const ExactQuestion* question, Record& record) {
-  const Plan planned =
-      plan(scene, record.options, session.threads(), progress, session.pair_memory());
+                const ExactQuestion* question, const SceneChange* change, Record& record) {
+  const Stopwatch comparing;
+  PairMemory* const memory = session.pair_memory();
+  if (memory) memory->moved.update(scene, change);
+  const double compared_ms = comparing.ms();
+  const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
   record.options.ignored = planned.options.ignored;
   record.plan = planned.stages();
   record.found = find(scene, planned, session, progress, question);
   record.trace = planned.trace;
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   record.ms.setup = record.found.setup_ms;
-  record.ms.cull = planned.ms + record.found.ms;
+  record.ms.cull = compared_ms + planned.ms + record.found.ms;
 }
 
 // Decides the candidates, or takes the answers if they were decided as they were found.
@@ -117,14 +120,21 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
   } else if (!record.found.pairs.empty() || options.full) {
     if (progress) progress("exact tests");
     const Stopwatch watch;
+    const std::vector<TrianglePair>& pairs = record.found.pairs;
+    FrameDecider* const frames = options.limit == 0 ? session.frame_decider() : nullptr;
     FirstCollisions first =
-        decide(scene, record.found.pairs, question, options.limit, session.frame_decider());
+        frames ? FirstCollisions{.collisions = frames->decide(
+                                     scene, pairs, session.pair_memory()->moved, question),
+                                 .decided = pairs.size()}
+               : decide(scene, pairs, question, options.limit);
     record.collisions = std::move(first.collisions);
     record.decided = first.decided;
     record.complete = first.complete;
     ran(watch.ms());
   }
   record.trace.push_back(stage);
+  if (PairMemory* const memory = session.pair_memory())
+    memory->moved.notify(mostly_unmoved(memory->moved, record.found.pairs));
 }
 
 // If the options ask for it, accounts for every pair that was not left to the exact tests.
@@ -213,7 +223,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
                                .neighbours = options.neighbours && use.decide_neighbours};
   // A filter and a limit need the list of all candidates.
   const bool lists = use.filter || options.limit > 0;
-  find_stage(scene, session, progress, lists ? nullptr : &question, record);
+  find_stage(scene, session, progress, lists ? nullptr : &question, use.change, record);
   Candidates& found = record.found;
   if (!use.answer_only) {
     record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;
@@ -242,11 +252,9 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
 }
 
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
-                       const ExactQuestion& question, std::uint64_t limit, FrameDecider* frames) {
+                       const ExactQuestion& question, std::uint64_t limit) {
   if (limit > 0) return decide_first(scene, candidates, limit, question);
-  return {.collisions = frames ? frames->decide(scene, candidates, question)
-                               : decide(scene, candidates, question),
-          .decided = candidates.size()};
+  return {.collisions = decide(scene, candidates, question), .decided = candidates.size()};
 }
 
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,

@@ -36,6 +36,9 @@ struct RunUse {
   /// and no degenerate triangles of the scene, no accounting, no promise, and no triangles of
   /// candidates.
   bool answer_only = false;
+  /// What is new since the last run of the session, if the caller knows; null: the scenes are
+  /// compared. Of use only where the session remembers frames.
+  const SceneChange* change = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
 };
 
@@ -45,9 +48,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
 /// Decides candidates by exact predicates: all of them, or with limit > 0 until so many collide.
-/// frames: keeps the answers of the scene's last frame, for a call without a limit; may be null.
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
-                       const ExactQuestion& question, std::uint64_t limit, FrameDecider* frames);
+                       const ExactQuestion& question, std::uint64_t limit);
 
 /// One contact for each pair, with the detail asked for; empty if that is `none`.
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,

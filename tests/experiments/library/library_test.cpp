@@ -1,6 +1,7 @@
 // The library as its users see it, held against the method `exact`.
 #include "core/base/random.h"
 #include "experiments/library/farcull.h"
+#include "experiments/library/input.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -105,6 +106,88 @@ TEST(Library, NothingIsNothing) {
   const std::vector<std::uint32_t> starts = {0, 0, 1, 2, 2};            // empty ones among them
   EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs,
             (std::vector<ColliderPair>{{0, 1}}));
+}
+
+// Frames one after the other, in which some vertices move, triangles or objects become others, or
+// the input is bad. The collider keeps what did not move; each answer is that of a new one.
+TEST(Library, FramesAreAsFresh) {
+  RandomNumbers random(3);
+  Flat flat(make_builtin_scene("two-spheres"));
+  Collider collider;
+  std::size_t changes = 0;
+  std::vector<ColliderPair> last;
+  for (int frame = 0; frame < 40; ++frame) {
+    const std::size_t at = 3 * random.below(flat.vertices.size() / 3);
+    switch (random.below(7)) {
+      case 0:
+        std::swap(flat.triangles[random.below(flat.triangles.size())],
+                  flat.triangles[random.below(flat.triangles.size())]);
+        break;
+      case 1:
+        flat.starts[1] = 5120 + random.below(3u);
+        break;
+      case 2: {  // refused, and refused again, though it is what was there before
+        const double good = std::exchange(flat.vertices[at], HUGE_VAL);
+        for (int twice = 0; twice < 2; ++twice)
+          EXPECT_THROW(collider.find(flat.input()), ColliderError);
+        flat.vertices[at] = good;
+        break;
+      }
+      case 3: {
+        const std::uint32_t good = std::exchange(flat.triangles[at], 5124u);
+        for (int twice = 0; twice < 2; ++twice)
+          EXPECT_THROW(collider.find(flat.input()), ColliderError);
+        flat.triangles[at] = good;
+        break;
+      }
+      case 4:
+        break;
+      default:
+        for (std::size_t k = at; k < std::min(at + 120, flat.vertices.size()); ++k)
+          flat.vertices[k] += 0.05 * random.between(-1, 1);
+    }
+    const std::vector<std::int64_t> wide(flat.triangles.begin(), flat.triangles.end());
+    const ColliderResult found = random.below(2) == 0
+                                     ? collider.find(flat.input())
+                                     : collider.find({flat.vertices, {}, flat.starts, wide});
+    const ColliderResult fresh = Collider().find(flat.input());
+    ASSERT_EQ(found.pairs, fresh.pairs) << frame;
+    ASSERT_EQ(found.neighbour_pairs, fresh.neighbour_pairs) << frame;
+    changes += found.pairs != last;
+    last = found.pairs;
+  }
+  EXPECT_GT(changes, 10u);
+}
+
+// Bit for bit, so that a zero of the other sign counts too.
+TEST(LibraryInput, SaysWhichVerticesAreNew) {
+  Flat flat(make_builtin_scene("two-spheres"));
+  Scene scene;
+  const auto change = [&] {
+    SceneChange out;
+    take(flat.input(), false, {}, scene, &out);
+    return out;
+  };
+  EXPECT_FALSE(change().same);
+  const SceneChange none = change();
+  EXPECT_TRUE(none.same && none.vertices.empty());
+  const auto vertices = static_cast<std::uint32_t>(flat.vertices.size() / 3);
+  for (const std::uint32_t v : {0u, 1u, 511u, 512u, vertices - 1}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double& x = flat.vertices[3 * v + axis];
+      x = x == 0 ? -x : std::nextafter(x, 9.0);
+      const SceneChange one = change();
+      EXPECT_TRUE(one.same);
+      EXPECT_EQ(one.vertices, std::vector<std::uint32_t>{v}) << axis;
+    }
+  }
+  std::swap(flat.triangles[7], flat.triangles[8]);
+  EXPECT_FALSE(change().same);
+  EXPECT_TRUE(change().same);
+  flat.starts[1] += 1;
+  EXPECT_FALSE(change().same);
+  flat.vertices.insert(flat.vertices.end(), {0.0, 0.0, 0.0});
+  EXPECT_FALSE(change().same);
 }
 
 template <class Call>
