@@ -102,11 +102,11 @@ void fill_columns(const BoxAt& box, BlockLanes& out) {
 #ifdef __SSE2__
   __m128 least = _mm_set1_ps(kInfinite), most = _mm_set1_ps(-kInfinite);
   for (std::uint32_t k = 0; k < kWide; k += 4) {
-    const std::array<FloatBox, 4> four = {box(k), box(k + 1), box(k + 2), box(k + 3)};
     std::array<__m128, 4> lo, hi;
-    for (std::size_t i = 0; i < 4; ++i) {
-      lo[i] = _mm_load_ps(four[i].lo.data());
-      hi[i] = _mm_load_ps(four[i].hi.data());
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const FloatBox& own = box(k + i);
+      lo[i] = _mm_load_ps(own.lo.data());
+      hi[i] = _mm_load_ps(own.hi.data());
       least = _mm_min_ps(least, lo[i]);
       most = _mm_max_ps(most, hi[i]);
     }
@@ -167,7 +167,7 @@ Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, dou
 
 void fill_lanes(std::span<const std::uint32_t> triangles, const FloatBox* boxes,
                 std::uint32_t first, BlockLanes& out) {
-  const auto box = [&](std::uint32_t k) { return boxes[triangles[k] - first]; };
+  const auto box = [&](std::uint32_t k) -> const FloatBox& { return boxes[triangles[k] - first]; };
   out.triangles = {};
   std::ranges::copy(triangles, out.triangles.begin());
   if (triangles.size() == kWide) return fill_columns(box, out);

@@ -200,11 +200,11 @@ std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ign
 
 // ---- corners that moved ----
 
-void MovedCorners::update(const Scene& scene, const SceneChange* change) {
+void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   ++frame_;
   triangles_.clear();
   known_ = false;
-  SceneChange own;
+  FrameChange own;
   if (waits_ > 0) {
     --waits_;
     last_.reset();
@@ -221,11 +221,11 @@ void MovedCorners::update(const Scene& scene, const SceneChange* change) {
   known_ = true;
 }
 
-SceneChange MovedCorners::compare(const Scene& scene) {
+FrameChange MovedCorners::compare(const Scene& scene) {
   constexpr std::size_t kAtOnce = 64;  // most vertices lie among others that did not move either
   // If an allocation below throws, the copy is partial and is lost.
   std::optional<Copy> copy = std::exchange(last_, {});
-  SceneChange out;
+  FrameChange out;
   std::vector<Part> objects;
   objects.reserve(scene.objects.size());
   for (const Object& o : scene.objects) {

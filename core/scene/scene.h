@@ -157,7 +157,7 @@ class IgnoredObjects {
 // ---- which corners moved from one frame to the next ----
 
 /// What is new in a frame of a scene.
-struct SceneChange {
+struct FrameChange {
   bool same = false;  // as many vertices as in the frame before, the same triangles and objects
   std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
 };
@@ -169,7 +169,7 @@ class MovedCorners {
   /// Begins the next frame. change: what is new in it, if the caller knows; null: the scene is
   /// compared with that of the last frame, and a copy is kept. In a frame that waits() nothing is
   /// compared.
-  void update(const Scene& scene, const SceneChange* change = nullptr);
+  void update(const Scene& scene, const FrameChange* change = nullptr);
   /// True in some frames after those that were not worth while.
   bool waits() const { return waits_ > 0; }
   /// Says whether it was worth while to know what moved in this frame, if it is known. At most once
@@ -198,7 +198,7 @@ class MovedCorners {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> vertices;
   };
-  SceneChange compare(const Scene& scene);
+  FrameChange compare(const Scene& scene);
   void mark(const Scene& scene, const std::vector<std::uint32_t>& vertices);
 
   std::uint64_t frame_ = 0;

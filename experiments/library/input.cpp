@@ -73,7 +73,7 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
 // but the numbers in the scene have to be right. What was in `to` was checked before, so what is
 // equal to it needs no check: most of a scene is often as it was in the last call.
 // change: receives the vertices that differ from those before; may be null.
-void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, SceneChange* change) {
+void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change) {
   const std::size_t before = 3 * to.size();
   to.resize(from.size() / 3);
   if (from.empty()) return;
@@ -134,7 +134,7 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
 }
 
 void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, SceneChange* change) {
+          Scene& scene, FrameChange* change) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (input.vertices.size() % 3 != 0 || input.vertices.size() / 3 > kMost)
     throw Error("vertices", "are not three doubles for each of at most 2^32 - 1 vertices",
@@ -188,7 +188,7 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
 }  // namespace
 
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, SceneChange* change) {
+          Scene& scene, FrameChange* change) {
   try {
     copy(input, self, self_objects, scene, change);
   } catch (...) {

@@ -60,7 +60,7 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 /// one for each. change: receives what is new since the last call; may be null. Throws Error for
 /// input that is not as ColliderInput says, and leaves the scene empty then.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, SceneChange* change = nullptr);
+          Scene& scene, FrameChange* change = nullptr);
 
 /// Throws Error naming an option that is bad for any input.
 void check(const ColliderOptions& options);

@@ -63,7 +63,7 @@ struct Collider::State {
   RunOptions run;
   Session session;
   Scene scene;  // of the last call
-  SceneChange change;
+  FrameChange change;
   std::uint64_t calls = 0;
   std::atomic_flag used;
 

@@ -82,7 +82,7 @@ class Deciding {
 
 // Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
-                const ExactQuestion* question, const SceneChange* change, Record& record) {
+                const ExactQuestion* question, const FrameChange* change, Record& record) {
   const Stopwatch comparing;
   PairMemory* const memory = session.pair_memory();
   if (memory) memory->moved.update(scene, change);

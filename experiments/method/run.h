@@ -38,7 +38,7 @@ struct RunUse {
   bool answer_only = false;
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
   /// compared. Of use only where the session remembers frames.
-  const SceneChange* change = nullptr;
+  const FrameChange* change = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
 };
 

@@ -164,19 +164,19 @@ TEST(LibraryInput, SaysWhichVerticesAreNew) {
   Flat flat(make_builtin_scene("two-spheres"));
   Scene scene;
   const auto change = [&] {
-    SceneChange out;
+    FrameChange out;
     take(flat.input(), false, {}, scene, &out);
     return out;
   };
   EXPECT_FALSE(change().same);
-  const SceneChange none = change();
+  const FrameChange none = change();
   EXPECT_TRUE(none.same && none.vertices.empty());
   const auto vertices = static_cast<std::uint32_t>(flat.vertices.size() / 3);
   for (const std::uint32_t v : {0u, 1u, 511u, 512u, vertices - 1}) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double& x = flat.vertices[3 * v + axis];
       x = x == 0 ? -x : std::nextafter(x, 9.0);
-      const SceneChange one = change();
+      const FrameChange one = change();
       EXPECT_TRUE(one.same);
       EXPECT_EQ(one.vertices, std::vector<std::uint32_t>{v}) << axis;
     }
