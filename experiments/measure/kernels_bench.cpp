@@ -185,7 +185,8 @@ BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)->Apply(perc
 BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)->Apply(percents);
 
 // ---- Kernels of scenes: the least that a stage of far-pairs does for one of its items
-// (experiments/report/floors.py). All but `read` use a part of the scene that stays in caches.
+// (experiments/report/floors.py). All but read_triangles() use a part of the scene that stays in
+// caches.
 
 /// A scene, and what far-pairs finds in it.
 struct Prepared {
@@ -207,12 +208,17 @@ const Prepared& prepared(const std::string& name) {
   return out;
 }
 
-/// At most `count` items from the middle of the list.
+/// At most `count` items of the list, as stretches that lie evenly in it.
 template <class Item>
-std::vector<Item> middle_of(const std::vector<Item>& list, std::size_t count) {
-  const std::size_t taken = std::min(count, list.size());
-  const auto from = list.begin() + static_cast<std::ptrdiff_t>((list.size() - taken) / 2);
-  return {from, from + static_cast<std::ptrdiff_t>(taken)};
+std::vector<Item> some_of(const std::vector<Item>& list, std::size_t count) {
+  constexpr std::size_t kStretches = 16;
+  if (list.size() <= count) return list;
+  std::vector<Item> out;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const auto from = list.begin() + static_cast<std::ptrdiff_t>(list.size() * k / kStretches);
+    out.insert(out.end(), from, from + static_cast<std::ptrdiff_t>(count / kStretches));
+  }
+  return out;
 }
 
 void set_items(benchmark::State& state, std::size_t of_each) {
@@ -240,7 +246,7 @@ void box_triangles(benchmark::State& state, const std::string& name) {
   const Scene& scene = prepared(name).scene;
   std::vector<std::uint32_t> all(scene.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
-  const std::vector<std::uint32_t> some = middle_of(all, kCount);
+  const std::vector<std::uint32_t> some = some_of(all, kCount);
   const std::size_t blocks = some.size() / kWide;
   UninitializedVector<BlockLanes> lanes(blocks);
   for (auto _ : state) {
@@ -288,7 +294,7 @@ void compare_runs(benchmark::State& state, const std::string& name) {
   const BlockPairs& all = plan.blocks.pairs;
   BlockPairs some;
   const bool inside = all.inside.size() > all.between.size();
-  (inside ? some.inside : some.between) = middle_of(inside ? all.inside : all.between, kBlockPairs);
+  (inside ? some.inside : some.between) = some_of(inside ? all.inside : all.between, kBlockPairs);
   if (plan.blocks.oriented) {
     for (auto _ : state)
       benchmark::DoNotOptimize(
@@ -343,7 +349,7 @@ void compare_apart(benchmark::State& state) {
 // Filters candidates. An item is a candidate.
 void filter_candidates(benchmark::State& state, const std::string& name) {
   const Prepared& of = prepared(name);
-  const std::vector<TrianglePair> some = middle_of(of.candidates, kCount);
+  const std::vector<TrianglePair> some = some_of(of.candidates, kCount);
   std::vector<Triage> answers(some.size());
   for (auto _ : state) {
     filter_pairs(of.scene, some, 0, answers);

@@ -146,8 +146,8 @@ def main():
         "and number of threads.", "",
         "All times are in ms; a number behind *floor* is the number of threads. A *floor* is the number of items that the run "
         "itself counts, times the time of one kernel for one item, divided by the threads. Kernels run in one thread on "
-        "data of the scene that stay in the caches, except that reading goes through the whole scene; the least of three "
-        f"times counts. *Fastest peer* is the fastest of {PEERS.replace(',', ', ')}, with the same exact tests of its own "
+        "a part of the scene, again and again, so that it stays in the caches and the processor foresees the branches; only "
+        f"reading goes through the whole scene. The least of three times counts. *Fastest peer* is the fastest of {PEERS.replace(',', ', ')}, with the same exact tests of its own "
         "candidates. A peer whose first run takes more than a second is not asked again ([bench](../bench.md)).", "",
         *head, *rows, "",
         "## Distances", "",
