@@ -1,11 +1,16 @@
-// farcull_kernels_bench times single kernels by Google Benchmark. Inputs are drawn with a fixed
-// seed.
+// farcull_kernels_bench [SCENE...] times single kernels by Google Benchmark. Inputs are drawn with
+// a fixed seed, or come from the built-in scenes that are named.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <numeric>
+#include <string>
 #include <vector>
 
+#include "core/boxes/oriented.h"
 #include "core/pairs/backend.h"
 #include "core/pairs/grid.h"
 #include "core/pairs/pairs.h"
@@ -181,7 +186,198 @@ BENCHMARK_CAPTURE(frame, crumpled_next, "crumpled", true, true)->Apply(percents)
 BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)->Apply(percents);
 BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)->Apply(percents);
 
+// ---- Kernels of scenes: the least that a stage of far-pairs does for one of its items
+// (experiments/report/floors.py). All but read_triangles() use a part of the scene that stays in
+// caches.
+
+/// A scene, and what far-pairs finds in it.
+struct Prepared {
+  Scene scene;
+  PairPlan plan;
+  std::vector<TrianglePair> candidates;
+};
+const Prepared& prepared(const std::string& name) {
+  static std::map<std::string, Prepared> all;
+  const auto [at, is_new] = all.try_emplace(name);
+  Prepared& out = at->second;
+  if (!is_new) return out;
+  out.scene = make_builtin_scene(name);
+  const PairSettings settings{.neighbours = false};
+  const auto backend = cpu_pair_backend(1);
+  PairWorkspace workspace;
+  out.plan = plan_pairs(out.scene, settings, 1);
+  out.candidates = find_pairs(out.scene, out.plan, *backend, workspace).candidates;
+  return out;
+}
+
+/// At most `count` items of the list, as stretches that lie evenly in it.
+template <class Item>
+std::vector<Item> some_of(const std::vector<Item>& list, std::size_t count) {
+  constexpr std::size_t kStretches = 16;
+  if (list.size() <= count) return list;
+  std::vector<Item> out;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const auto from = list.begin() + static_cast<std::ptrdiff_t>(list.size() * k / kStretches);
+    out.insert(out.end(), from, from + static_cast<std::ptrdiff_t>(count / kStretches));
+  }
+  return out;
+}
+
+void set_items(benchmark::State& state, std::size_t of_each) {
+  if (of_each == 0) state.SkipWithError("the scene has no such item");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(of_each));
+}
+
+// Reads all triangles of the scene, in the order of the file. An item is a triangle.
+void read_triangles(benchmark::State& state, const std::string& name) {
+  const Scene& scene = prepared(name).scene;
+  for (auto _ : state) {
+    Corners sum = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (const auto& [i, j, k] : scene.triangles) {
+      sum[0] += scene.vertices[i];
+      sum[1] += scene.vertices[j];
+      sum[2] += scene.vertices[k];
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  set_items(state, scene.triangles.size());
+}
+
+// Makes boxes of triangles in lanes. An item is a triangle.
+void box_triangles(benchmark::State& state, const std::string& name) {
+  const Scene& scene = prepared(name).scene;
+  std::vector<std::uint32_t> all(scene.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const std::vector<std::uint32_t> some = some_of(all, kCount);
+  const std::size_t blocks = some.size() / kWide;
+  UninitializedVector<BlockLanes> lanes(blocks);
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < blocks; ++k)
+      fill_lanes(scene, std::span(some).subspan(k * kWide, kWide), 0, Vec3::Zero(), lanes[k]);
+    benchmark::ClobberMemory();
+  }
+  set_items(state, blocks * kWide);
+}
+
+// Sorts as many codes as the scene has runs that meet others. An item is a code.
+void order_runs(benchmark::State& state, const std::string& name) {
+  struct Coded {
+    std::uint32_t code, run;
+  };
+  Random random(6);
+  std::vector<Coded> given(prepared(name).plan.blocks.triangles / kWide);
+  for (Coded& one : given)
+    one = {static_cast<std::uint32_t>(random.below(1 << 24)),
+           static_cast<std::uint32_t>(&one - given.data())};
+  std::vector<Coded> now(given.size()), next(given.size());
+  for (auto _ : state) {
+    const std::vector<Coded>* from = &given;
+    for (int shift = 0; shift < 24; shift += 8) {
+      std::array<std::uint32_t, 257> first{};
+      const auto digit = [&](const Coded& one) { return one.code >> shift & 255; };
+      for (const Coded& one : *from) ++first[digit(one) + 1];
+      std::partial_sum(first.begin(), first.end(), first.begin());
+      for (const Coded& one : *from) next[first[digit(one)]++] = one;
+      now.swap(next);
+      from = &now;
+    }
+    benchmark::DoNotOptimize(now.data());
+    benchmark::ClobberMemory();
+  }
+  set_items(state, given.size());
+}
+
+// As many pairs of blocks as far-pairs compares at a time.
+constexpr std::size_t kBlockPairs = 2048;
+
+// Compares the boxes of the triangles of pairs of runs. An item is a pair of runs.
+void compare_runs(benchmark::State& state, const std::string& name) {
+  const auto& [scene, plan, candidates] = prepared(name);
+  const BlockPairs& all = plan.blocks.pairs;
+  BlockPairs some;
+  const bool inside = all.inside.size() > all.between.size();
+  (inside ? some.inside : some.between) = some_of(inside ? all.inside : all.between, kBlockPairs);
+  if (plan.blocks.oriented) {
+    for (auto _ : state)
+      benchmark::DoNotOptimize(
+          pairs_of_oriented(scene, *plan.blocks.oriented, some, 0, false, 1).data());
+    return set_items(state, some.size());
+  }
+  if (some.size() == 0) return set_items(state, 0);
+  const TriangleBlocks& blocks = *plan.blocks.of;
+  const std::vector<std::uint32_t> used = blocks_in(some, blocks.ranges.size());
+  UninitializedVector<BlockLanes> lanes(used.size());
+  UninitializedVector<VertexBlock> vertices(used.size());
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const TriangleBlock& range = blocks.ranges[used[k]];
+    std::vector<std::uint32_t> own(range.count);
+    vertices[k] = {};
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+      own[i] = blocks.triangle(range.first + i);
+      for (std::size_t c = 0; c < 3; ++c) vertices[k].corner[c][i] = scene.triangles[own[i]][c];
+    }
+    fill_lanes(scene, own, 0, blocks.origin, lanes[k]);
+  }
+  const auto place = [&](std::uint32_t block) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(used, block) - used.begin());
+  };
+  std::vector<LanePair> pairs;
+  for (const BlockPair& pair : inside ? some.inside : some.between)
+    pairs.push_back({place(pair.a), place(pair.b), inside});
+  BlockFindings found;
+  for (auto _ : state) {
+    found.certain.clear();
+    found.perhaps.clear();
+    compare_blocks({.first = lanes, .second = {}}, vertices, pairs, found);
+    benchmark::DoNotOptimize(found.certain.data());
+  }
+  set_items(state, pairs.size());
+}
+
+// Compares the box of a run with the sixteen boxes of another one that lies apart.
+void compare_apart(benchmark::State& state) {
+  UninitializedVector<BlockLanes> lanes(2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto at = static_cast<float>(2 * k);
+    lanes[k].bound = {{at, 0, 0, 0}, {at + 1, 1, 1, 0}};
+    for (std::size_t lane = 0; lane < kWide; ++lane) lanes[k].boxes.set(lane, lanes[k].bound);
+  }
+  const std::vector<LanePair> pairs(kBlockPairs, {0, 1, false});
+  BlockFindings found;
+  for (auto _ : state) compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
+  set_items(state, pairs.size());
+}
+
+// Filters candidates. An item is a candidate.
+void filter_candidates(benchmark::State& state, const std::string& name) {
+  const Prepared& of = prepared(name);
+  const std::vector<TrianglePair> some = some_of(of.candidates, kCount);
+  std::vector<Triage> answers(some.size());
+  for (auto _ : state) {
+    filter_pairs(of.scene, some, 0, answers);
+    benchmark::ClobberMemory();
+  }
+  set_items(state, some.size());
+}
+
+void register_kernels(const std::string& name) {
+  const auto add = [&](const std::string& kernel, auto* run) {
+    benchmark::RegisterBenchmark((kernel + "/" + name).c_str(),
+                                 [=](benchmark::State& state) { run(state, name); });
+  };
+  add("read_triangles", read_triangles);
+  add("box_triangles", box_triangles);
+  add("order_runs", order_runs);
+  add("compare_runs", compare_runs);
+  add("filter_candidates", filter_candidates);
+}
+
 }  // namespace
 }  // namespace farcull
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (argc > 1) benchmark::RegisterBenchmark("compare_apart", farcull::compare_apart);
+  for (int k = 1; k < argc; ++k) farcull::register_kernels(argv[k]);
+  benchmark::RunSpecifiedBenchmarks();
+}
