@@ -118,9 +118,12 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
     for (int row = 0; row < 9; ++row)
       std::fill(batch.row[row] + 1, batch.row[row] + count, batch.row[row][0]);
   }
+  const std::size_t last = pairs.size() - 1;
   for (int i = 0; i < count; ++i) {
     const TrianglePair& pair = pairs[from + i];
-    prefetch(scene, pairs[std::min(from + i + kAhead, pairs.size() - 1)].b);
+    // First the indices, then the corners that these name.
+    __builtin_prefetch(&scene.triangles[pairs[std::min(from + i + 2 * kAhead, last)].b]);
+    prefetch(scene, pairs[std::min(from + i + kAhead, last)].b);
     if (!one) gather_one(pair.a, 0, i);
     gather_one(pair.b, 9, i);
   }
