@@ -303,7 +303,8 @@ def words(recipe):
 
 
 def in_process(work, seconds):
-    """(state, answer of work(), ms of processor time) of a process; state: "done", "late", or why it died."""
+    """(state, answer of work(), ms of processor time, peak of MiB) of a process of its own; state: "done", "late",
+    or why it died."""
     sys.stdout.flush()
     out, into = os.pipe()
     child = os.fork()
@@ -325,7 +326,7 @@ def in_process(work, seconds):
     _, status, usage = os.wait4(child, 0)
     late = os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGPROF
     answer = pickle.loads(data) if data and not status else ("late" if late else "killed", None)
-    return *answer, 1e3 * (usage.ru_utime + usage.ru_stime)
+    return *answer, 1e3 * (usage.ru_utime + usage.ru_stime), usage.ru_maxrss / 1024
 
 
 def status_mib(field):
@@ -393,23 +394,24 @@ class Measure:
 
         if "distance" in asked and (kind := kind_of_distances(scene)):
             limit = max(0.5, 3e-3 * TOO_LONG * self.usual[kind])
-            state, _, ms = in_process(lambda: distances(scene, kind), min(limit, 5 * self.seconds))
+            state, _, ms, _ = in_process(lambda: distances(scene, kind), min(limit, 5 * self.seconds))
             add("distance", ms, self.usual[kind], kind if state == "done" else f"{kind}: {state}")
         methods = {"far-pairs": {"pairs", "memory"} & set(asked), "far": {"far"} & set(asked)}
         if not any(methods.values()):
             return out
-        state, exact, _ = in_process(lambda: run(scene, "exact"), self.seconds)
+        _, exact, _, peak_of_exact = in_process(lambda: run(scene, "exact"), self.seconds)
         for method, questions in methods.items() if exact else ():
             limit = max(0.5, min(TOO_LONG * (exact["ms"] + 1) / 1e3, 5 * self.seconds))
             if not questions:
                 continue
-            state, answer, ms = in_process(lambda: run(scene, method), limit)
+            state, answer, ms, peak = in_process(lambda: run(scene, method), limit)
             if answer and answer["digest"] != exact["digest"]:
                 folder = Path(self.keep or ".", "wrong")
                 write_scene(scene, folder, common)
                 print(f"wrong: {method} finds {answer['colliding']:,} pairs, exact {exact['colliding']:,}; {folder}")
                 sys.exit(2)
-            answer = answer or {"ms": ms, "mib": 0 if state == "late" else MOST_MEMORY / 2**20, "stages": []}
+            if not answer:  # stopped: both processes held the same scene, so their peaks may be compared
+                answer = {"ms": ms, "mib": exact["mib"] + peak - peak_of_exact, "stages": []}
             for question in questions:
                 unit = "mib" if question == "memory" else "ms"
                 cause = cause_of(answer) if answer["stages"] else state
@@ -436,11 +438,11 @@ def search(measure, asked, rng, end):
     def known(recipe, find):  # the ratio that a find has to exceed; less than 0.5 is not worth deforming
         return worst[find["question"]].get((recipe["start"], find["cause"]), {"ratio": 0.5})["ratio"]
 
-    first = [started(name, 1) for name in (*STARTS, *SOUPS)]
+    first = rng.permutation([*STARTS, *SOUPS]).tolist()
     while time.monotonic() < end:
         parents = ranked(str(rng.choice(asked)))
-        if first:
-            recipe = first.pop()
+        if first and rng.random() < 0.3:
+            recipe = started(first.pop(), 1)
         elif parents and rng.random() < 0.75:
             recipe = mutated(parents[rng.integers(len(parents))]["recipe"], rng)
         else:
@@ -461,12 +463,11 @@ def search(measure, asked, rng, end):
 
 
 def at_full_size(measure, worst, end):
-    """The finds made again: the worst of each question, and the others while there is time."""
+    """The finds made again: one of each question, and the others while there is time."""
     out = []
-    for rank, find in [(k, found[k]) for k in range(KEPT) for found in worst if k < len(found)]:
-        if rank > 0 and time.monotonic() > end:
-            print("Some finds were not made at full size: the time is over.")
-            break
+    for find in [found[k] for k in range(KEPT) for found in worst if k < len(found)]:
+        if time.monotonic() > end and any(other["question"] == find["question"] for other in out):
+            continue
         question, limit = find["question"], LIMITS[find["question"]] or 1
         again = measure.ratios(find["recipe"], [question]).get(question)
         if again and again["ratio"] > 0.8 * limit:
