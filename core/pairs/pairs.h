@@ -63,9 +63,9 @@ void look(const Scene& scene, const PairRegions& regions, std::span<const std::u
           const PairWindow& window, unsigned threads, PairScene& out);
 
 /// A view is given up if it takes more work than kTestsPerTriangle for each triangle that takes
-/// part, and kTestsPerPair for each pair of boxes that overlap, by an estimate. (Views that are
-/// worth while take less than a quarter of that: docs/reliability.md, "Bounded work".)
-constexpr double kTestsPerTriangle = 1024, kTestsPerPair = 64;
+/// part, and kTestsPerPair for each pair of boxes that overlap, by an estimate: about what these
+/// cost the method `exact` (docs/reliability.md, "Bounded work").
+constexpr double kTestsPerTriangle = 64, kTestsPerPair = 4;
 /// A further view is looked at if there are more candidates than this for each triangle that
 /// takes part: fewer are mostly neighbours and contacts, which no view takes away.
 constexpr std::size_t kFurtherViewFrom = 16;

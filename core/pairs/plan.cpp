@@ -137,10 +137,10 @@ PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
   const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
   const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
-  // The constant allows some 10 ms in any scene, since a few triangles may have many pixels.
+  // The constant allows some milliseconds in any scene: a few triangles may have many pixels.
   return static_cast<std::uint64_t>(std::min(
       0x1p63,
-      0x1p24 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
+      0x1p20 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
 }
 
 // Leaves an uneven scene whose boxes overlap often (as those of needles do) to views, if the best
