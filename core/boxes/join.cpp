@@ -15,7 +15,9 @@
 #include <atomic>
 #include <bit>
 #include <iterator>
+#include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/uninitialized.h"
@@ -146,10 +148,10 @@ void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> ve
     Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
                drops ? &vertices[pair.b] : nullptr)
         .write(next, next_perhaps);
-    flush(certain, next, kFlush, out.certain);
+    flush(certain, next, kFlush, out.pairs);
     flush(perhaps, next_perhaps, kFlush, out.perhaps);
   }
-  flush(certain, next, 0, out.certain);
+  flush(certain, next, 0, out.pairs);
   flush(perhaps, next_perhaps, 0, out.perhaps);
 }
 
@@ -306,40 +308,55 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   return pairs;
 }
 
-std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
-  constexpr std::size_t kSome = std::size_t{1}
-                                << 14;  // pairs that it collects before it gives them
-  const auto items = static_cast<std::uint32_t>(boxes_.size());
-  const std::size_t chunks = chunks_for(items, kItems, threads_);
-  std::atomic<std::uint64_t> next = 0;  // wide, as each thread adds once more at the end
-  std::atomic<std::uint64_t> given = 0, compared = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    Part part;
-    const auto flush = [&](std::size_t least) {
-      if (part.pairs.size() < least) return;
-      given += part.pairs.size();
-      take(part.pairs);
-      part.pairs.clear();
+namespace {
+
+// Calls find(begin, end, memory, flush) for portions of the numbers 0 .. count - 1 in turn. Each
+// thread has a Memory, to whose `pairs` find appends; flush() gives them to `take` if there are
+// many. All are given in the end. Returns their number.
+template <class Memory, class Find>
+std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
+                            const TakePairs& take, const Find& find) {
+  constexpr std::size_t kMany = std::size_t{1} << 14;
+  std::atomic<std::uint64_t> next = 0, given = 0;
+  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
+    Memory memory;
+    const auto give = [&](std::size_t least) {
+      if (memory.pairs.size() < least) return;
+      given += memory.pairs.size();
+      take(memory.pairs);
+      memory.pairs.clear();
     };
     try {
       for (;;) {
         stop_point();
-        const std::uint64_t begin = next.fetch_add(kItems);
-        if (begin >= items) break;
-        for (std::uint64_t a = begin; a < std::min<std::uint64_t>(items, begin + kItems); ++a) {
-          append(static_cast<std::uint32_t>(a), false, part);
-          flush(kSome);
-        }
+        const std::uint64_t begin = next.fetch_add(portion);
+        if (begin >= count) break;
+        find(begin, std::min(count, begin + portion), memory, [&] { give(kMany); });
       }
-      flush(1);
+      give(1);
     } catch (...) {
-      next = items;  // the other threads end early too
+      next = count;  // the other threads end early too
       throw;
     }
-    compared += part.compared;
   });
-  next_ = items;
+  return given;
+}
+
+}  // namespace
+
+std::uint64_t OrderedPairs::give(const TakePairs& take) {
+  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
+  std::atomic<std::uint64_t> compared = 0;
+  const std::uint64_t given = give_portions<Part>(
+      boxes_.size(), kItems, chunks_for(boxes_.size(), kItems, threads_), take,
+      [&](std::uint64_t begin, std::uint64_t end, Part& part, const auto& flush) {
+        for (std::uint64_t a = begin; a < end; ++a) {
+          append(static_cast<std::uint32_t>(a), false, part);
+          flush();
+        }
+        compared += std::exchange(part.compared, 0);
+      });
+  next_ = static_cast<std::uint32_t>(boxes_.size());
   compared_ += compared;
   return given;
 }
@@ -483,35 +500,53 @@ constexpr std::size_t kAtOnce = 2048;  // pairs of blocks that are compared at a
 
 }  // namespace
 
-std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
-                                        const BlockPairs& some, double clearance, bool neighbours,
-                                        unsigned threads) {
+std::uint64_t give_findings(
+    const Scene& scene, std::size_t count, double clearance, unsigned threads,
+    const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
+    const TakePairs& take) {
+  constexpr std::size_t kLeastOfThread = 64;
+  const std::size_t portion = std::clamp(count / 16, kLeastOfThread, kAtOnce);
+  return give_portions<BlockFindings>(
+      count, portion, chunks_for(count, kLeastOfThread, threads), take,
+      [&](std::size_t begin, std::size_t end, BlockFindings& findings, const auto& flush) {
+        find(begin, end, findings);
+        for (const TrianglePair& pair : findings.perhaps) {
+          if (boxes_meet(scene, pair, half_of(clearance))) findings.pairs.push_back(pair);
+        }
+        findings.perhaps.clear();
+        flush();
+      });
+}
+
+std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
+                                 const BlockPairs& some, double clearance, bool neighbours,
+                                 unsigned threads, const TakePairs& take) {
   const Lanes lanes = lanes_of(scene, blocks, some, clearance, neighbours, threads);
   const auto lane_pair = [&](std::size_t k) {
     const bool same = k >= some.between.size();
     const BlockPair& pair = same ? some.inside[k - some.between.size()] : some.between[k];
     return LanePair{lanes.place[pair.a], lanes.place[pair.b], same && !neighbours};
   };
-  const std::size_t all = some.size(), chunks = chunks_for(all, 64, threads);
-  std::vector<std::vector<TrianglePair>> found(chunks);
-  for_chunks(all, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::vector<LanePair> pairs;
-    pairs.reserve(std::min(end - begin, kAtOnce));
-    BlockFindings findings;
-    for (std::size_t k = begin; k < end; ++k) {
-      pairs.push_back(lane_pair(k));
-      if (pairs.size() < kAtOnce && k + 1 < end) continue;
-      compare_blocks({.first = blocks.lanes, .second = lanes.more}, lanes.vertices, pairs,
-                     findings);
-      pairs.clear();
-      for (const TrianglePair& pair : findings.perhaps) {
-        if (boxes_meet(scene, pair, half_of(clearance))) findings.certain.push_back(pair);
-      }
-      findings.perhaps.clear();
-    }
-    found[chunk] = std::move(findings.certain);
+  return give_findings(
+      scene, some.size(), clearance, threads,
+      [&](std::size_t begin, std::size_t end, BlockFindings& out) {
+        std::array<LanePair, kAtOnce> pairs;
+        for (std::size_t k = begin; k < end; ++k) pairs[k - begin] = lane_pair(k);
+        compare_blocks({.first = blocks.lanes, .second = lanes.more}, lanes.vertices,
+                       std::span(pairs).first(end - begin), out);
+      },
+      take);
+}
+
+std::vector<TrianglePair> sorted_pairs(
+    unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give) {
+  std::mutex mutex;
+  std::vector<std::vector<TrianglePair>> parts;
+  give([&](std::vector<TrianglePair>& some) {
+    const std::scoped_lock lock(mutex);
+    parts.push_back(std::move(some));
   });
-  return sorted_unique(std::move(found), threads);
+  return sorted_unique(std::move(parts), threads);
 }
 
 }  // namespace farcull

@@ -282,10 +282,8 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
   const std::size_t all = meetings.pairs.size();
   if (all == 0) return false;
   BlockPairs some = some_of(meetings.pairs, kSampled);
-  const std::size_t found =
-      meetings.oriented
-          ? pairs_of_oriented(scene, *meetings.oriented, some, clearance, false, 1).size()
-          : pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
+  const std::uint64_t found =
+      give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
   if (each * static_cast<double>(all) <= static_cast<double>(often * meetings.triangles)) {
     return false;
@@ -301,7 +299,9 @@ std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const TriangleBloc
   BlockPairs some;
   append_evenly(from.between, 2 * kSampled, some.between);
   append_evenly(from.inside, 2 * kSampled, some.inside);
-  std::vector<TrianglePair> pairs = pairs_of_some(scene, blocks, some, clearance, false, 1);
+  std::vector<TrianglePair> pairs = sorted_pairs(1, [&](const TakePairs& take) {
+    return give_pairs_of_some(scene, blocks, some, clearance, false, 1, take);
+  });
   if (pairs.size() < some.size()) pairs.clear();
   return pairs;
 }
