@@ -450,49 +450,57 @@ std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
 
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;           // per block, or kNoLanes
-  UninitializedVector<BlockLanes> more;       // behind those that the blocks have
-  UninitializedVector<VertexBlock> vertices;  // of all; filled only for the blocks of the pairs
+  std::vector<std::uint32_t> place;      // per block, or kNoLanes
+  UninitializedVector<BlockLanes> more;  // behind those that the blocks have
 };
 
-void fill_vertices(const Scene& scene, std::span<const std::uint32_t> triangles, VertexBlock& out) {
-  for (std::uint32_t k = 0; k < kWide; ++k) {
-    for (std::size_t c = 0; c < 3; ++c)
-      out.corner[c][k] = k < triangles.size() ? scene.triangles[triangles[k]][c] : 0;
-  }
+// Calls work(block, its triangles) for some blocks.
+template <class Work>
+void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
+                      std::span<const std::uint32_t> some, unsigned threads, const Work& work) {
+  for_chunks(some.size(), chunks_for(some.size(), 128, threads),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               for (std::size_t k = begin; k < end; ++k) {
+                 std::array<std::uint32_t, kWide> triangles;
+                 const TriangleBlock& range = blocks.ranges[some[k]];
+                 for (std::uint32_t i = 0; i < range.count; ++i) {
+                   triangles[i] = blocks.triangle(range.first + i);
+                   prefetch(scene, triangles[i]);
+                 }
+                 work(some[k], std::span<const std::uint32_t>(triangles).first(range.count));
+               }
+             });
 }
 
 Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPairs& pairs,
-               double clearance, bool neighbours, unsigned threads) {
-  const std::vector<std::uint32_t> used = blocks_in(pairs, blocks.ranges.size());
+               double clearance, unsigned threads) {
   Lanes out;
   out.place = places_of(blocks);
   const auto given = static_cast<std::uint32_t>(blocks.lanes.size());
-  std::uint32_t size = given;
-  for (const std::uint32_t block : used) {
-    if (out.place[block] == kNoLanes) out.place[block] = size++;
-  }
-  out.more.resize(size - given);
-  const bool drops = !neighbours && !pairs.inside.empty();
-  if (drops) out.vertices.resize(size);
-  const auto fill = [&](std::uint32_t block) {
-    const std::uint32_t place = out.place[block];
-    if (place < given && !drops) return;
-    std::array<std::uint32_t, kWide> triangles;
-    const TriangleBlock& range = blocks.ranges[block];
-    for (std::uint32_t i = 0; i < range.count; ++i) {
-      triangles[i] = blocks.triangle(range.first + i);
-      prefetch(scene, triangles[i]);
+  std::vector<std::uint32_t> missing = blocks_in(pairs, blocks.ranges.size());
+  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != kNoLanes; });
+  std::uint32_t next = given;
+  for (const std::uint32_t block : missing) out.place[block] = next++;
+  out.more.resize(missing.size());
+  for_triangles_of(scene, blocks, missing, threads, [&](std::uint32_t block, const auto& own) {
+    fill_lanes(scene, own, half_of(clearance), blocks.origin, out.more[out.place[block] - given]);
+  });
+  return out;
+}
+
+// By the places of lanes; filled only for the blocks of these pairs.
+UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
+                                             const Lanes& lanes, std::span<const BlockPair> pairs,
+                                             unsigned threads) {
+  UninitializedVector<VertexBlock> out(blocks.lanes.size() + lanes.more.size());
+  const std::vector<std::uint32_t> used =
+      blocks_in({.between = {pairs.begin(), pairs.end()}, .inside = {}}, blocks.ranges.size());
+  for_triangles_of(scene, blocks, used, threads, [&](std::uint32_t block, const auto& own) {
+    for (std::uint32_t k = 0; k < kWide; ++k) {
+      for (std::size_t c = 0; c < 3; ++c)
+        out[lanes.place[block]].corner[c][k] = k < own.size() ? scene.triangles[own[k]][c] : 0;
     }
-    const auto own = std::span(triangles).first(range.count);
-    if (place >= given)
-      fill_lanes(scene, own, half_of(clearance), blocks.origin, out.more[place - given]);
-    if (drops) fill_vertices(scene, own, out.vertices[place]);
-  };
-  for_chunks(used.size(), chunks_for(used.size(), 128, threads),
-             [&](std::size_t, std::size_t begin, std::size_t end) {
-               for (std::size_t k = begin; k < end; ++k) fill(used[k]);
-             });
+  });
   return out;
 }
 
@@ -521,21 +529,31 @@ std::uint64_t give_findings(
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
                                  const BlockPairs& some, double clearance, bool neighbours,
                                  unsigned threads, const TakePairs& take) {
-  const Lanes lanes = lanes_of(scene, blocks, some, clearance, neighbours, threads);
-  const auto lane_pair = [&](std::size_t k) {
-    const bool same = k >= some.between.size();
-    const BlockPair& pair = same ? some.inside[k - some.between.size()] : some.between[k];
-    return LanePair{lanes.place[pair.a], lanes.place[pair.b], same && !neighbours};
+  const Lanes lanes = lanes_of(scene, blocks, some, clearance, threads);
+  const auto give = [&](std::span<const BlockPair> part, std::span<const VertexBlock> vertices) {
+    return give_findings(
+        scene, part.size(), clearance, threads,
+        [&](std::size_t begin, std::size_t end, BlockFindings& out) {
+          std::array<LanePair, kAtOnce> pairs;
+          for (std::size_t k = begin; k < end; ++k) {
+            pairs[k - begin] = {lanes.place[part[k].a], lanes.place[part[k].b], !vertices.empty()};
+          }
+          compare_blocks({.first = blocks.lanes, .second = lanes.more}, vertices,
+                         std::span(pairs).first(end - begin), out);
+        },
+        take);
   };
-  return give_findings(
-      scene, some.size(), clearance, threads,
-      [&](std::size_t begin, std::size_t end, BlockFindings& out) {
-        std::array<LanePair, kAtOnce> pairs;
-        for (std::size_t k = begin; k < end; ++k) pairs[k - begin] = lane_pair(k);
-        compare_blocks({.first = blocks.lanes, .second = lanes.more}, lanes.vertices,
-                       std::span(pairs).first(end - begin), out);
-      },
-      take);
+  std::uint64_t given = give(some.between, {});
+  if (neighbours) return given + give(some.inside, {});
+  // The vertices of one part at a time, to save memory. The blocks of a part are mostly its own.
+  constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
+  const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
+  for (std::size_t from = 0; from < some.inside.size(); from += part) {
+    const auto pairs =
+        std::span(some.inside).subspan(from, std::min(part, some.inside.size() - from));
+    given += give(pairs, vertices_of(scene, blocks, lanes, pairs, threads));
+  }
+  return given;
 }
 
 std::vector<TrianglePair> sorted_pairs(

@@ -150,9 +150,9 @@ class Finding {
     const bool alone = plan_.choices.empty() && plan_.regions.triangles.empty();
     out_.given = take_ && alone && !settings.lists && !plan_.remembers;
     if (out_.given) {
-      out_.count = give_pairs_of_blocks(scene_, plan_.blocks, plan_.blocks.pairs,
-                                        settings.clearance, settings.neighbours, plan_.threads,
-                                        take_);
+      out_.count =
+          give_pairs_of_blocks(scene_, plan_.blocks, plan_.blocks.pairs, settings.clearance,
+                               settings.neighbours, plan_.threads, take_);
     } else {
       of_blocks_ = pairs_of_blocks(scene_, plan_.blocks, settings.clearance, settings.neighbours,
                                    plan_.threads);
