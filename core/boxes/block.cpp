@@ -152,26 +152,14 @@ Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
   return a.box();
 }
 
-Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
-                   const Vec3& origin, FloatBox* out) {
+void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
+                    const Vec3& origin, FloatBox* out) {
   const Bounds zero = Bounds::of(origin);
-  Bounds all = Bounds::empty();
+  const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {
-    prefetch(scene, std::min(t + kAhead, to - 1));
-    const Bounds own = bounds_of(scene, t);
-    all.add(own);
-    out[t - from] = relative_box(own, half, zero);
+    prefetch(scene, std::min(t + kAhead, last));
+    out[t - from] = relative_box(bounds_of(scene, t), half, zero);
   }
-  return all.box();
-}
-
-void fill_lanes(std::span<const std::uint32_t> triangles, const FloatBox* boxes,
-                std::uint32_t first, BlockLanes& out) {
-  const auto box = [&](std::uint32_t k) -> const FloatBox& { return boxes[triangles[k] - first]; };
-  out.triangles = {};
-  std::ranges::copy(triangles, out.triangles.begin());
-  if (triangles.size() == kWide) return fill_columns(box, out);
-  fill_columns([&](std::uint32_t k) { return k < triangles.size() ? box(k) : kNowhere; }, out);
 }
 
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,

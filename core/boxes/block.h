@@ -146,9 +146,9 @@ struct alignas(64) WideBoxes {
 /// The closed box of the triangles from .. to - 1.
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to);
 /// Writes the closed boxes of the triangles from .. to - 1 to `out`, grown outward by at least
-/// `half` (world units, >= 0) and relative to the origin. Returns the box of all, not grown.
-Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
-                   const Vec3& origin, FloatBox* out);
+/// `half` (world units, >= 0) and relative to the origin.
+void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
+                    const Vec3& origin, FloatBox* out);
 
 /// Some triangles, at most kWide, and their boxes. The boxes behind the last one meet nothing.
 struct BlockLanes {
@@ -156,9 +156,6 @@ struct BlockLanes {
   alignas(64) std::array<std::uint32_t, kWide> triangles;
   FloatBox bound;  // of all of them
 };
-/// Fills `out` with these triangles, whose boxes are boxes[triangle - first].
-void fill_lanes(std::span<const std::uint32_t> triangles, const FloatBox* boxes,
-                std::uint32_t first, BlockLanes& out);
 /// Fills `out` with these triangles and computes their boxes from the scene, grown by `half` and
 /// relative to the origin. Returns the box of all the triangles, not grown.
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,

@@ -15,7 +15,9 @@
 #include <atomic>
 #include <bit>
 #include <iterator>
+#include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/uninitialized.h"
@@ -146,10 +148,10 @@ void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> ve
     Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
                drops ? &vertices[pair.b] : nullptr)
         .write(next, next_perhaps);
-    flush(certain, next, kFlush, out.certain);
+    flush(certain, next, kFlush, out.pairs);
     flush(perhaps, next_perhaps, kFlush, out.perhaps);
   }
-  flush(certain, next, 0, out.certain);
+  flush(certain, next, 0, out.pairs);
   flush(perhaps, next_perhaps, 0, out.perhaps);
 }
 
@@ -306,40 +308,55 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   return pairs;
 }
 
-std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
-  constexpr std::size_t kSome = std::size_t{1}
-                                << 14;  // pairs that it collects before it gives them
-  const auto items = static_cast<std::uint32_t>(boxes_.size());
-  const std::size_t chunks = chunks_for(items, kItems, threads_);
-  std::atomic<std::uint64_t> next = 0;  // wide, as each thread adds once more at the end
-  std::atomic<std::uint64_t> given = 0, compared = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    Part part;
-    const auto flush = [&](std::size_t least) {
-      if (part.pairs.size() < least) return;
-      given += part.pairs.size();
-      take(part.pairs);
-      part.pairs.clear();
+namespace {
+
+// Calls find(begin, end, memory, flush) for portions of the numbers 0 .. count - 1 in turn. Each
+// thread has a Memory, to whose `pairs` find appends; flush() gives them to `take` if there are
+// many. All are given in the end. Returns their number.
+template <class Memory, class Find>
+std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
+                            const TakePairs& take, const Find& find) {
+  constexpr std::size_t kMany = std::size_t{1} << 14;
+  std::atomic<std::uint64_t> next = 0, given = 0;
+  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
+    Memory memory;
+    const auto give = [&](std::size_t least) {
+      if (memory.pairs.size() < least) return;
+      given += memory.pairs.size();
+      take(memory.pairs);
+      memory.pairs.clear();
     };
     try {
       for (;;) {
         stop_point();
-        const std::uint64_t begin = next.fetch_add(kItems);
-        if (begin >= items) break;
-        for (std::uint64_t a = begin; a < std::min<std::uint64_t>(items, begin + kItems); ++a) {
-          append(static_cast<std::uint32_t>(a), false, part);
-          flush(kSome);
-        }
+        const std::uint64_t begin = next.fetch_add(portion);
+        if (begin >= count) break;
+        find(begin, std::min(count, begin + portion), memory, [&] { give(kMany); });
       }
-      flush(1);
+      give(1);
     } catch (...) {
-      next = items;  // the other threads end early too
+      next = count;  // the other threads end early too
       throw;
     }
-    compared += part.compared;
   });
-  next_ = items;
+  return given;
+}
+
+}  // namespace
+
+std::uint64_t OrderedPairs::give(const TakePairs& take) {
+  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
+  std::atomic<std::uint64_t> compared = 0;
+  const std::uint64_t given = give_portions<Part>(
+      boxes_.size(), kItems, chunks_for(boxes_.size(), kItems, threads_), take,
+      [&](std::uint64_t begin, std::uint64_t end, Part& part, const auto& flush) {
+        for (std::uint64_t a = begin; a < end; ++a) {
+          append(static_cast<std::uint32_t>(a), false, part);
+          flush();
+        }
+        compared += std::exchange(part.compared, 0);
+      });
+  next_ = static_cast<std::uint32_t>(boxes_.size());
   compared_ += compared;
   return given;
 }
@@ -446,49 +463,57 @@ std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
 
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;           // per block, or kNoLanes
-  UninitializedVector<BlockLanes> more;       // behind those that the blocks have
-  UninitializedVector<VertexBlock> vertices;  // of all; filled only for the blocks of the pairs
+  std::vector<std::uint32_t> place;      // per block, or kNoLanes
+  UninitializedVector<BlockLanes> more;  // behind those that the blocks have
 };
 
-void fill_vertices(const Scene& scene, std::span<const std::uint32_t> triangles, VertexBlock& out) {
-  for (std::uint32_t k = 0; k < kWide; ++k) {
-    for (std::size_t c = 0; c < 3; ++c)
-      out.corner[c][k] = k < triangles.size() ? scene.triangles[triangles[k]][c] : 0;
-  }
+// Calls work(block, its triangles) for some blocks.
+template <class Work>
+void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
+                      std::span<const std::uint32_t> some, unsigned threads, const Work& work) {
+  for_chunks(some.size(), chunks_for(some.size(), 128, threads),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               for (std::size_t k = begin; k < end; ++k) {
+                 std::array<std::uint32_t, kWide> triangles;
+                 const TriangleBlock& range = blocks.ranges[some[k]];
+                 for (std::uint32_t i = 0; i < range.count; ++i) {
+                   triangles[i] = blocks.triangle(range.first + i);
+                   prefetch(scene, triangles[i]);
+                 }
+                 work(some[k], std::span<const std::uint32_t>(triangles).first(range.count));
+               }
+             });
 }
 
 Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPairs& pairs,
-               double clearance, bool neighbours, unsigned threads) {
-  const std::vector<std::uint32_t> used = blocks_in(pairs, blocks.ranges.size());
+               double clearance, unsigned threads) {
   Lanes out;
   out.place = places_of(blocks);
   const auto given = static_cast<std::uint32_t>(blocks.lanes.size());
-  std::uint32_t size = given;
-  for (const std::uint32_t block : used) {
-    if (out.place[block] == kNoLanes) out.place[block] = size++;
-  }
-  out.more.resize(size - given);
-  const bool drops = !neighbours && !pairs.inside.empty();
-  if (drops) out.vertices.resize(size);
-  const auto fill = [&](std::uint32_t block) {
-    const std::uint32_t place = out.place[block];
-    if (place < given && !drops) return;
-    std::array<std::uint32_t, kWide> triangles;
-    const TriangleBlock& range = blocks.ranges[block];
-    for (std::uint32_t i = 0; i < range.count; ++i) {
-      triangles[i] = blocks.triangle(range.first + i);
-      prefetch(scene, triangles[i]);
+  std::vector<std::uint32_t> missing = blocks_in(pairs, blocks.ranges.size());
+  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != kNoLanes; });
+  std::uint32_t next = given;
+  for (const std::uint32_t block : missing) out.place[block] = next++;
+  out.more.resize(missing.size());
+  for_triangles_of(scene, blocks, missing, threads, [&](std::uint32_t block, const auto& own) {
+    fill_lanes(scene, own, half_of(clearance), blocks.origin, out.more[out.place[block] - given]);
+  });
+  return out;
+}
+
+// By the places of lanes; filled only for the blocks of these pairs.
+UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
+                                             const Lanes& lanes, std::span<const BlockPair> pairs,
+                                             unsigned threads) {
+  UninitializedVector<VertexBlock> out(blocks.lanes.size() + lanes.more.size());
+  const std::vector<std::uint32_t> used =
+      blocks_in({.between = {pairs.begin(), pairs.end()}, .inside = {}}, blocks.ranges.size());
+  for_triangles_of(scene, blocks, used, threads, [&](std::uint32_t block, const auto& own) {
+    for (std::uint32_t k = 0; k < kWide; ++k) {
+      for (std::size_t c = 0; c < 3; ++c)
+        out[lanes.place[block]].corner[c][k] = k < own.size() ? scene.triangles[own[k]][c] : 0;
     }
-    const auto own = std::span(triangles).first(range.count);
-    if (place >= given)
-      fill_lanes(scene, own, half_of(clearance), blocks.origin, out.more[place - given]);
-    if (drops) fill_vertices(scene, own, out.vertices[place]);
-  };
-  for_chunks(used.size(), chunks_for(used.size(), 128, threads),
-             [&](std::size_t, std::size_t begin, std::size_t end) {
-               for (std::size_t k = begin; k < end; ++k) fill(used[k]);
-             });
+  });
   return out;
 }
 
@@ -496,35 +521,63 @@ constexpr std::size_t kAtOnce = 2048;  // pairs of blocks that are compared at a
 
 }  // namespace
 
-std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
-                                        const BlockPairs& some, double clearance, bool neighbours,
-                                        unsigned threads) {
-  const Lanes lanes = lanes_of(scene, blocks, some, clearance, neighbours, threads);
-  const auto lane_pair = [&](std::size_t k) {
-    const bool same = k >= some.between.size();
-    const BlockPair& pair = same ? some.inside[k - some.between.size()] : some.between[k];
-    return LanePair{lanes.place[pair.a], lanes.place[pair.b], same && !neighbours};
+std::uint64_t give_findings(
+    const Scene& scene, std::size_t count, double clearance, unsigned threads,
+    const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
+    const TakePairs& take) {
+  constexpr std::size_t kLeastOfThread = 64;
+  const std::size_t portion = std::clamp(count / 16, kLeastOfThread, kAtOnce);
+  return give_portions<BlockFindings>(
+      count, portion, chunks_for(count, kLeastOfThread, threads), take,
+      [&](std::size_t begin, std::size_t end, BlockFindings& findings, const auto& flush) {
+        find(begin, end, findings);
+        for (const TrianglePair& pair : findings.perhaps) {
+          if (boxes_meet(scene, pair, half_of(clearance))) findings.pairs.push_back(pair);
+        }
+        findings.perhaps.clear();
+        flush();
+      });
+}
+
+std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
+                                 const BlockPairs& some, double clearance, bool neighbours,
+                                 unsigned threads, const TakePairs& take) {
+  const Lanes lanes = lanes_of(scene, blocks, some, clearance, threads);
+  const auto give = [&](std::span<const BlockPair> part, std::span<const VertexBlock> vertices) {
+    return give_findings(
+        scene, part.size(), clearance, threads,
+        [&](std::size_t begin, std::size_t end, BlockFindings& out) {
+          std::array<LanePair, kAtOnce> pairs;
+          for (std::size_t k = begin; k < end; ++k) {
+            pairs[k - begin] = {lanes.place[part[k].a], lanes.place[part[k].b], !vertices.empty()};
+          }
+          compare_blocks({.first = blocks.lanes, .second = lanes.more}, vertices,
+                         std::span(pairs).first(end - begin), out);
+        },
+        take);
   };
-  const std::size_t all = some.size(), chunks = chunks_for(all, 64, threads);
-  std::vector<std::vector<TrianglePair>> found(chunks);
-  for_chunks(all, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::vector<LanePair> pairs;
-    pairs.reserve(std::min(end - begin, kAtOnce));
-    BlockFindings findings;
-    for (std::size_t k = begin; k < end; ++k) {
-      pairs.push_back(lane_pair(k));
-      if (pairs.size() < kAtOnce && k + 1 < end) continue;
-      compare_blocks({.first = blocks.lanes, .second = lanes.more}, lanes.vertices, pairs,
-                     findings);
-      pairs.clear();
-      for (const TrianglePair& pair : findings.perhaps) {
-        if (boxes_meet(scene, pair, half_of(clearance))) findings.certain.push_back(pair);
-      }
-      findings.perhaps.clear();
-    }
-    found[chunk] = std::move(findings.certain);
+  std::uint64_t given = give(some.between, {});
+  if (neighbours) return given + give(some.inside, {});
+  // The vertices of one part at a time, to save memory. The blocks of a part are mostly its own.
+  constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
+  const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
+  for (std::size_t from = 0; from < some.inside.size(); from += part) {
+    const auto pairs =
+        std::span(some.inside).subspan(from, std::min(part, some.inside.size() - from));
+    given += give(pairs, vertices_of(scene, blocks, lanes, pairs, threads));
+  }
+  return given;
+}
+
+std::vector<TrianglePair> sorted_pairs(
+    unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give) {
+  std::mutex mutex;
+  std::vector<std::vector<TrianglePair>> parts;
+  give([&](std::vector<TrianglePair>& some) {
+    const std::scoped_lock lock(mutex);
+    parts.push_back(std::move(some));
   });
-  return sorted_unique(std::move(found), threads);
+  return sorted_unique(std::move(parts), threads);
 }
 
 }  // namespace farcull

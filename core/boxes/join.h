@@ -162,11 +162,17 @@ struct BlockMeetings {
   bool empty() const { return meetings == 0; }
 };
 
-/// The pairs a < b of triangles of some pairs of blocks whose boxes overlap, sorted, each once.
-/// neighbours: false leaves out pairs of one object that share a vertex index.
-std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
-                                        const BlockPairs& pairs, double clearance, bool neighbours,
-                                        unsigned threads);
+/// Gives the pairs a < b of triangles of some pairs of blocks whose boxes overlap to `take`, and
+/// returns their number. Blocks share no triangle, so each pair is given once if each pair of
+/// blocks is there once. neighbours: false leaves out pairs of one object that share a vertex
+/// index. An exception of `take` is thrown again here, and some pairs are not given then.
+std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
+                                 const BlockPairs& pairs, double clearance, bool neighbours,
+                                 unsigned threads, const TakePairs& take);
+
+/// Pairs that `give(take)` gives to `take`, sorted.
+std::vector<TrianglePair> sorted_pairs(
+    unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give);
 
 /// The vertex indices of the triangles of a block, by corner.
 struct alignas(64) VertexBlock {
@@ -174,7 +180,7 @@ struct alignas(64) VertexBlock {
 };
 /// Pairs of triangles that a comparison finds, the smaller one first.
 struct BlockFindings {
-  std::vector<TrianglePair> certain;  // their boxes overlap
+  std::vector<TrianglePair> pairs;    // their boxes overlap
   std::vector<TrianglePair> perhaps;  // they touch in floats
 };
 /// The lanes of `first`, and behind them those of `second`.
@@ -184,6 +190,13 @@ struct LaneSpans {
     return k < first.size() ? first[k] : second[k - first.size()];
   }
 };
+/// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1, and gives what it
+/// appends to `take`: certain pairs, and those others whose boxes overlap in doubles. Returns how
+/// many it gave. An exception of `find` or `take` is thrown again here.
+std::uint64_t give_findings(
+    const Scene& scene, std::size_t count, double clearance, unsigned threads,
+    const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
+    const TakePairs& take);
 /// Two of them to compare; one with itself: each two of its triangles.
 struct LanePair {
   std::uint32_t a, b;

@@ -173,7 +173,7 @@ void compare_oriented_here(const OrientedBlocks& blocks, std::uint32_t a, std::u
         to.push_back({std::min(s, t), std::max(s, t)});
       }
     };
-    put(met & ~touching, out.certain);
+    put(met & ~touching, out.pairs);
     put(touching, out.perhaps);
   }
 }
@@ -447,50 +447,51 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   return out;
 }
 
-std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
-                                            const BlockPairs& pairs, double clearance,
-                                            bool neighbours, unsigned threads) {
+std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
+                                     const BlockPairs& pairs, double clearance, bool neighbours,
+                                     unsigned threads, const TakePairs& take) {
   std::vector<std::uint32_t> place(blocks.blocks.ranges.size(), 0);
   for (std::size_t o = 0; o < blocks.blocks.gathered.size(); ++o) {
     const auto& gathered = blocks.blocks.gathered[o];
     for (std::uint32_t k = 0; k < gathered.count; ++k)
       place[blocks.blocks.first[o] + k] = gathered.first + k;
   }
-  const std::size_t all = pairs.size(), between = pairs.between.size();
-  const std::size_t chunks = chunks_for(all, 64, threads);
-  std::vector<std::vector<TrianglePair>> found(chunks);
-  for_chunks(all, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    BlockFindings findings;
-    for (std::size_t k = begin; k < end; ++k) {
-      const BlockPair& pair = k < between ? pairs.between[k] : pairs.inside[k - between];
-      const std::size_t before = findings.certain.size();
-      HWY_DYNAMIC_DISPATCH(compare_oriented_here)(blocks, place[pair.a], place[pair.b], findings);
-      for (const TrianglePair& perhaps : findings.perhaps) {
-        if (boxes_meet(scene, perhaps, half_of(clearance))) findings.certain.push_back(perhaps);
-      }
-      findings.perhaps.clear();
-      if (neighbours || k < between) continue;
-      const auto from = findings.certain.begin() + static_cast<std::ptrdiff_t>(before);
-      findings.certain.erase(std::remove_if(from, findings.certain.end(),
-                                            [&](const TrianglePair& p) {
-                                              return share_index(scene.triangles[p.a],
-                                                                 scene.triangles[p.b]);
-                                            }),
-                             findings.certain.end());
-    }
-    found[chunk] = std::move(findings.certain);
-  });
-  return sorted_unique(std::move(found), threads);
+  const auto shared = [&](const TrianglePair& pair) {
+    return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
+  };
+  return give_findings(
+      scene, pairs.size(), clearance, threads,
+      [&](std::size_t begin, std::size_t end, BlockFindings& out) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const bool same = k >= pairs.between.size();
+          const BlockPair& pair = same ? pairs.inside[k - pairs.between.size()] : pairs.between[k];
+          const auto before = static_cast<std::ptrdiff_t>(out.pairs.size());
+          HWY_DYNAMIC_DISPATCH(compare_oriented_here)(blocks, place[pair.a], place[pair.b], out);
+          if (!same || neighbours) continue;
+          out.pairs.erase(std::remove_if(out.pairs.begin() + before, out.pairs.end(), shared),
+                          out.pairs.end());
+          std::erase_if(out.perhaps, shared);
+        }
+      },
+      take);
+}
+
+std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
+                                   const BlockPairs& some, double clearance, bool neighbours,
+                                   unsigned threads, const TakePairs& take) {
+  return meetings.oriented
+             ? give_pairs_of_oriented(scene, *meetings.oriented, some, clearance, neighbours,
+                                      threads, take)
+             : give_pairs_of_some(scene, *meetings.of, some, clearance, neighbours, threads, take);
 }
 
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads) {
   if (meetings.pairs.size() == 0) return meetings.kept;
-  std::vector<TrianglePair> found =
-      meetings.oriented
-          ? pairs_of_oriented(scene, *meetings.oriented, meetings.pairs, clearance, neighbours,
-                              threads)
-          : pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
+  std::vector<TrianglePair> found = sorted_pairs(threads, [&](const TakePairs& take) {
+    return give_pairs_of_blocks(scene, meetings, meetings.pairs, clearance, neighbours, threads,
+                                take);
+  });
   if (meetings.kept.empty()) return found;
   std::vector<TrianglePair> out;
   out.reserve(found.size() + meetings.kept.size());

@@ -63,13 +63,17 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
                    std::uint32_t from, std::uint32_t to, std::size_t most,
                    std::vector<BlockPair>& out);
 
-/// As pairs_of_some(), of triangles whose boxes overlap also along the frames of both blocks.
-std::vector<TrianglePair> pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
-                                            const BlockPairs& pairs, double clearance,
-                                            bool neighbours, unsigned threads);
+/// As give_pairs_of_some(), of triangles whose boxes overlap also along the frames of both blocks.
+std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
+                                     const BlockPairs& pairs, double clearance, bool neighbours,
+                                     unsigned threads, const TakePairs& take);
 
-/// The pairs of triangles of all pairs of blocks of the meetings, with those that were kept; by
-/// oriented boxes if the meetings have these, else as pairs_of_some().
+/// The pairs of triangles of some pairs of blocks of the meetings: by oriented boxes if the
+/// meetings have these, else as give_pairs_of_some().
+std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
+                                   const BlockPairs& some, double clearance, bool neighbours,
+                                   unsigned threads, const TakePairs& take);
+/// Those of all their pairs of blocks, and those that were kept; sorted.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads);
 

@@ -17,7 +17,6 @@ namespace {
 
 // How many triangles ahead corners are prefetched.
 constexpr std::size_t kAhead = 16;
-constexpr std::size_t kFar = 4 * kWide;  // the same of their boxes
 
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
@@ -40,33 +39,11 @@ double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
 }
-constexpr std::uint32_t kSampledBlocks = 64;
-// Objects of fewer blocks are not sampled: a sample would cost as much as all their blocks.
-constexpr std::uint32_t kJudgedBlocks = 4 * kSampledBlocks;
-
-// The mean length of a sample of an object's blocks, if it has many and the mean says that they are
-// scattered; else 0. `box` becomes the box of the sample.
-double sampled_length(const Scene& scene, const TriangleBlocks& blocks, std::uint32_t object,
-                      Box& box) {
-  const std::uint32_t count = blocks.first[object + 1] - blocks.first[object];
-  if (count < kJudgedBlocks) return 0;
-  double sum = 0;
-  for (std::uint32_t k = 0; k < kSampledBlocks; ++k) {
-    const auto position = static_cast<std::uint32_t>(sampled_place(k) * count);
-    const TriangleBlock& range =
-        blocks.ranges[blocks.first[object] + std::min(position, count - 1)];
-    const Box own = box_of(scene, range.first, range.first + range.count);
-    sum += length(own);
-    box.add(own);
-  }
-  const double mean = sum / kSampledBlocks;
-  return are_scattered(mean, count, box) ? mean : 0;
-}
-
 // Whether most triangles of an object lie in a small part of its box, which is grown by `half`.
 bool is_stretched(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
-  if (object.triangle_count < kJudgedBlocks * kWide) return false;
+  constexpr std::uint32_t kLeast = 4096;  // triangles
+  if (object.triangle_count < kLeast) return false;
   double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -88,23 +65,6 @@ void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
     blocks.stretched.resize(blocks.objects.size(), 0);
     blocks.stretched[o] = 1;
   }
-}
-
-// The boxes of an object's triangles, grown, relative to the origin; returns the box of all, not
-// grown.
-Box fill_boxes(const Scene& scene, const Object& object, double half, const Vec3& origin,
-               unsigned threads, FloatBox* out) {
-  const std::size_t n = object.triangle_count, chunks = chunks_for(n, 4096, threads);
-  std::vector<Box> parts(chunks, Box::empty());
-  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    const std::uint32_t first = object.first_triangle;
-    parts[chunk] =
-        relative_boxes(scene, first + static_cast<std::uint32_t>(begin),
-                       first + static_cast<std::uint32_t>(end), half, origin, out + begin);
-  });
-  Box all = Box::empty();
-  for (const Box& part : parts) all.add(part);
-  return all;
 }
 
 // Calls work(k, threads) for k in 0 .. count - 1: one after the other with all threads if there are
@@ -147,42 +107,9 @@ void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
     blocks.objects[object].add(blocks.boxes[k]);
 }
 
-// Drops the objects for which `keeps` is false.
-template <class Keeps>
-void keep_objects(ScatteredBoxes& scattered, const Keeps& keeps) {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < scattered.objects.size(); ++k) {
-    if (!keeps(scattered.objects[k])) continue;
-    scattered.objects[kept] = scattered.objects[k];
-    scattered.first[kept++] = scattered.first[k];
-  }
-  scattered.objects.resize(kept);
-  scattered.first.resize(kept);
-}
-
-// Fills in the boxes of all triangles of the scattered objects, and in `objects` those of the
-// objects themselves.
-void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
-                    std::span<Box> objects) {
-  std::size_t size = 0;
-  scattered.first.clear();
-  for (const std::uint32_t o : scattered.objects) {
-    scattered.first.push_back(size);
-    size += scene.objects[o].triangle_count;
-  }
-  scattered.boxes.resize(size);
-  for_each_of(scattered.objects.size(), threads, [&](std::size_t k, unsigned own_threads) {
-    const std::uint32_t o = scattered.objects[k];
-    objects[o] = grow(fill_boxes(scene, scene.objects[o], half, scattered.origin, own_threads,
-                                 &scattered.boxes[scattered.first[k]]),
-                      half);
-  });
-}
-
 }  // namespace
 
-TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads,
-                           ScatteredBoxes* scattered) {
+TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads) {
   TriangleBlocks out;
   const auto objects = static_cast<std::uint32_t>(scene.objects.size());
   out.first.resize(objects + 1, 0);
@@ -192,47 +119,14 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
       out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
     out.first[o + 1] = static_cast<std::uint32_t>(out.ranges.size());
   }
-  out.objects.assign(objects, Box::empty());
   const double half = half_of(clearance);
-  std::vector<double> seems(objects, 0);  // mean length of its blocks if it seems scattered
-  if (scattered) {
-    Box sampled = Box::empty();
-    for (std::uint32_t o = 0; o < objects; ++o) {
-      Box box = Box::empty();
-      seems[o] = sampled_length(scene, out, o, box);
-      if (seems[o] > 0) sampled.add(box);
-    }
-    scattered->origin = middle(sampled);
-  }
   const std::size_t n = out.ranges.size();
   out.boxes.resize(n);
   for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::size_t o = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      while (out.first[o + 1] <= k) ++o;
-      if (seems[o] > 0) {
-        k = std::min<std::size_t>(out.first[o + 1], end) - 1;
-      } else {
-        out.boxes[k] = block_box(scene, out.ranges[k], half);
-      }
-    }
+    for (std::size_t k = begin; k < end; ++k) out.boxes[k] = block_box(scene, out.ranges[k], half);
   });
-  for (std::uint32_t o = 0; o < objects; ++o) {
-    if (seems[o] == 0) add_boxes(out, o);
-  }
-  if (!scattered) return out;
-  for (std::uint32_t o = 0; o < objects; ++o) {
-    if (seems[o] > 0 || is_scattered(out, o)) scattered->objects.push_back(o);
-  }
-  fill_scattered(scene, half, threads, *scattered, out.objects);
-  // The box of a sample is smaller than that of the object, so sampled objects are judged again.
-  keep_objects(*scattered, [&](std::uint32_t o) {
-    const std::uint32_t count = out.first[o + 1] - out.first[o];
-    if (seems[o] == 0 || are_scattered(seems[o], count, out.objects[o])) return true;
-    for_blocks_of(out, o, threads,
-                  [&](std::size_t k) { out.boxes[k] = block_box(scene, out.ranges[k], half); });
-    return false;
-  });
+  out.objects.resize(objects);
+  for (std::uint32_t o = 0; o < objects; ++o) add_boxes(out, o);
   mark_stretched(scene, half, out);
   return out;
 }
@@ -305,10 +199,11 @@ class MortonGrid {
 
 // Puts the triangles of an object that meet the region in Morton order, then the others; returns
 // how many meet it.
-std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& region,
-                           std::uint32_t first_triangle, unsigned threads,
+std::uint32_t order_object(const Scene& scene, const Object& object, double half,
+                           const Vec3& origin, const FloatBox& region, unsigned threads,
                            std::span<std::uint32_t> order) {
-  const std::size_t n = boxes.size(), chunks = chunks_for(n, 8192, threads);
+  constexpr std::size_t kAtOnce = 256;
+  const std::size_t n = object.triangle_count, chunks = chunks_for(n, 8192, threads);
   const MortonGrid grid(region, static_cast<std::uint32_t>(n));
   std::vector<UninitializedVector<Coded>> inside(chunks);
   std::vector<UninitializedVector<std::uint32_t>> outside(chunks);
@@ -317,13 +212,19 @@ std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& regi
     UninitializedVector<Coded> in(end - begin);
     UninitializedVector<std::uint32_t> out(end - begin);
     std::size_t ins = 0, outs = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t triangle = first_triangle + static_cast<std::uint32_t>(k);
-      in[ins] = {grid.code(boxes[k]), triangle};
-      out[outs] = triangle;
-      const bool meets = overlap(boxes[k], region);
-      ins += meets;
-      outs += !meets;
+    std::array<FloatBox, kAtOnce> boxes;
+    const auto first = object.first_triangle + static_cast<std::uint32_t>(begin);
+    for (std::uint32_t from = first; from < first + (end - begin); from += kAtOnce) {
+      const auto to = static_cast<std::uint32_t>(std::min(from + kAtOnce, first + (end - begin)));
+      relative_boxes(scene, from, to, half, origin, boxes.data());
+      for (std::uint32_t triangle = from; triangle < to; ++triangle) {
+        const FloatBox& box = boxes[triangle - from];
+        in[ins] = {grid.code(box), triangle};
+        out[outs] = triangle;
+        const bool meets = overlap(box, region);
+        ins += meets;
+        outs += !meets;
+      }
     }
     in.resize(ins);
     out.resize(outs);
@@ -359,77 +260,60 @@ bool is_near(const Vec3& from, const Box& box) {
 }  // namespace
 
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
-                      unsigned threads, ScatteredBoxes& scattered, TriangleBlocks& blocks) {
+                      unsigned threads, TriangleBlocks& blocks) {
+  const double half = half_of(clearance);
   Box all = Box::empty();
-  for (std::size_t o = 0; o < regions.size(); ++o) {
-    if (!regions[o].is_empty()) all.add(blocks.objects[o]);
+  std::vector<std::uint32_t> scattered;  // objects
+  for (std::uint32_t o = 0; o < regions.size(); ++o) {
+    if (regions[o].is_empty()) continue;
+    all.add(blocks.objects[o]);
+    if (blocks.is_stretched(o) || is_scattered(blocks, o)) scattered.push_back(o);
   }
-  keep_objects(scattered, [&](std::uint32_t o) { return !regions[o].is_empty(); });
   blocks.origin = middle(all);
-  if (scattered.objects.empty()) return;
-  if (is_near(scattered.origin, all)) {
-    blocks.origin = scattered.origin;
-  } else {
-    scattered.origin = blocks.origin;
-    fill_scattered(scene, half_of(clearance), threads, scattered, blocks.objects);
-  }
+  if (scattered.empty()) return;
   blocks.order.resize(scene.triangles.size());
   std::iota(blocks.order.begin(), blocks.order.end(), 0u);
   blocks.gathered.resize(scene.objects.size());
-  std::vector<std::uint32_t> inside(scattered.objects.size());
-  const auto boxes_of = [&](std::size_t k) {
-    return std::span<const FloatBox>(scattered.boxes)
-        .subspan(scattered.first[k], scene.objects[scattered.objects[k]].triangle_count);
-  };
+  std::vector<std::uint32_t> inside(scattered.size());
   for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
-    const std::uint32_t o = scattered.objects[k];
+    const std::uint32_t o = scattered[k];
     const Object& object = scene.objects[o];
     const auto order =
         std::span(blocks.order).subspan(object.first_triangle, object.triangle_count);
     inside[k] = blocks.is_stretched(o)
                     ? order_stretched(scene, object, order)
-                    : order_object(boxes_of(k), relative(regions[o], blocks.origin),
-                                   object.first_triangle, own_threads, order);
+                    : order_object(scene, object, half, blocks.origin,
+                                   relative(regions[o], blocks.origin), own_threads, order);
   });
   std::uint32_t lanes = 0;
   for (std::size_t k = 0; k < inside.size(); ++k) {
     const auto count = (inside[k] + kWide - 1) / kWide;
-    blocks.gathered[scattered.objects[k]] = {.first = lanes, .count = count, .any = true};
+    blocks.gathered[scattered[k]] = {.first = lanes, .count = count, .any = true};
     lanes += count;
   }
   blocks.lanes.resize(lanes);
   for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
-    const std::uint32_t o = scattered.objects[k], first = scene.objects[o].first_triangle;
-    const std::span<const FloatBox> boxes = boxes_of(k);
+    const std::uint32_t o = scattered[k], first = scene.objects[o].first_triangle;
     const auto order = std::span<const std::uint32_t>(blocks.order).subspan(first, inside[k]);
     const std::size_t n = blocks.gathered[o].count;
     for_chunks(
         n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t block = begin; block < end; ++block) {
             const std::size_t from = block * kWide;
-            const auto own = order.subspan(from, std::min<std::size_t>(kWide, order.size() - from));
-            for (std::size_t k = from + kFar; k < std::min(from + kFar + kWide, order.size()); ++k)
-              __builtin_prefetch(&boxes[order[k] - first]);
-            fill_lanes(own, boxes.data(), first, blocks.lanes[blocks.gathered[o].first + block]);
+            for (std::size_t ahead = from + kWide; ahead < from + 2 * kWide; ++ahead)
+              prefetch(scene, order[std::min(ahead, order.size() - 1)]);
+            fill_lanes(scene,
+                       order.subspan(from, std::min<std::size_t>(kWide, order.size() - from)), half,
+                       blocks.origin, blocks.lanes[blocks.gathered[o].first + block]);
           }
         });
   });
 }
 
 TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads) {
-  ScatteredBoxes scattered;
-  TriangleBlocks blocks = make_blocks(scene, clearance, threads, &scattered);
-  if (!blocks.stretched.empty()) {
-    std::vector<std::uint32_t> both;
-    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-      if (blocks.is_stretched(o) || std::ranges::binary_search(scattered.objects, o))
-        both.push_back(o);
-    }
-    scattered.objects = std::move(both);
-    fill_scattered(scene, half_of(clearance), threads, scattered, blocks.objects);
-  }
+  TriangleBlocks blocks = make_blocks(scene, clearance, threads);
   const std::vector<Box> regions = blocks.objects;
-  gather_scattered(scene, clearance, regions, threads, scattered, blocks);
+  gather_scattered(scene, clearance, regions, threads, blocks);
   update_boxes(scene, clearance, std::vector<std::uint8_t>(blocks.ranges.size(), 1), threads,
                blocks);
   return blocks;

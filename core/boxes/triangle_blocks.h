@@ -22,7 +22,7 @@ struct TriangleBlock {
 /// The blocks of all objects of a scene, and their boxes, grown by half the clearance.
 struct TriangleBlocks {
   std::vector<TriangleBlock> ranges;
-  std::vector<Box> boxes;            // per block; of a gathered object only if all blocks have one
+  std::vector<Box> boxes;            // per block; of a gathered object not of its own order
   std::vector<std::uint32_t> first;  // per object, and one behind the last: its first block
   std::vector<Box> objects;          // empty if an object has no triangle
   std::vector<std::uint32_t> order;  // triangles in the order of the blocks; empty: as in the file
@@ -57,14 +57,6 @@ struct TriangleBlocks {
   }
 };
 
-/// The boxes of all triangles of some objects, one object after the other.
-struct ScatteredBoxes {
-  Vec3 origin = Vec3::Zero();
-  std::vector<std::uint32_t> objects;  // ascending
-  std::vector<std::size_t> first;      // per object of the list, into boxes
-  UninitializedVector<FloatBox> boxes;
-};
-
 /// An object's blocks are scattered if they are more than kScattered times as long as those of a
 /// smooth surface.
 constexpr double kScattered = 3;
@@ -73,17 +65,15 @@ constexpr double kScattered = 3;
 /// of no use. Objects of a few blocks are not judged.
 constexpr double kStretched = 8;
 
-/// Blocks in the order of the file. threads: 0 for as many as there are cores. scattered: if it is
-/// not null, scattered objects are put there and have no boxes of blocks (large ones are judged by
-/// a sample), and stretched objects are marked.
-TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads,
-                           ScatteredBoxes* scattered = nullptr);
+/// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
+/// are cores.
+TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
 /// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
-/// Morton order, as blocks with lanes.
+/// Morton order, as blocks with lanes; all triangles of stretched ones in that of spatial_order().
 /// regions: per object a box that contains the grown boxes of all its triangles that can meet
 /// anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
-                      unsigned threads, ScatteredBoxes& scattered, TriangleBlocks& blocks);
+                      unsigned threads, TriangleBlocks& blocks);
 
 /// Blocks in the order of the file. Scattered objects have all triangles in Morton order, with
 /// lanes and a box for each block; stretched ones have them in the order of spatial_order().

@@ -132,7 +132,7 @@ class Finding {
     }
     if (first_) join_boxes();
     if (plan_.remembers) remember();
-    if (out_.given) return std::move(out_);  // the tree has the pairs of the blocks too
+    if (out_.given) return std::move(out_);  // a tree has the pairs of the blocks too
     if (out_.candidates.empty()) {
       out_.candidates = std::move(of_blocks_);
     } else if (!of_blocks_.empty()) {
@@ -147,11 +147,19 @@ class Finding {
     if (plan_.blocks.empty()) return;
     const Stopwatch start;
     const PairSettings& settings = plan_.settings;
-    of_blocks_ = pairs_of_blocks(scene_, plan_.blocks, settings.clearance, settings.neighbours,
-                                 plan_.threads);
+    const bool alone = plan_.choices.empty() && plan_.regions.triangles.empty();
+    out_.given = take_ && alone && !settings.lists && !plan_.remembers;
+    if (out_.given) {
+      out_.count =
+          give_pairs_of_blocks(scene_, plan_.blocks, plan_.blocks.pairs, settings.clearance,
+                               settings.neighbours, plan_.threads, take_);
+    } else {
+      of_blocks_ = pairs_of_blocks(scene_, plan_.blocks, settings.clearance, settings.neighbours,
+                                   plan_.threads);
+    }
     Stage stage = stage_of_blocks(plan_);
     stage.ms = start.ms();
-    stage.out = of_blocks_.size();
+    stage.out = out_.given ? out_.count : of_blocks_.size();
     out_.stages.push_back(stage);
   }
 

@@ -78,6 +78,7 @@ struct PairSettings {
   bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
   bool blocks = true;    // false: views decide everything
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
+  bool lists = false;      // pairs of blocks are listed even where find_pairs() has a `take`
   /// Objects that are not tested against each other, as in_order() gives them. Culling spends no
   /// work on them; the candidates may still have such pairs.
   std::vector<ObjectPair> ignored = {};
@@ -163,9 +164,10 @@ struct PairWorkspace {
 /// if it is marked `self`. The result does not depend on threads, memory limits or earlier
 /// calls; a backend keeps its buffers between calls, and so does `workspace`, whose contents are
 /// replaced. A plan that was made with workspace.memory must be given here with that workspace,
-/// before the next plan is made. take: receives the candidates as they are found if a tree of all
-/// boxes decides, where they may be far more than the triangles, so that they are never listed;
-/// empty: they are listed. Throws Error if the backend cannot vouch for its answer.
+/// before the next plan is made. take: receives the candidates as they are found, so that they are
+/// never listed, if a tree of all boxes decides, or if blocks decide the whole scene and neither
+/// settings.lists nor plan.remembers; empty: they are listed. Throws Error if the backend cannot
+/// vouch for its answer.
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
                       PairWorkspace& workspace, const Progress& progress = {},
                       const TakePairs& take = {});

@@ -181,6 +181,11 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<MeetingP
                              BlockMeetings& out) {
   std::vector<Meeting> left;
   BlockCounter counter(out.of->ranges.size());
+  std::size_t between = 0, inside = 0;
+  for (const MeetingPart& part : parts)
+    (all[part.meeting].a == all[part.meeting].b ? inside : between) += part.pairs.size();
+  out.pairs.between.reserve(between);
+  out.pairs.inside.reserve(inside);
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const std::uint32_t own = parts[begin].meeting;
     const Meeting& meeting = all[own];
@@ -247,6 +252,7 @@ std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks,
   const std::size_t chunks = chunks_for(parts.size(), 1, threads);
   std::atomic<std::size_t> next = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    MeetingPart scratch;  // so that a part has room for its own pairs only
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
       const Meeting& meeting = meetings[part.meeting];
@@ -255,10 +261,13 @@ std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks,
           all ? most_of_all : std::min(most_pairs(blocks, meeting), most_of_all);
       if (sum > most_of_all) return;
       if (of_meeting > most) continue;
-      find(meeting, part, most);
-      const std::size_t pairs = part.pairs.size(), before = of_meeting.fetch_add(pairs);
+      scratch.from = part.from;
+      scratch.to = part.to;
+      scratch.pairs.clear();
+      find(meeting, scratch, most);
+      const std::size_t pairs = scratch.pairs.size(), before = of_meeting.fetch_add(pairs);
       sum += std::min(before + pairs, most + 1) - std::min(before, most + 1);
-      if (before + pairs > most) part.pairs = {};
+      if (before + pairs <= most) part.pairs = scratch.pairs;
     }
   });
   if (sum > most_of_all) return {};
@@ -289,10 +298,8 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
   const std::size_t all = meetings.pairs.size();
   if (all == 0) return false;
   BlockPairs some = some_of(meetings.pairs, kSampled);
-  const std::size_t found =
-      meetings.oriented
-          ? pairs_of_oriented(scene, *meetings.oriented, some, clearance, false, 1).size()
-          : pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
+  const std::uint64_t found =
+      give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
   if (each * static_cast<double>(all) <= static_cast<double>(often * meetings.triangles)) {
     return false;
@@ -308,7 +315,9 @@ std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const TriangleBloc
   BlockPairs some;
   append_evenly(from.between, 2 * kSampled, some.between);
   append_evenly(from.inside, 2 * kSampled, some.inside);
-  std::vector<TrianglePair> pairs = pairs_of_some(scene, blocks, some, clearance, false, 1);
+  std::vector<TrianglePair> pairs = sorted_pairs(1, [&](const TakePairs& take) {
+    return give_pairs_of_some(scene, blocks, some, clearance, false, 1, take);
+  });
   if (pairs.size() < some.size()) pairs.clear();
   return pairs;
 }
@@ -492,15 +501,12 @@ PairParts unmoved_parts(const Scene& scene, const PairMemory& memory) {
 
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all,
                          std::span<const ObjectPair> ignored) {
-  ScatteredBoxes scattered;
-  const auto blocks =
-      std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads, &scattered));
+  const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads));
   const Meetings meetings = meetings_of(scene, *blocks, ignored);
   if (auto parts = parts_without_blocks(scene, *blocks, meetings, clearance, threads, ignored))
     return *std::move(parts);
   const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
-  gather_scattered(scene, clearance, regions, threads, scattered, *blocks);
-  scattered = {};  // to make room
+  gather_scattered(scene, clearance, regions, threads, *blocks);
   return split(scene, meetings, regions, clearance, threads, all, blocks);
 }
 

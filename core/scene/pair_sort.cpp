@@ -17,61 +17,70 @@ using Parts = std::span<const std::vector<TrianglePair>>;
 // From so many on, the partners of one triangle may be marked instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
-// Sorts the partners of one triangle and appends its pairs, each once. Many partners among few
-// triangles are marked in `bits` instead, whose words are 0 before and after.
-void append_partners(std::uint32_t a, std::span<std::uint32_t> partners,
-                     std::vector<std::uint64_t>& bits, std::vector<TrianglePair>& out) {
-  if (partners.size() >= kMarkFrom) {
-    const auto [least, most] = std::minmax_element(partners.begin(), partners.end());
-    const std::uint32_t from = *least;
-    const std::size_t words = (*most - from) / 64 + 1;
-    if (words <= partners.size()) {
+// Sorts the pairs of one first triangle and leaves each there once, at the begin; returns how many
+// these are. Many partners among few triangles are marked in `bits` instead, whose words are 0
+// before and after.
+std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64_t>& bits) {
+  if (pairs.size() >= kMarkFrom) {
+    const auto [least, most] = std::ranges::minmax_element(pairs);
+    const std::uint32_t from = least->b;
+    const std::size_t words = (most->b - from) / 64 + 1;
+    if (words <= pairs.size()) {
       if (bits.size() < words) bits.resize(words, 0);
-      for (const std::uint32_t b : partners) {
-        bits[(b - from) / 64] |= std::uint64_t{1} << ((b - from) % 64);
-      }
+      for (const TrianglePair& pair : pairs)
+        bits[(pair.b - from) / 64] |= std::uint64_t{1} << ((pair.b - from) % 64);
+      std::size_t count = 0;
       for (std::size_t w = 0; w < words; ++w) {
         for (std::uint64_t rest = std::exchange(bits[w], 0); rest != 0; rest &= rest - 1) {
-          out.push_back({a, from + static_cast<std::uint32_t>(64 * w) +
-                                static_cast<std::uint32_t>(std::countr_zero(rest))});
+          pairs[count++].b = from + static_cast<std::uint32_t>(64 * w) +
+                             static_cast<std::uint32_t>(std::countr_zero(rest));
         }
       }
-      return;
+      return count;
     }
   }
-  if (partners.size() > 1) std::sort(partners.begin(), partners.end());
-  for (std::size_t k = 0; k < partners.size(); ++k) {
-    if (k == 0 || partners[k] != partners[k - 1]) out.push_back({a, partners[k]});
-  }
+  if (pairs.size() > 1) std::ranges::sort(pairs, {}, &TrianglePair::b);
+  const auto after = std::ranges::unique(pairs).begin();
+  return static_cast<std::size_t>(after - pairs.begin());
 }
 
-// The pairs with from <= a < to: counted by a, so that only the few partners of each triangle are
-// left to sort.
-std::vector<TrianglePair> sorted_range(Parts parts, std::uint64_t from, std::uint64_t to) {
-  std::vector<std::uint32_t> first(to - from + 1, 0);
-  for (const auto& part : parts) {
-    for (const TrianglePair& pair : part) {
-      if (pair.a >= from && pair.a < to) ++first[pair.a - from + 1];
+// The pairs with from <= a < to, and how many there are for each a, one place behind.
+struct Range {
+  std::uint64_t from = 0, to = 0;
+  std::vector<std::uint32_t> first = {};
+
+  void count(Parts parts) {
+    first.assign(to - from + 1, 0);
+    for (const auto& part : parts) {
+      for (const TrianglePair& pair : part) {
+        if (pair.a >= from && pair.a < to) ++first[pair.a - from + 1];
+      }
     }
+    for (std::size_t a = 0; a + 1 < first.size(); ++a) first[a + 1] += first[a];
   }
-  for (std::size_t a = 0; a + 1 < first.size(); ++a) first[a + 1] += first[a];
-  std::vector<std::uint32_t> partners(first.back());
-  // From the back: first[a + 1], the end of the partners of a, becomes their start.
-  for (const auto& part : parts) {
-    for (const TrianglePair& pair : part) {
-      if (pair.a >= from && pair.a < to) partners[--first[pair.a - from + 1]] = pair.b;
+  std::size_t size() const { return first.back(); }
+
+  // Sorts them into `out`, which has room for all, so that only the few partners of each triangle
+  // are left to sort; returns how many differ.
+  std::size_t sort(Parts parts, std::span<TrianglePair> out) {
+    // From the back: first[a + 1], the end of the partners of a, becomes their start.
+    for (const auto& part : parts) {
+      for (const TrianglePair& pair : part) {
+        if (pair.a >= from && pair.a < to) out[--first[pair.a - from + 1]] = pair;
+      }
     }
+    std::vector<std::uint64_t> bits;
+    std::size_t distinct = 0;
+    for (std::size_t a = 0; a < to - from; ++a) {
+      const std::size_t begin = first[a + 1],
+                        end = a + 2 < first.size() ? first[a + 2] : out.size();
+      const std::size_t own = sort_partners(out.subspan(begin, end - begin), bits);
+      if (distinct < begin) std::copy_n(out.begin() + begin, own, out.begin() + distinct);
+      distinct += own;
+    }
+    return distinct;
   }
-  std::vector<TrianglePair> out;
-  out.reserve(partners.size());
-  std::vector<std::uint64_t> bits;
-  for (std::size_t a = 0; a < to - from; ++a) {
-    const std::size_t end = a + 2 < first.size() ? first[a + 2] : partners.size();
-    append_partners(static_cast<std::uint32_t>(from + a),
-                    std::span(partners).subspan(first[a + 1], end - first[a + 1]), bits, out);
-  }
-  return out;
-}
+};
 
 // All pairs of the parts, as sorted_unique(). Calls `release` when the parts are no longer read.
 template <class Release>
@@ -86,10 +95,10 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
     }
   }
   if (total == 0) return {};
-  const std::uint64_t range = most - least + 1;
+  const std::uint64_t span = most - least + 1;
+  std::vector<TrianglePair> out;
   // Counting takes 32-bit places, and pays unless pairs are few compared with the range.
-  if (total < range / 16 || total > UINT32_MAX) {
-    std::vector<TrianglePair> out;
+  if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
     std::sort(out.begin(), out.end());
@@ -97,20 +106,25 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
     return out;
   }
   const std::size_t chunks = chunks_for(total, 4096, threads);
-  std::vector<std::vector<TrianglePair>> sorted(chunks);
-  for_chunks(range, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    sorted[chunk] = sorted_range(parts, least + begin, least + end);
+  std::vector<Range> ranges(chunks);
+  std::vector<std::size_t> first(chunks + 1, 0), distinct(chunks);
+  for_chunks(span, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    ranges[chunk] = {.from = least + begin, .to = least + end};
+    ranges[chunk].count(parts);
+  });
+  for (std::size_t k = 0; k < chunks; ++k) first[k + 1] = first[k] + ranges[k].size();
+  out.resize(total);
+  for_chunks(chunks, chunks, [&](std::size_t chunk, std::size_t, std::size_t) {
+    distinct[chunk] =
+        ranges[chunk].sort(parts, std::span(out).subspan(first[chunk], ranges[chunk].size()));
   });
   release();
-  if (chunks == 1) return std::move(sorted[0]);
-  std::size_t distinct = 0;
-  for (const auto& part : sorted) distinct += part.size();
-  std::vector<TrianglePair> out;
-  out.reserve(distinct);
-  for (auto& part : sorted) {
-    out.insert(out.end(), part.begin(), part.end());
-    std::vector<TrianglePair>().swap(part);  // `= {}` would keep its memory
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < chunks; ++k) {
+    if (count < first[k]) std::copy_n(out.begin() + first[k], distinct[k], out.begin() + count);
+    count += distinct[k];
   }
+  out.resize(count);
   return out;
 }
 

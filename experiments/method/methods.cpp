@@ -220,6 +220,8 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         // If the user names a GL device, views are looked at and no boxes decide.
                         .blocks = options.device.empty() || is_cpu(options.device),
                         .neighbours = options.neighbours,
+                        // The accounting is about all candidates.
+                        .lists = options.verify,
                         .ignored = options.ignored};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
   PairPlan pairs = plan_pairs(scene, settings, threads, plan.memory);

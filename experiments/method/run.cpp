@@ -8,8 +8,10 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "core/base/stopwatch.h"
+#include "core/scene/pair_sort.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -22,14 +24,37 @@ void count_kept(const Scene& scene, Candidates& found) {
   found.object_count = count_objects(scene, found.triangles);
 }
 
-// Decides candidates as they are found, in the threads that find them, and marks their triangles.
+// Pairs that arrive some at a time, in no order. A list that doubles would be copied each time.
+class PairParts {
+ public:
+  void add(const std::vector<TrianglePair>& some) {
+    for (std::size_t done = 0; done < some.size();) {
+      if (parts_.empty() || parts_.back().size() == kPart) parts_.emplace_back().reserve(kPart);
+      const std::size_t count = std::min(kPart - parts_.back().size(), some.size() - done);
+      const auto from = some.begin() + static_cast<std::ptrdiff_t>(done);
+      parts_.back().insert(parts_.back().end(), from, from + static_cast<std::ptrdiff_t>(count));
+      done += count;
+    }
+  }
+  std::vector<TrianglePair> sorted(unsigned threads) && {
+    return sorted_unique(std::move(parts_), threads);
+  }
+
+ private:
+  static constexpr std::size_t kPart = std::size_t{1} << 14;
+  std::vector<std::vector<TrianglePair>> parts_;
+};
+
+// Decides candidates as they are found, in the threads that find them. marks: marks their
+// triangles.
 class Deciding {
  public:
-  Deciding(const Scene& scene, const Plan& plan, const ExactQuestion& question)
+  Deciding(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
       : scene_(scene),
         is_ignored_(scene, plan.options.ignored),
         question_(question),
-        kept_(scene.triangles.size(), 0) {
+        all_threads_(question.threads),
+        kept_(marks ? scene.triangles.size() : 0, 0) {
     question_.threads = 1;
   }
 
@@ -37,13 +62,17 @@ class Deciding {
     const Stopwatch watch;
     const std::uint64_t removed =
         is_ignored_.any() ? std::erase_if(some, std::cref(is_ignored_)) : 0;
-    for (const TrianglePair& pair : some) {
-      std::atomic_ref(kept_[pair.a]).store(1, std::memory_order_relaxed);
-      std::atomic_ref(kept_[pair.b]).store(1, std::memory_order_relaxed);
+    if (!kept_.empty()) {
+      for (const TrianglePair& pair : some) {
+        std::atomic_ref(kept_[pair.a]).store(1, std::memory_order_relaxed);
+        std::atomic_ref(kept_[pair.b]).store(1, std::memory_order_relaxed);
+      }
     }
-    const Collisions decided = decide(scene_, some, question_);
+    Collisions decided = decide(scene_, some, question_);
     const std::scoped_lock lock(mutex_);
-    collisions_.append(decided);
+    pairs_.add(std::exchange(decided.pairs, {}));
+    neighbour_pairs_.add(std::exchange(decided.neighbour_pairs, {}));
+    counts_.append(decided);
     ignored_ += removed;
     threads_.insert(std::this_thread::get_id());
     ms_ += watch.ms();
@@ -55,9 +84,9 @@ class Deciding {
     if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
     found.ignored = ignored_;
     found.count -= ignored_;
-    std::ranges::sort(collisions_.pairs);
-    std::ranges::sort(collisions_.neighbour_pairs);
-    found.decided = std::move(collisions_);
+    counts_.pairs = std::move(pairs_).sorted(all_threads_);
+    counts_.neighbour_pairs = std::move(neighbour_pairs_).sorted(all_threads_);
+    found.decided = std::move(counts_);
     found.decided_ms = ms_ + watch.ms();
     found.ms -= ms_;
     found.trace.back().ms -= ms_;
@@ -72,9 +101,11 @@ class Deciding {
   const Scene& scene_;
   const IgnoredObjects is_ignored_;
   ExactQuestion question_;
-  std::vector<std::uint8_t> kept_;  // per triangle
+  const unsigned all_threads_;
+  std::vector<std::uint8_t> kept_;  // per triangle; empty: none is marked
   std::mutex mutex_;                // of all below
-  Collisions collisions_;
+  PairParts pairs_, neighbour_pairs_;
+  Collisions counts_;  // without pairs until the end
   std::uint64_t ignored_ = 0;
   std::set<std::thread::id> threads_;
   double ms_ = 0;  // of all threads together
@@ -82,7 +113,8 @@ class Deciding {
 
 // Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
-                const ExactQuestion* question, const FrameChange* change, Record& record) {
+                const ExactQuestion* question, const FrameChange* change, bool marks,
+                Record& record) {
   const Stopwatch comparing;
   PairMemory* const memory = session.pair_memory();
   if (memory) memory->moved.update(scene, change);
@@ -90,7 +122,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
   record.options.ignored = planned.options.ignored;
   record.plan = planned.stages();
-  record.found = find(scene, planned, session, progress, question);
+  record.found = find(scene, planned, session, progress, question, marks);
   record.trace = planned.trace;
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   record.ms.setup = record.found.setup_ms;
@@ -176,11 +208,11 @@ void contact_stage(const Scene& scene, Session& session, const Progress& progres
 }  // namespace
 
 Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress,
-                const ExactQuestion* question) {
+                const ExactQuestion* question, bool marks) {
   const FloatingPointGuard guard;
   try {
     std::optional<Deciding> deciding;
-    if (question) deciding.emplace(scene, plan, *question);
+    if (question) deciding.emplace(scene, plan, *question, marks);
     Candidates found = traits(plan.options.method)
                            .find(scene, plan, session, progress,
                                  question ? TakePairs(std::ref(*deciding)) : TakePairs());
@@ -223,7 +255,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
                                .neighbours = options.neighbours && use.decide_neighbours};
   // A filter and a limit need the list of all candidates.
   const bool lists = use.filter || options.limit > 0;
-  find_stage(scene, session, progress, lists ? nullptr : &question, use.change, record);
+  find_stage(scene, session, progress, lists ? nullptr : &question, use.change, !use.answer_only,
+             record);
   Candidates& found = record.found;
   if (!use.answer_only) {
     record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;

@@ -15,12 +15,13 @@
 namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// question: decides candidates as they are found where a tree of boxes finds them, so that
-/// memory does not grow with their number; null: lists them all, but for a method that culls
-/// nothing. Throws Error for any fault of the device. After any exception the session has forgotten
-/// its device, and can be used again.
+/// question: decides candidates as they are found where boxes alone find them, so that memory does
+/// not grow with their number; null: lists them all, but for a method that culls nothing. marks:
+/// false leaves out the triangles of candidates that are not listed. Throws Error for any fault of
+/// the device. After any exception the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
-                const Progress& progress = {}, const ExactQuestion* question = nullptr);
+                const Progress& progress = {}, const ExactQuestion* question = nullptr,
+                bool marks = true);
 
 /// The promise of the method on the device that it used, by the session's verdict about the device.
 /// After an exception the session has forgotten its device, as after find().

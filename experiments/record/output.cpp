@@ -275,10 +275,11 @@ std::string pairs_header(const Scene& scene, const PairColumns& columns) {
   return header + '\n';
 }
 
-std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
-                       const PairColumns& columns) {
+namespace {
+
+void append_rows(const Scene& scene, const Record& record, const std::string& before,
+                 const PairColumns& columns, std::string& out) {
   const PairListRows rows(scene, columns.numbers);
-  std::string out;
   const auto add = [&](const std::vector<TrianglePair>& pairs,
                        const std::vector<ContactShape>& contacts, std::size_t k) {
     const TrianglePair& pair = pairs[k];
@@ -306,11 +307,21 @@ std::string pairs_rows(const Scene& scene, const Record& record, const std::stri
   }
   for (; next < all.neighbour_pairs.size(); ++next)
     add(all.neighbour_pairs, record.neighbour_contacts, next);
+}
+
+}  // namespace
+
+std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
+                       const PairColumns& columns) {
+  std::string out;
+  append_rows(scene, record, before, columns, out);
   return out;
 }
 
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns) {
-  return pairs_header(scene, columns) + pairs_rows(scene, record, "", columns);
+  std::string out = pairs_header(scene, columns);
+  append_rows(scene, record, "", columns, out);
+  return out;
 }
 
 Certificate certificate_of(const Scene& scene, const Record& record) {

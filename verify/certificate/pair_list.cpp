@@ -3,6 +3,8 @@
 #include "verify/certificate/pair_list.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <limits>
 #include <utility>
 
@@ -45,9 +47,14 @@ void PairListRows::append(const TrianglePair& pair, std::string& text) const {
   const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
     return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
   };
+  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
+  char* end = numbers.data();
   for (const std::uint64_t number :
-       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)})
-    text.append(std::to_string(number)).push_back(',');
+       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
+    end = std::to_chars(end, numbers.data() + numbers.size(), number).ptr;
+    *end++ = ',';
+  }
+  text.append(numbers.data(), end);
   if (self_) {
     text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";
   } else {

@@ -2,6 +2,8 @@
 // instruction set, whatever the order of the triangles. Each property has a twin that must fail.
 #include "core/boxes/triangle_blocks.h"
 
+#include <mutex>
+
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
 #include "core/boxes/oriented.h"
@@ -83,10 +85,9 @@ TEST(Blocks, HoldEachTriangleOnceInItsBox) {
   for (const Scene& scene : small_scenes()) {
     for (const double clearance : {0.0, 0.01}) {
       for (const bool all : {true, false}) {
-        ScatteredBoxes scattered;
-        TriangleBlocks blocks = make_blocks(scene, clearance, 2, &scattered);
+        TriangleBlocks blocks = make_blocks(scene, clearance, 2);
         const std::vector<Box> regions = all ? blocks.objects : middles_of(blocks);
-        gather_scattered(scene, clearance, regions, 2, scattered, blocks);
+        gather_scattered(scene, clearance, regions, 2, blocks);
         std::set<std::uint32_t> seen;
         for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
           const Object& object = scene.objects[o];
@@ -148,19 +149,21 @@ std::vector<std::uint32_t> scattered_objects(const Scene& scene) {
   return out;
 }
 
-// Large objects are judged by a sample, which must not follow the period of a surface: the turns of
-// the rope.
 TEST(Blocks, AreGatheredOnlyWhereTheFileScattersThem) {
   std::size_t gathered = 0, others = 0;
   for (const char* name :
        {"rope:40000", "rope:80000", "rope:160000", "crumpled:60000", "spheres:40000"}) {
     const Scene scene = make_builtin_scene(name);
     for (const Scene& either : {scene, shuffled(scene, 1)}) {
-      ScatteredBoxes scattered;
-      make_blocks(either, 0, 2, &scattered);
-      EXPECT_EQ(scattered.objects, scattered_objects(either)) << name;
-      gathered += scattered.objects.size();
-      others += scene.objects.size() - scattered.objects.size();
+      const std::vector<std::uint32_t> expected = scattered_objects(either);
+      TriangleBlocks blocks = make_blocks(either, 0, 2);
+      gather_scattered(either, 0, std::vector<Box>(blocks.objects), 2, blocks);
+      std::vector<std::uint32_t> found;
+      for (std::uint32_t o = 0; o < either.objects.size(); ++o)
+        if (blocks.is_gathered(o)) found.push_back(o);
+      EXPECT_EQ(found, expected) << name;
+      gathered += found.size();
+      others += scene.objects.size() - found.size();
     }
   }
   EXPECT_GT(gathered, 4u);
@@ -225,6 +228,36 @@ TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
   }
   EXPECT_GT(by_blocks, 20u);
   EXPECT_GT(pairs, 100'000u);
+}
+
+// Each pair is given once, so that it is decided and counted once. The twin: a pair of blocks that
+// is there twice gives its pairs twice.
+TEST(Blocks, GiveEachPairOnce) {
+  std::size_t twice = 0;
+  for (const Scene& scene : small_scenes()) {
+    const PairParts parts = split_meetings(scene, 0, 2, true);
+    if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+    const auto given = [&](const BlockPairs& some) {
+      std::mutex mutex;
+      std::vector<TrianglePair> all;
+      const std::uint64_t count =
+          give_pairs_of_blocks(scene, parts.blocks, some, 0, true, 3, [&](const auto& pairs) {
+            const std::scoped_lock lock(mutex);
+            all.insert(all.end(), pairs.begin(), pairs.end());
+          });
+      EXPECT_EQ(all.size(), count);
+      std::ranges::sort(all);
+      return all;
+    };
+    ASSERT_EQ(given(parts.blocks.pairs), pairs_of_blocks(scene, parts.blocks, 0, true, 2))
+        << scene.name;
+    BlockPairs more = parts.blocks.pairs;
+    more.between.insert(more.between.end(), more.between.begin(), more.between.end());
+    more.inside.insert(more.inside.end(), more.inside.begin(), more.inside.end());
+    const std::vector<TrianglePair> repeated = given(more);
+    twice += std::ranges::adjacent_find(repeated) != repeated.end();
+  }
+  EXPECT_GT(twice, 4u);
 }
 
 // Ignored objects have no pairs of blocks, and the others lose none.
@@ -424,8 +457,8 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   for (const BlockPair& pair : parts.blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
   BlockFindings found;
   compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
-  std::ranges::sort(found.certain);
-  EXPECT_GT(missed(overlapping(scene, 0, true), found.certain), 0u);
+  std::ranges::sort(found.pairs);
+  EXPECT_GT(missed(overlapping(scene, 0, true), found.pairs), 0u);
 }
 
 TEST(BlocksTwin, ADroppedPairOfBlocksMisses) {

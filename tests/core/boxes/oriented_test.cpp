@@ -35,7 +35,10 @@ std::shared_ptr<const OrientedBlocks> oriented(const Scene& scene, double cleara
 
 std::vector<TrianglePair> pairs_of(const Scene& scene, const OrientedBlocks& blocks,
                                    double clearance) {
-  return pairs_of_oriented(scene, blocks, block_pairs(scene, blocks), clearance, true, 2);
+  return sorted_pairs(2, [&](const TakePairs& take) {
+    return give_pairs_of_oriented(scene, blocks, block_pairs(scene, blocks), clearance, true, 2,
+                                  take);
+  });
 }
 
 std::vector<Scene> some_scenes() {

@@ -1,4 +1,5 @@
 // FAR pairs as a method of farcull run, on the CPU.
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"
@@ -173,6 +174,67 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
       EXPECT_TRUE(alone.collisions.neighbour_pairs.empty());
       EXPECT_EQ(alone.collisions.neighbours, exact.collisions.neighbours);
     }
+  }
+}
+
+// Where blocks decide a whole scene, along the axes or by oriented boxes, their pairs are decided
+// as they are found. The accounting, a limit and frames that follow one another ask for their list.
+TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
+  for (const Scene& scene : {self_scene("crumpled:6000"), self_scene("needles"),
+                             make_builtin_scene("spheres:6000"), make_builtin_scene("fans:4000")}) {
+    RunOptions options = on_cpu(Method::far_pairs);
+    const Record listed = run(scene, options);
+    EXPECT_FALSE(listed.found.given);
+    ASSERT_TRUE(listed.verification);
+    const Record exact = run(scene, on_cpu(Method::exact));
+    options.verify = false;
+    for (const unsigned threads : {1u, 3u}) {
+      Session session("cpu", threads);
+      const Record given = run(scene, options, session);
+      EXPECT_TRUE(given.found.given) << scene.name;
+      EXPECT_TRUE(given.found.pairs.empty());
+      EXPECT_EQ(given.found.count, listed.found.count);
+      EXPECT_EQ(given.decided, listed.found.pairs.size());
+      EXPECT_EQ(given.found.triangles, listed.found.triangles);
+      EXPECT_EQ(given.found.object_count, listed.found.object_count);
+      EXPECT_EQ(given.collisions.pairs, exact.collisions.pairs);
+      EXPECT_EQ(given.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
+      EXPECT_EQ(given.collisions.neighbours, listed.collisions.neighbours);
+      for (const StageKind kind : {StageKind::blocks, StageKind::exact}) {
+        const auto of_kind = [&](const Stage& stage) { return stage.kind == kind; };
+        const auto one = std::ranges::find_if(given.trace, of_kind);
+        const auto other = std::ranges::find_if(listed.trace, of_kind);
+        ASSERT_TRUE(one != given.trace.end() && other != listed.trace.end());
+        EXPECT_EQ(one->in, other->in);
+        EXPECT_EQ(one->out, other->out);
+      }
+    }
+    options.limit = 3;
+    EXPECT_FALSE(run(scene, options).found.given);
+    options.limit = 0;
+    Session frames("cpu");
+    frames.remember_frames();
+    EXPECT_FALSE(run(scene, options, frames).found.given);
+  }
+}
+
+// The twin: a receiver that loses a part of what it is given loses pairs that collide.
+TEST(RunPairs, ALostPartOfGivenPairsIsMissed) {
+  const Scene scene = self_scene("crumpled:6000");
+  const PairPlan planned = plan_pairs(scene, {});
+  PairWorkspace workspace;
+  for (const bool loses : {false, true}) {
+    std::mutex mutex;
+    std::vector<TrianglePair> kept;
+    const PairResult result = find_pairs(scene, planned, *cpu_pair_backend(2), workspace, {},
+                                         [&](std::vector<TrianglePair>& some) {
+                                           const std::scoped_lock lock(mutex);
+                                           if (loses) some.resize(some.size() / 2);
+                                           kept.insert(kept.end(), some.begin(), some.end());
+                                         });
+    ASSERT_TRUE(result.given);
+    std::ranges::sort(kept);
+    EXPECT_EQ(account(scene, kept).false_negatives > 0, loses);
   }
 }
 
