@@ -300,8 +300,12 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
         n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t block = begin; block < end; ++block) {
             const std::size_t from = block * kWide;
-            for (std::size_t ahead = from + kWide; ahead < from + 2 * kWide; ++ahead)
-              prefetch(scene, order[std::min(ahead, order.size() - 1)]);
+            // The indices of a block come into the cache before its corners are prefetched by them.
+            for (std::size_t k = from; k < from + kWide; ++k) {
+              const std::size_t last = order.size() - 1;
+              __builtin_prefetch(&scene.triangles[order[std::min(k + 3 * kWide, last)]]);
+              prefetch(scene, order[std::min(k + kWide, last)]);
+            }
             fill_lanes(scene,
                        order.subspan(from, std::min<std::size_t>(kWide, order.size() - from)), half,
                        blocks.origin, blocks.lanes[blocks.gathered[o].first + block]);
