@@ -456,8 +456,14 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
     for (std::uint32_t k = 0; k < gathered.count; ++k)
       place[blocks.blocks.first[o] + k] = gathered.first + k;
   }
-  const auto shared = [&](const TrianglePair& pair) {
-    return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
+  // Erases neighbours from a place on: those before it may be triangles of different objects, which
+  // count though they share a vertex index.
+  const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {
+    const auto shared = [&](const TrianglePair& pair) {
+      return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
+    };
+    const auto first = some.begin() + static_cast<std::ptrdiff_t>(from);
+    some.erase(std::remove_if(first, some.end(), shared), some.end());
   };
   return give_findings(
       scene, pairs.size(), clearance, threads,
@@ -465,12 +471,11 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
         for (std::size_t k = begin; k < end; ++k) {
           const bool same = k >= pairs.between.size();
           const BlockPair& pair = same ? pairs.inside[k - pairs.between.size()] : pairs.between[k];
-          const auto before = static_cast<std::ptrdiff_t>(out.pairs.size());
+          const std::size_t before = out.pairs.size(), perhaps_before = out.perhaps.size();
           HWY_DYNAMIC_DISPATCH(compare_oriented_here)(blocks, place[pair.a], place[pair.b], out);
           if (!same || neighbours) continue;
-          out.pairs.erase(std::remove_if(out.pairs.begin() + before, out.pairs.end(), shared),
-                          out.pairs.end());
-          std::erase_if(out.perhaps, shared);
+          erase_from(before, out.pairs);
+          erase_from(perhaps_before, out.perhaps);
         }
       },
       take);

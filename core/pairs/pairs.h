@@ -64,8 +64,9 @@ void look(const Scene& scene, const PairRegions& regions, std::span<const std::u
 
 /// A view is given up if it takes more work than kTestsPerTriangle for each triangle that takes
 /// part, and kTestsPerPair for each pair of boxes that overlap, by an estimate: about what these
-/// cost the method `exact` (docs/reliability.md, "Bounded work").
-constexpr double kTestsPerTriangle = 64, kTestsPerPair = 4;
+/// cost the method `exact` (docs/reliability.md, "Bounded work"). Views that the caller asks for
+/// may take kOfAskedViews times as much.
+constexpr double kTestsPerTriangle = 64, kTestsPerPair = 4, kOfAskedViews = 16;
 /// A further view is looked at if there are more candidates than this for each triangle that
 /// takes part: fewer are mostly neighbours and contacts, which no view takes away.
 constexpr std::size_t kFurtherViewFrom = 16;
@@ -107,9 +108,9 @@ struct PairPlan {
 /// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
 /// there are cores. memory: keeps the scene's last frame, if that was planned and found with the
 /// same object; null: nothing is kept. Precondition: memory->moved.update(scene) began this frame.
-/// The memory may change which triangles are left to views, but
-/// loses no colliding pair. Throws Error for a scene that is too large, std::logic_error for a
-/// clearance that is negative or not finite.
+/// The memory may change which triangles are left to views, but loses no colliding pair. Throws
+/// Error for a scene that is too large, std::logic_error for a clearance that is negative or not
+/// finite.
 PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0,
                     PairMemory* memory = nullptr);
 

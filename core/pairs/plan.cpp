@@ -134,13 +134,13 @@ PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> 
   return out;
 }
 
-std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
+std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan, bool asked) {
   const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
   const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
   // The constant allows some milliseconds in any scene: a few triangles may have many pixels.
-  return static_cast<std::uint64_t>(std::min(
-      0x1p63,
-      0x1p20 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
+  const double most =
+      0x1p20 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs;
+  return static_cast<std::uint64_t>(std::min(0x1p63, (asked ? kOfAskedViews : 1) * most));
 }
 
 // Leaves an uneven scene whose boxes overlap often (as those of needles do) to views, if the best
@@ -307,13 +307,15 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
   PairPlan plan;
   plan.settings = settings;
   plan.threads = threads;
-  if (settings.blocks && settings.views.empty() && settings.resolution == 0 && !settings.full) {
+  const bool asked =
+      !settings.blocks || !settings.views.empty() || settings.resolution > 0 || settings.full;
+  if (!asked) {
     split_and_choose(scene, threads, memory, plan);
   } else {
     if (memory) memory->frame.reset();
     leave_to_views(scene, threads, plan);
   }
-  if (!plan.choices.empty()) plan.most_tests = most_tests_of(scene, plan);
+  if (!plan.choices.empty()) plan.most_tests = most_tests_of(scene, plan, asked);
   std::size_t resolved = 0;
   for (const PairChoice& choice : plan.choices) {
     if (resolved == certain_views(plan)) break;

@@ -575,7 +575,8 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
     parts = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance, threads, all,
                   memory.blocks);
   }
-  if (parts->blocks.of == memory.blocks && parts->rest.triangles.empty()) {
+  if (!meetings.crowded && parts->join == Reason::none && parts->rest.triangles.empty() &&
+      !parts->blocks.oriented) {
     memory.trees.emplace(blocks, blocks.objects);
     memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
     memory.overlapping = parts->blocks.pairs;

@@ -212,8 +212,11 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   } else if (change == nullptr) {
     own = compare(scene);
     change = &own;
+  } else {
+    last_.reset();
   }
-  if (!change->same) {
+  // More triangles have more corners than 32 bits count.
+  if (!change->same || scene.triangles.size() > UINT32_MAX / 3) {
     first_of_.clear();
     return;
   }
@@ -258,13 +261,15 @@ FrameChange MovedCorners::compare(const Scene& scene) {
 void MovedCorners::mark(const Scene& scene, const std::vector<std::uint32_t>& vertices) {
   if (vertices.empty()) return;
   if (first_of_.empty()) {
-    first_of_.assign(scene.vertices.size() + 2, 0);
-    of_vertex_.resize(3 * scene.triangles.size());
+    std::vector<std::uint32_t> first(scene.vertices.size() + 2, 0);
+    std::vector<std::uint32_t> triangles(3 * scene.triangles.size());
     for (const auto& corners : scene.triangles)
-      for (const std::uint32_t v : corners) ++first_of_[v + 2];
-    for (std::size_t v = 2; v < first_of_.size(); ++v) first_of_[v] += first_of_[v - 1];
+      for (const std::uint32_t v : corners) ++first[v + 2];
+    for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
-      for (const std::uint32_t v : scene.triangles[t]) of_vertex_[first_of_[v + 1]++] = t;
+      for (const std::uint32_t v : scene.triangles[t]) triangles[first[v + 1]++] = t;
+    of_vertex_ = std::move(triangles);
+    first_of_ = std::move(first);
   }
   triangle_moved_.assign(scene.triangles.size(), 0);
   for (const std::uint32_t v : vertices) {

@@ -194,6 +194,7 @@ void take(const ColliderInput& input, bool self, const std::vector<bool>& self_o
   } catch (...) {
     scene.vertices.clear();  // nothing that was not checked stays there
     scene.triangles.clear();
+    scene.objects.clear();  // so that the next scene is not the same
     throw;
   }
 }

@@ -34,10 +34,10 @@ std::shared_ptr<const OrientedBlocks> oriented(const Scene& scene, double cleara
 }
 
 std::vector<TrianglePair> pairs_of(const Scene& scene, const OrientedBlocks& blocks,
-                                   double clearance) {
+                                   double clearance, bool neighbours = true) {
   return sorted_pairs(2, [&](const TakePairs& take) {
-    return give_pairs_of_oriented(scene, blocks, block_pairs(scene, blocks), clearance, true, 2,
-                                  take);
+    return give_pairs_of_oriented(scene, blocks, block_pairs(scene, blocks), clearance, neighbours,
+                                  2, take);
   });
 }
 
@@ -68,6 +68,40 @@ TEST(Oriented, LoseNoPairThatCollides) {
     }
   }
   EXPECT_GT(found, 5000u);
+}
+
+// Two objects of triangles whose tips are the same vertices, so that the boxes of two touch there.
+// Each object is tested against itself as well.
+Scene sharing_tips(std::uint32_t count) {
+  Scene scene;
+  lab::Random random(5);
+  std::vector<std::array<std::uint32_t, 3>> above;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Vec3 tip(random.unit(), random.unit(), random.unit());
+    for (const Vec3& to :
+         {Vec3(0, 0, 0), Vec3(-1, -2, -3), Vec3(-2, -1, -1), Vec3(1, 2, 3), Vec3(2, 1, 1)}) {
+      scene.vertices.push_back(tip + 1e-3 * to);
+    }
+    scene.triangles.push_back({5 * k, 5 * k + 1, 5 * k + 2});
+    above.push_back({5 * k, 5 * k + 3, 5 * k + 4});
+  }
+  scene.triangles.insert(scene.triangles.end(), above.begin(), above.end());
+  scene.source_face.resize(2 * count);
+  for (const std::uint32_t first : {0u, count})
+    scene.objects.push_back({.first_triangle = first, .triangle_count = count, .self = true});
+  return scene;
+}
+
+// Neighbours that are left out are those of one object: others may share a vertex index and count.
+TEST(Oriented, LeaveOutNoPairOfDifferentObjectsThatShareAVertex) {
+  for (const std::uint32_t count : {20u, 2000u}) {
+    const Scene scene = sharing_tips(count);
+    const std::vector<TrianglePair> truth = all_colliding_pairs(scene, {}).pairs;
+    EXPECT_GE(truth.size(), count);
+    const auto blocks = oriented(scene, 0);
+    ASSERT_NE(blocks, nullptr);
+    EXPECT_EQ(missed(truth, pairs_of(scene, *blocks, 0, false)), 0u);
+  }
 }
 
 TEST(Oriented, DecideAPartThatIsCut) {

@@ -209,6 +209,24 @@ TEST(PairMemory, IsRightAfterManyFramesOfSmallMotions) {
   EXPECT_GT(2 * kept, candidates);
 }
 
+// Whether a caller says what is new or the scenes are compared may change from frame to frame.
+TEST(MovedCorners, AreThoseSinceTheFrameBeforeWhoeverFindsThem) {
+  const Scene one = make_builtin_scene("two-spheres");
+  Scene other = one;
+  other.vertices[7].x() += 1e-3;
+  MovedCorners moved;
+  moved.update(one);
+  moved.update(other);
+  EXPECT_TRUE(moved.follows(1) && moved.any());
+  const FrameChange back{.same = true, .vertices = {7}}, nothing{.same = true, .vertices = {}};
+  moved.update(one, &back);
+  EXPECT_TRUE(moved.follows(2) && moved.any());
+  moved.update(other);  // compared with nothing: the copy is not of the frame before
+  EXPECT_FALSE(moved.follows(3));
+  moved.update(other, &nothing);
+  EXPECT_TRUE(moved.follows(4) && !moved.any());
+}
+
 // Candidates of frames in which the first vertices move, one more in each; if `tells` is false, the
 // memory is told that the last of them did not.
 std::vector<TrianglePair> found_after_frames(Scene& scene, bool tells) {

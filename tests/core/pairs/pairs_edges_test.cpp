@@ -352,10 +352,7 @@ TEST(PairsRepeated, NoFurtherViewWhereItTakesNothingAway) {
   const PairResult by_runs = find_pairs(scene, {}, *backend);
   EXPECT_EQ(by_runs.candidates.size(), 90'000u);
   EXPECT_TRUE(by_runs.views.empty());
-  PairPlan plan = plan_pairs(scene, {.resolution = 32}, 2);
-  plan.most_tests = UINT64_MAX;
-  PairWorkspace workspace;
-  const PairResult result = find_pairs(scene, plan, *backend, workspace);
+  const PairResult result = find_pairs(scene, {.resolution = 32}, *backend);
   EXPECT_EQ(result.candidates, by_runs.candidates);
   EXPECT_EQ(result.views.size(), 1u);
   EXPECT_TRUE(std::ranges::any_of(result.stages, [](const Stage& stage) {

@@ -159,6 +159,18 @@ TEST(Library, FramesAreAsFresh) {
   EXPECT_GT(changes, 10u);
 }
 
+// A refused call leaves nothing behind that a later one could be taken to repeat.
+TEST(Library, AnEmptySceneAfterARefusedCallHasNoPairs) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  const auto triangles = static_cast<std::uint32_t>(flat.triangles.size() / 3);
+  const std::vector<std::uint32_t> starts = {0, 0, 0, triangles / 2}, wrong = {1, 0}, none = {0, 0};
+  Collider collider;
+  for (int k = 0; k < 4; ++k)
+    EXPECT_FALSE(collider.find({flat.vertices, flat.triangles, starts}).pairs.empty());
+  EXPECT_THROW(collider.find({flat.vertices, flat.triangles, wrong}), ColliderError);
+  EXPECT_TRUE(collider.find({{}, {}, none}).pairs.empty());
+}
+
 // Bit for bit, so that a zero of the other sign counts too.
 TEST(LibraryInput, SaysWhichVerticesAreNew) {
   Flat flat(make_builtin_scene("two-spheres"));
