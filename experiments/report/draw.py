@@ -117,7 +117,7 @@ def finite(values):
 
 def log_ticks(values, low, high, most):
     """At most `most` ticks: at the values if these are powers of two, at powers of ten, at their multiples by 2 and 5,
-    or evenly, whichever first gives three."""
+    or evenly, whichever first gives two."""
     distinct = sorted(set(values))
     if 3 <= len(distinct) <= 10 and all(v > 0 and math.frexp(v)[0] == 0.5 for v in distinct):
         return distinct[::-(-len(distinct) // most)]
@@ -125,7 +125,7 @@ def log_ticks(values, low, high, most):
     for factors in ((1,), (1, 2, 5)):
         ticks = [m * 10.0 ** e for e in range(first - 1, last + 1) for m in factors]
         ticks = [at for at in ticks if low * (1 - 1e-9) <= at <= high * (1 + 1e-9)]
-        if len(ticks) >= 3:
+        if len(ticks) >= 2:
             return ticks[::-(-len(ticks) // most)]
     return ticks if high > 5 * low else [at for at in ticker.MaxNLocator(min(most, 3)).tick_values(low, high) if at > 0]
 
@@ -188,8 +188,13 @@ def columns_for(figure):
     panels = len(figure.panels)
     if panels in (1, 2, 4):
         return min(panels, 2)
-    fits = all(text_width(p.title) < DOUBLE / 3 - 25 for p in figure.panels)
-    return 3 if fits and not any(p.strip for p in figure.panels) else 2
+    fits = all(text_width(p.title) < DOUBLE / 3 - 20 for p in figure.panels)
+    return 3 if fits and same_rows(figure) else 2
+
+
+def same_rows(figure):
+    """Whether the strips of all panels have the same rows, whose names are then drawn once."""
+    return len({tuple(s.name for s in p.strip) for p in figure.panels}) == 1
 
 
 class Drawer:
@@ -207,6 +212,7 @@ class Drawer:
         if self.direct:
             self.key = []
         self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0)[columns]
+        self.high -= 25 * bool(panels[0].strip)
         self.wide = self.width / columns - 60
         rows = [panels[at:at + columns] for at in range(0, len(panels), columns)]
         strips = [max(len(p.strip) for p in row) for row in rows]
@@ -223,7 +229,7 @@ class Drawer:
             for column, panel in enumerate(here):
                 last = row * columns + column + columns >= len(panels)
                 self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strip,
-                           (not one_x or last, not one_y or column == 0))
+                           (not one_x or last, not one_y or column == 0), column == 0)
         if self.key:
             self.canvas.legend(handles=self.key, loc="lower center", ncol=key_columns, frameon=False, handlelength=2.5,
                                columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
@@ -246,7 +252,7 @@ class Drawer:
         return not panel.drawing and not panel.marks and 0 < len(self.key) <= 6 and all(
             "lines" in s.style and len(s.x) > 1 for s in panel.series)
 
-    def panel(self, panel, cells, strip, labelled):
+    def panel(self, panel, cells, strip, labelled, first):
         ax = self.canvas.add_subplot(cells[0])
         ax.set_title(panel.title, loc="left", color="black", pad=4)
         if panel.drawing:
@@ -264,12 +270,13 @@ class Drawer:
             ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center", va="center", color="#666666")
         if self.direct:
             self.label_lines(ax, panel)
-        lowest = self.strip(ax, panel, cells[1], strip) if panel.strip else ax
+        lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
     def frame_drawing(self, ax, panel):
         """Gives x and y the same scale, and leaves a tenth free."""
-        ends = [(min(values), max(values)) for values in ((finite(values_along(panel, side)) or [0.0]) for side in "xy")]
+        along = [finite(values_along(panel, side)) or [0.0] for side in "xy"]
+        ends = [(min(values), max(values)) for values in along]
         half = 0.55 * max(max(b - a for a, b in ends), 1e-9 * max(abs(v) for pair in ends for v in pair)) or 1.0
         for limits, (a, b) in zip((ax.set_xlim, ax.set_ylim), ends):
             limits(a + (b - a) / 2 - half, a + (b - a) / 2 + half)
@@ -300,22 +307,22 @@ class Drawer:
             self.bars(ax, look, y, x, clean(s.y_low, logs[1]), clean(s.y_high, logs[1]), "y")
         if s.style == "area":
             ax.fill(x, y, color=look.colour, alpha=0.25, linewidth=0)
-        ax.plot(x, y, clip_on=panel.x.low is not None or panel.x.high is not None or bool(panel.drawing),
+        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None or panel.drawing,
                 **look.of("lines" if s.style == "area" else s.style))
         return True
 
-    def strip(self, above, panel, cell, rows):
+    def strip(self, above, panel, cell, rows, labelled):
         """Draws a row for each series below the panel, over the same x."""
         ax = self.canvas.add_subplot(cell, sharex=above)
         above.tick_params(axis="x", labelbottom=False)
         ax.set_ylim(rows - 0.4, -0.6)
-        ax.set_yticks(range(len(panel.strip)), [s.name for s in panel.strip])
+        ax.set_yticks(range(len(panel.strip)), [s.name if labelled else "" for s in panel.strip])
         ax.tick_params(axis="y", length=0)
-        ax.grid(axis="y", visible=False)
         for i, s in enumerate(panel.strip):
+            ax.axhline(i, color="#e4e4e4", linewidth=0.5, zorder=0.5)
             if s.x_low:
                 self.bars(ax, self.looks[s.name], s.x, [i] * len(s.x), s.x_low, s.x_high, "x")
-            ax.plot(s.x, [i] * len(s.x), **self.looks[s.name].of("points"), clip_on=False)
+            ax.plot(s.x, [i] * len(s.x), **self.looks[s.name].of("points"), clip_on=False, in_layout=False)
         return ax
 
     def label_lines(self, ax, panel):
