@@ -25,6 +25,7 @@ MARKER = ".unfinished"
 # A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
+FIRST, LAST = ["error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
 PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # px; the reader of a picture's page can choose among them
 
 
@@ -328,8 +329,8 @@ def write(path, content):
 def report(arguments):
     context = json.loads(arguments.context)
     store = Store(arguments.folder)
-    order = [known["name"] for known in context["studies"]]
-    names = sorted(store.names, key=lambda name: order.index(name) if name in order else len(order))
+    order = [*FIRST, *(known["name"] for known in context["studies"])]
+    names = sorted(store.names, key=lambda name: (name in LAST, order.index(name) if name in order else len(order)))
     shard = store.read("SELECT study FROM studies WHERE shards > 1").study
     if len(shard):
         raise Refusal(store.path, f"holds a shard of {shard[0]}", f"farcull merge {arguments.folder}")

@@ -17,7 +17,7 @@ import pandas as pd  # noqa: E402
 from matplotlib import font_manager, pyplot, textpath, ticker, transforms  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
-from estimates import listed, sentence  # noqa: E402
+from estimates import grouped, listed, sentence  # noqa: E402
 
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
@@ -186,6 +186,8 @@ def values_along(panel, side):
 
 def columns_for(figure):
     panels = len(figure.panels)
+    if 0 < figure.columns <= 4 and panels % figure.columns == 0:
+        return figure.columns
     if panels in (1, 2, 4):
         return min(panels, 2)
     fits = all(text_width(p.title) < DOUBLE / 3 - 20 for p in figure.panels)
@@ -211,8 +213,9 @@ class Drawer:
         self.width = SINGLE if figure.narrow else DOUBLE
         if self.direct:
             self.key = []
-        self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0)[columns]
-        self.high -= 25 * bool(panels[0].strip)
+        self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
+        if len(panels) > 2 * columns:
+            self.high = min(self.high, 105.0) - 20 * bool(panels[0].strip)
         self.wide = self.width / columns - 60
         rows = [panels[at:at + columns] for at in range(0, len(panels), columns)]
         strips = [max(len(p.strip) for p in row) for row in rows]
@@ -224,12 +227,13 @@ class Drawer:
         self.canvas.get_layout_engine().set(rect=(0, key_high / height, 1, 1 - key_high / height), w_pad=4 / 72,
                                             h_pad=2 / 72, hspace=0, wspace=0)
         grid = self.canvas.add_gridspec(len(heights), columns, height_ratios=heights)
-        one_x, one_y = (len({getattr(p, side).label for p in panels}) == 1 for side in "xy")
-        for row, (here, strip) in enumerate(zip(rows, strips)):
-            for column, panel in enumerate(here):
-                last = row * columns + column + columns >= len(panels)
-                self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strip,
-                           (not one_x or last, not one_y or column == 0), column == 0)
+        for at, panel in enumerate(panels):
+            row, column = divmod(at, columns)
+            # A label that the panel below or on the left has as well is drawn only there.
+            below, left = (panels[i] if 0 <= i < len(panels) else None for i in (at + columns, at - 1))
+            self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strips[row], (
+                below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label),
+                column == 0)
         if self.key:
             self.canvas.legend(handles=self.key, loc="lower center", ncol=key_columns, frameon=False, handlelength=2.5,
                                columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
@@ -432,6 +436,9 @@ def drop_panels(figure):
 def legible(figure):
     drop_panels(figure)
     merge_series(figure)
+    if not re.search(r"\bn( =|:)", figure.caption):
+        points = sum(len(finite(s.y)) for panel in figure.panels for s in panel.series)
+        figure.caption = f"{sentence(figure.caption)} n = {grouped(points)} drawn points."
     if any(getattr(panel, side).log and getattr(panel, side).zero and 0 in values_along(panel, side)
            for panel in figure.panels for side in "xy"):
         figure.caption = f"{sentence(figure.caption)} {SHADED}"

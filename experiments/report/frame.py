@@ -100,6 +100,7 @@ class Figure:
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
+    columns: int = 0      # of panels, up to 4; 0: draw.py chooses
     narrow: bool = False  # one column of two wide (draw.py)
 
 

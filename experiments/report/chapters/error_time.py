@@ -192,8 +192,8 @@ def figures_of(groups):
     error = Figure(
         "error-time", "Methods that are wrong (points), and those that never are (rows), by run time",
         "Points: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
-        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Rows, on the "
-        "same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
+        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Rows, on "
+        "the same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
         "the others are in the table. CULLIDE (strict): one round, conservative rasterization, all views have to clear "
         "a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
         "seeds, the sum of the errors and the median of the times.", error_panels(titles, labels, points))

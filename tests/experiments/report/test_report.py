@@ -110,7 +110,7 @@ def test_text_of_figures_is_legible(whole, monkeypatch):
         for figure in chapter.figures:
             legible(figure)
             assert overlapping(figure) == [], figure.name
-            assert max(len(panel.series) for panel in figure.panels) <= 6, figure.name
+            assert max(len(panel.series) for panel in figure.panels) <= 6 and " n" in figure.caption, figure.name
             seen.append(figure)
     assert len(seen) == len(list((whole / "figures").glob("*.svg"))) > 20
     figure = max(seen, key=lambda f: len(draw.names_of(f)))
