@@ -219,10 +219,11 @@ class Drawer:
         self.wide = self.width / columns - 60
         rows = [panels[at:at + columns] for at in range(0, len(panels), columns)]
         strips = [max(len(p.strip) for p in row) for row in rows]
-        heights = [part for n in strips for part in (self.high + 4 * LINE, LINE * n + 0.01)]
+        heights = [part for row, n in zip(rows, strips) for part in (
+            (self.high + 4 * LINE) * any(p.series or not p.strip for p in row) + 0.01, LINE * n + 0.01)]
         key_columns = max(1, min(len(self.key), int(self.width / (widest + 42)))) if self.key else 1
         key_high = LINE * 1.2 * -(-len(self.key) // key_columns) + 6 if self.key else 0
-        height = sum(heights) + key_high + 8
+        height = sum(heights) + key_high + 8 + 4 * LINE * (heights[0] < 1)
         self.canvas = pyplot.figure(figsize=(self.width / 72, height / 72), layout="constrained")
         self.canvas.get_layout_engine().set(rect=(0, key_high / height, 1, 1 - key_high / height), w_pad=4 / 72,
                                             h_pad=2 / 72, hspace=0, wspace=0)
@@ -245,26 +246,26 @@ class Drawer:
     def handles(self):
         """The lines of the key: of each series, then of each mark."""
         styles = {s.name: s.style for panel in self.figure.panels for s in reversed(panel.series)}
-        out = [Line2D([], [], label=name, **({"color": self.looks[name].colour, "alpha": 0.25, "linewidth": 6}
-                                             if styles[name] == "area" else self.looks[name].of(styles[name])))
-               for name in self.looks if name in styles]
+        out = [Line2D([], [], label=name, **look.of(styles[name])) for name, look in self.looks.items() if name in styles]
         marks = dict.fromkeys(m.name for panel in self.figure.panels for m in panel.marks if m.name)
         return out + [Line2D([], [], label=name, **mark_look(self.figure, name)) for name in marks]
 
     def can_label(self, panel):
         """Whether the names are drawn at the ends of their lines instead of in a key."""
-        return not panel.drawing and not panel.marks and 0 < len(self.key) <= 6 and all(
+        return not panel.marks and 0 < len(self.key) <= 6 and all(
             "lines" in s.style and len(s.x) > 1 for s in panel.series)
 
     def panel(self, panel, cells, strip, labelled, first):
+        if panel.strip and not panel.series:
+            ax = self.strip(None, panel, cells[1], strip, first or not same_rows(self.figure))
+            ax.set_title(panel.title, loc="left", color="black", pad=4)
+            ax.set_xlabel(panel.x.label)
+            return
         ax = self.canvas.add_subplot(cells[0])
         ax.set_title(panel.title, loc="left", color="black", pad=4)
-        if panel.drawing:
-            self.frame_drawing(ax, panel)
-        else:
-            for side, room in (("x", self.wide), ("y", self.high)):
-                scale_axis(ax, side, getattr(panel, side), values_along(panel, side), room)
-            ax.set_ylabel(panel.y.label if labelled[1] else "")
+        for side, room in (("x", self.wide), ("y", self.high)):
+            scale_axis(ax, side, getattr(panel, side), values_along(panel, side), room)
+        ax.set_ylabel(panel.y.label if labelled[1] else "")
         for mark in panel.marks:
             if math.isfinite(mark.at) and (mark.at > 0 or not (panel.x if mark.vertical else panel.y).log):
                 (ax.axvline if mark.vertical else ax.axhline)(mark.at, **mark_look(self.figure, mark.name))
@@ -276,18 +277,6 @@ class Drawer:
             self.label_lines(ax, panel)
         lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
-
-    def frame_drawing(self, ax, panel):
-        """Gives x and y the same scale, and leaves a tenth free."""
-        along = [finite(values_along(panel, side)) or [0.0] for side in "xy"]
-        ends = [(min(values), max(values)) for values in along]
-        half = 0.55 * max(max(b - a for a, b in ends), 1e-9 * max(abs(v) for pair in ends for v in pair)) or 1.0
-        for limits, (a, b) in zip((ax.set_xlim, ax.set_ylim), ends):
-            limits(a + (b - a) / 2 - half, a + (b - a) / 2 + half)
-        ax.set_aspect("equal")
-        ax.set(xticks=[], yticks=[])
-        for side in ax.spines.values():
-            side.set(visible=True, color="#dddddd")
 
     def bars(self, ax, look, along, across, low, high, side):
         ends = [[max(0.0, b - a) if a == a and b == b else math.nan for a, b in zip(*pair)]
@@ -309,16 +298,17 @@ class Drawer:
             self.bars(ax, look, x, y, clean(s.x_low, logs[0]), clean(s.x_high, logs[0]), "x")
         if s.y_low:
             self.bars(ax, look, y, x, clean(s.y_low, logs[1]), clean(s.y_high, logs[1]), "y")
-        if s.style == "area":
-            ax.fill(x, y, color=look.colour, alpha=0.25, linewidth=0)
-        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None or panel.drawing,
-                **look.of("lines" if s.style == "area" else s.style))
+        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None,
+                **look.of(s.style))
         return True
 
     def strip(self, above, panel, cell, rows, labelled):
         """Draws a row for each series below the panel, over the same x."""
         ax = self.canvas.add_subplot(cell, sharex=above)
-        above.tick_params(axis="x", labelbottom=False)
+        if above is None:
+            scale_axis(ax, "x", panel.x, values_along(panel, "x"), self.wide)
+        else:
+            above.tick_params(axis="x", labelbottom=False)
         ax.set_ylim(rows - 0.4, -0.6)
         ax.set_yticks(range(len(panel.strip)), [s.name if labelled else "" for s in panel.strip])
         ax.tick_params(axis="y", length=0)
@@ -418,7 +408,7 @@ def drop_panels(figure):
     kept, constant, empty = [], {}, []
     for panel in figure.panels:
         values = finite(y for s in panel.series for y in s.y)
-        if panel.drawing or panel.strip or len(set(values)) > 1:
+        if panel.strip or len(set(values)) > 1:
             kept.append(panel)
         elif values:
             constant.setdefault(tick_label(values[0]), []).append(panel.title)
