@@ -132,8 +132,8 @@ def cloud(name, points):
 def geometric_mean(values):
     """With the 95 % interval of Student's t in logarithms."""
     logs = np.log(values)
-    reach = student_t95(len(logs) - 1) * logs.std(ddof=1) / math.sqrt(len(logs)) if len(logs) > 1 else 0
-    return Estimate(*(math.exp(logs.mean() + part) for part in (0, -reach, reach)), len(logs))
+    reach = student_t95(len(logs) - 1) * logs.std(ddof=1) / math.sqrt(len(logs)) if len(logs) > 2 else 0
+    return Estimate(*(math.exp(logs.mean() + part) for part in (0, -reach, reach)), len(logs) if reach else 1)
 
 
 def summary_of(groups):
