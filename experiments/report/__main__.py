@@ -89,7 +89,8 @@ def locked(folder):
 def remove_leftovers(place):
     """Removes what killed reports left beside the place: folders of reports, whole or not, that nobody has locked."""
     for path in sorted(place.parent.glob(place.name + ".part-????????")):
-        if path.is_dir() and not path.is_symlink() and (path / "figures").is_dir() and (lock := locked(path)) is not None:
+        known = (path / "figures").is_dir() and not path.is_symlink()
+        if known and (lock := locked(path)) is not None:
             shutil.rmtree(path, ignore_errors=True)
             os.close(lock)
 
@@ -273,7 +274,8 @@ class Reporter:
         plain = [re.sub(r"(?<=[a-z]):\d+", "", word) for word in picture.arguments]
         try:
             path.parent.mkdir(exist_ok=True)
-            said = self.run_picture(type(picture)(picture.name, "", plain, []), ["--html", path, "--resolutions", steps])
+            plain = type(picture)(picture.name, "", plain, [])
+            said = self.run_picture(plain, ["--html", path, "--resolutions", steps])
         except Refusal as error:
             self.notes.append(f"the page of picture {picture.name} is left out: {error.where} {error.reason}")
             return False

@@ -246,7 +246,7 @@ class Drawer:
     def handles(self):
         """The lines of the key: of each series, then of each mark."""
         styles = {s.name: s.style for panel in self.figure.panels for s in reversed(panel.series)}
-        out = [Line2D([], [], label=name, **look.of(styles[name])) for name, look in self.looks.items() if name in styles]
+        out = [Line2D([], [], label=name, **self.looks[name].of(styles[name])) for name in self.looks if name in styles]
         marks = dict.fromkeys(m.name for panel in self.figure.panels for m in panel.marks if m.name)
         return out + [Line2D([], [], label=name, **mark_look(self.figure, name)) for name in marks]
 

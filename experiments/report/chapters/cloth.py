@@ -38,7 +38,8 @@ def figure_of(courses):
     out = Figure("cloth", "Energy of the cloth, work of its solver, and pairs of triangles, frame by frame",
                  "Energy: kinetic energy and all potentials, where 0 is a cloth at rest at the height of the middle of "
                  "the sphere. Then, for each stiffness, the pairs that collide, neighbours among them, and the "
-                 "candidates that culling leaves to exact predicates. Most candidates are neighbours, which both methods hand to the "
+                 "candidates that culling leaves to exact predicates. Most candidates are neighbours, which both "
+                 "methods hand to the "
                  "predicates: a triangle of the grid shares a vertex with twelve others. n = "
                  f"{counted(len(courses), 'simulation', 'simulations')}, one of each stiffness.")
     for title, label, count, low in (("total energy", "J", "total", None),

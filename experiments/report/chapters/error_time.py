@@ -1,9 +1,8 @@
-"""Errors against time with a row for each method that is never wrong, false positives against time, the Pareto front of
-each scene, and CULLIDE in the time that FAR takes."""
+"""Errors against time with a row for each method that is never wrong, the Pareto front of each scene, and CULLIDE in
+the time that FAR takes."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
-SHOWN = (*OURS, "FAR (exact)", "CULLIDE, one round", "CULLIDE, one round, conservative", "cgal-boxes")
 STRICT = "one round, all views, conservative"  # drawn as "CULLIDE (strict)"
 OWN_TESTS = "FCL and ODE, their own tests"
 MOST_SCENES = 8  # largest number of scenes of the first figure
@@ -21,7 +20,6 @@ class Entry:
     wrong: int
     colliding: int
     candidates: int
-    has_candidates: bool
 
     def __post_init__(self):
         self.median = median_estimate(self.times)
@@ -34,13 +32,6 @@ class Entry:
     @property
     def error_share(self):
         return share(self.error, self.colliding)
-
-    @property
-    def for_nothing(self):
-        """Candidates that do not collide, over what collides."""
-        if not self.has_candidates or self.colliding == 0:
-            return NONE
-        return (self.candidates - (self.colliding - self.missed)) / self.colliding
 
 
 @dataclass
@@ -80,8 +71,7 @@ def entry_of(rows):
     first = next(rows.itertuples())
     times = first.runs if len(rows) == 1 and first.runs else tuple(rows.total_ms)
     return Entry(first, first.contestant, times,
-                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
-                 bool(column(rows, "candidates").notna().all()))
+                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")))
 
 
 def kind_of(scene):
@@ -180,7 +170,7 @@ def error_panels(titles, labels, all_points):
     return panels
 
 
-def figures_of(groups):
+def figure_of(groups):
     shown, sample = groups[:MOST_SCENES], sample_of(groups)
     points = [{name: [(e.median, e.error_share, e.pixels) for e in of] for name, of in group.by_name().items()}
               for group in shown]
@@ -203,17 +193,7 @@ def figures_of(groups):
             "and exact tests) on the same scene, with the 95 % interval over the scenes (Student's t of the "
             "logarithms), and all errors together, of what was measured on each.")
     error.caption += f" {sample}."
-    shown = [Group(group.name, group.seeds, [e for e in group.entries if e.name in SHOWN], group.kind)
-             for group in groups]
-    kept = Figure(
-        "error-time-false-positives", "Candidates that do not collide against run time",
-        "Candidates that are handed to exact tests and do not collide, over colliding pairs: of FAR, of CULLIDE in two "
-        "forms, and of the boxes of all triangles. The others are in the table of all points. Bars are the 95 % "
-        f"intervals of median times; {sample_of(shown)}.",
-        [Panel(group.title, log("time (ms)"), log("false positives / colliding", zero=True), [
-            cloud(name, [(e.median, e.for_nothing, e.pixels) for e in of]) for name, of in group.by_name().items()])
-         for group in shown])
-    return [error, kept]
+    return error
 
 
 # ---- tables
@@ -324,6 +304,6 @@ def fill(chapter, study):
         "do not. farcull bench leaves neighbours out for all."]
     add_gaps(chapter, study)
     if groups:
-        chapter.figures = figures_of(groups)
+        chapter.figures = [figure_of(groups)]
         chapter.tables = [t for t in (front_table(groups), equal_table(groups), all_table(rows))
                           if t.rows or t.name != "error-time-equal"]

@@ -165,7 +165,8 @@ def time_figure(rows):
     """A row for each contestant, first those that err least."""
     out, points = Figure(
         "libraries-time", "Wrong answers, and the time of a question, by contestant",
-        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean time of a "
+        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean "
+        "time of a "
         "question as the contestant's own process measured it. Neighbours are asked of those alone that know them. n = "
         f"{grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
     for name, of in by(rows, "method"):
@@ -176,12 +177,13 @@ def time_figure(rows):
     for at, (title, axis) in enumerate(() if not points else (("missed", log("per million", zero=True)),
                                                               ("false alarms", log("per million", zero=True)),
                                                               ("time", log("ns a pair")))):
-        out.panels.append(Panel(title, axis, strip=[Series(point[0], [point[at + 1]], style="points") for point in points]))
+        out.panels.append(Panel(title, axis, strip=[
+            Series(point[0], [point[at + 1]], style="points") for point in points]))
     return out
 
 
 def parameter_figure(chapter, scores, groups):
-    """The best contestant of each kind over the parameter of a family; all of them are added to the chapter as a table."""
+    """The best contestant of each kind over the parameter of a family. Adds all of them to the chapter as a table."""
     table = Table("libraries-parameters", "Wrong answers per million, by the parameter of a family, without its sign",
                   columns(["family", "contestant"], ["parameter", WRONG, "answered"]), in_text=False)
     out, best = Figure("libraries-parameters", "Wrong answers of the best contestant of each kind, by parameter"), []
@@ -196,7 +198,8 @@ def parameter_figure(chapter, scores, groups):
             here = [name for name in groups if groups[name] == title and name in rates.index.unique(0)]
             if here:
                 name = min(here, key=lambda name: (rates[name].mean(), name != REFERENCE))
-                panel.series.append(Series(title, list(rates[name].index), list(rates[name]), emphasis=title == "farcull"))
+                of = rates[name]
+                panel.series.append(Series(title, list(of.index), list(of), emphasis=title == "farcull"))
                 best.append(f"{family}, {title}: {name}")
         out.panels += [panel] * bool(panel.series)
     out.caption = ("Missed or false alarms, of those pairs of the family with that parameter, without its sign. Of each "

@@ -274,11 +274,15 @@ def placement_figure(placements):
         panel.series += [series] * (len(series.x) > 1)
     return Figure(
         "radius-placements", "How often FAR misses something in random placements, by radius",
-        "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each decided "
-        "by exact predicates: of those in which a pair collides, those in which one is missed, with the 95 % interval of "
-        f"Clopper and Pearson (where none is missed, up to its upper bound). {bits_text(bits).capitalize()}. The published "
+        "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each "
+        "decided "
+        "by exact predicates: of those in which a pair collides, those in which one is missed, with the 95 % "
+        "interval of "
+        f"Clopper and Pearson (where none is missed, up to its upper bound). {bits_text(bits).capitalize()}. The "
+        "published "
         "radius is the last point below 1. n = "
-        f"{counted(total(rows, 'placements'), 'placement', 'placements')}; what was measured at the published radius with "
+        f"{counted(total(rows, 'placements'), 'placement', 'placements')}; what was measured at the published "
+        "radius with "
         "other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
