@@ -275,11 +275,6 @@ def resolutions(rows):
     return sorted(int(r) for r in set(rows.resolution) if r > 0)
 
 
-def find_row(rows, name, resolution):
-    """The first row of a contestant at a resolution; None where there is none."""
-    return next(rows[(rows.contestant == name) & (rows.resolution == resolution)].itertuples(), None)
-
-
 def estimate(row):
     """The median time of the row's runs in ms with its 95 % interval; without interval for one run;
     None if the row has no time."""

@@ -202,8 +202,8 @@ def parameter_figure(chapter, scores, groups):
                 panel.series.append(Series(title, list(of.index), list(of), emphasis=title == "farcull"))
                 best.append(f"{family}, {title}: {name}")
         out.panels += [panel] * bool(panel.series)
-    out.caption = ("Missed or false alarms, of those pairs of the family with that parameter, without its sign. Of each "
-                   f"kind the contestant with the least mean: {'; '.join(best)}. All are in {table.name}.csv.")
+    out.caption = ("Missed or false alarms, of those pairs of the family with that parameter, without its sign. Of "
+                   f"each kind the contestant with the least mean: {'; '.join(best)}. All are in {table.name}.csv.")
     chapter.tables += [table] * bool(table.rows)
     return out
 
