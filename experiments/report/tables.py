@@ -66,8 +66,8 @@ def table_latex(table):
 
 
 def rows_csv(study):
-    """Everything that the store holds of the study: the axes, all counts and times by their names, the times of the runs,
-    the device, the run, and why nothing was measured."""
+    """Everything that the store holds of the study: the axes, all counts and times by their names, the times of the
+    runs, the device, the run, and why nothing was measured."""
     rows = study.all_rows.drop(columns=["counts", "times", "contestant"])
     rows = rows.assign(runs=[" ".join(map(repr, runs)) for runs in rows.runs],
                        **{name: rows[name].astype(object).replace(none, "") for name, none in (
