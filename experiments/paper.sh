@@ -2,6 +2,7 @@
 # Draws the figures of the paper (docs/figures/paper-*.svg), and makes the paper, which is
 # docs/reliability.md with docs/budget.md, a PDF: build/paper.pdf.
 #   bash experiments/paper.sh [--figures FARCULL_FIGURES] [--out FILE.pdf]
+#   bash experiments/paper.sh --short [--out FILE.pdf]    docs/paper.md, two pages, as build/paper-short.pdf
 #     --figures  the program that draws them; without it, it is built in build/
 #     --out      the PDF; the figures are then drawn beside it and docs/ stays as it is
 # It needs pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --figures it
@@ -10,10 +11,11 @@
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-figures='' out=''
+figures='' out='' short=''
 while (($#)); do
   case $1 in
     --figures) figures=$(realpath "$2") ;;
+    --short) short=yes && shift && continue ;;
     --out) out=$(realpath -m "$2") ;;
     *)
       echo "paper: unknown argument '$1'" >&2
@@ -22,6 +24,17 @@ while (($#)); do
   esac
   shift 2
 done
+if [[ $short ]]; then
+  work=$(mktemp -d)
+  # shellcheck disable=SC2064  # the folder's name as it is now
+  trap "rm -rf '$work'" EXIT
+  rsvg-convert -f pdf -o "$work/error-time.pdf" "$root/docs/results/figures/error-time.svg"
+  sed "s#(results/figures/error-time.svg)#($work/error-time.pdf){height=88mm}#" "$root/docs/paper.md" |
+    pandoc --citeproc --bibliography "$root/docs/references.bib" -V papersize=a4 -V geometry:margin=22mm -V fontsize=10pt \
+      --output "${out:-$root/build/paper-short.pdf}"
+  echo "paper: ${out:-$root/build/paper-short.pdf}"
+  exit 0
+fi
 if [[ -z $figures ]]; then
   # shellcheck source-path=SCRIPTDIR source=setup.sh
   source "$root/experiments/setup.sh"

@@ -1,5 +1,6 @@
 """See docs_test.sh."""
 import glob
+import json
 import os
 import re
 import shutil
@@ -124,10 +125,68 @@ def check_map():
             yield f'{page}: docs/README.md and docs/results/README.md do not link to it'
 
 
+PLACEHOLDER = 'the founding engineers of farcull'
+KIT = {'docs/CITATION.cff': 'cff-version message title authors version date-released license',
+       'docs/codemeta.json': '@context @type name description version datePublished license author',
+       'docs/.zenodo.json': 'title upload_type description version publication_date license creators'}
+
+
+def metadata():
+    """The files that tools read about a release, as dictionaries. Of the CFF, which is YAML, the lines at the top level are
+    enough, and the names of its authors."""
+    for path in KIT:
+        text = read(path)
+        if path.endswith('.json'):
+            yield path, json.loads(text)
+            continue
+        lines = re.match(r'(?:[a-z-]+:.*\n|(?:  +|- ).*\n)+\Z', text)
+        fields = dict(re.findall(r'^([a-z-]+): *"?(.*?)"?(?: *#.*)?$', text if lines else '', re.MULTILINE))
+        authors = re.search(r'^authors:.*\n((?:  .*\n)+)', text, re.MULTILINE)
+        yield path, fields | {'authors': re.findall('name: (.*)', authors[1]) if authors else []}
+
+
+def check_kit():
+    """The files of a release are valid, have what their readers require, agree, and name no file that is not there."""
+    try:
+        files = dict(metadata())
+    except ValueError as error:
+        yield f'docs: a file of the release is no JSON: {error}'
+        return
+    for path, keys in KIT.items():
+        yield from (f'{path}: has no {key}' for key in keys.split() if not files[path].get(key))
+    cff, meta, zenodo = files.values()
+    for what, *values in (('version', *(of.get('version') for of in files.values())),
+                          ('date', cff.get('date-released'), meta.get('datePublished'), zenodo.get('publication_date')),
+                          ('licence', cff.get('license'), str(meta.get('license')).split('/')[-1], zenodo.get('license')),
+                          ('authors', *([name for name in cff['authors']], [of.get('name') for of in meta.get('author', [])],
+                                        [of.get('name') for of in zenodo.get('creators', [])]))):
+        if any(value != values[0] for value in values):
+            yield f'docs/CITATION.cff, codemeta.json and .zenodo.json: they differ in the {what}'
+    for key in ('softwareRequirements', 'buildInstructions', 'readme', 'softwareHelp'):
+        if not os.path.exists(str(meta.get(key))):
+            yield f'docs/codemeta.json: {key} names {meta.get(key)}, which is not there'
+    recipe = read('docs/Containerfile')
+    yield from (f'docs/Containerfile: {path} is not there' for path in re.findall(r'(?:experiments|docs)/[\w./-]+', recipe)
+                if not os.path.exists(path))
+    yield from (f'docs/Containerfile: has no {word}' for word in ('FROM', 'RUN', 'ENTRYPOINT')
+                if not re.search(f'^{word} ', recipe, re.MULTILINE))
+    for page in 'docs/claims.md', 'docs/results/README.md', 'docs/paper.md', 'docs/dataset.md':
+        targets = re.findall(r'\]\(([^)#:]+)', read(page))
+        targets += [f'../{path}' for path in re.findall(r'`bash ((?:experiments|tests)/[\w.]+)', read(page)) if page.count('/') == 1]
+        yield from (f'{page}: {path} is not there' for path in targets
+                    if not os.path.exists(os.path.join(os.path.dirname(page), path)))
+
+
+def publish():
+    """What is still open before a release."""
+    said = [f'{path}: the authors are still a placeholder, "{PLACEHOLDER}"' for path in KIT if PLACEHOLDER in read(path)]
+    return '\n'.join(said) or 'docs: ready for a release', bool(said)
+
+
 def check():
     texts = list(referring())
     said = [*check_labels(), *check_references(texts), *check_sections(texts), *check_tests(), *check_citations(),
-            *check_symbols(), *check_proofs(), *check_map()]
+            *check_symbols(), *check_proofs(), *check_map(), *check_kit()]
     return '\n'.join(said) or f'docs: {len(labels())} numbered statements, and what refers to them', bool(said)
 
 
@@ -149,6 +208,15 @@ BROKEN = [
     ('a lemma without a twin', ONE, r'\*Twins:\* `CullideLemma', '`CullideLemma', 'names no twins'),
     ('a page that no map names', 'docs/README.md', r'\(tiles\.md\)', '(proofs.md)', 'docs/tiles.md: docs/README.md'),
     ('a result that no map names', 'docs/results/README.md', r'\(motion\.md\)', '(native.md)', 'motion.md: docs/README.md'),
+    ('a citation without authors', 'docs/CITATION.cff', '^  - name: .*\n(?=version)', '', 'CITATION.cff: has no authors'),
+    ('no JSON', 'docs/codemeta.json', '"0.1",', '"0.1"', 'is no JSON'),
+    ('no creators', 'docs/.zenodo.json', '"creators"', '"makers"', 'zenodo.json: has no creators'),
+    ('another version', 'docs/.zenodo.json', '"0.1"', '"0.2"', 'differ in the version'),
+    ('a page that is gone, in codemeta', 'docs/codemeta.json', 'docs/building.md', 'docs/build.md', 'buildInstructions names'),
+    ('a script that is gone, in the recipe', 'docs/Containerfile', 'experiments/meshes.sh', 'experiments/mesh.sh',
+     'mesh.sh is not there'),
+    ('a script that is gone, in a claim', 'docs/claims.md', 'tests/mutants.sh', 'tests/mutant.sh', 'mutant.sh is not there'),
+    ('a page that is gone, in a claim', 'docs/claims.md', r'\(paper\.md\)', '(papers.md)', 'papers.md is not there'),
     ('a lemma without assumptions', TWO, r'\*Assumes:\* lemmas 16 and 17\.', '', 'does not say what it assumes')]
 
 
@@ -172,8 +240,8 @@ def self_test(source):
 repository = os.path.dirname(os.path.realpath(__file__)) + '/..'
 argument = sys.argv[1] if sys.argv[1:] else repository
 with tempfile.TemporaryDirectory() as tree:
-    os.chdir(tree if argument == '--self-test' else argument)
-    message, result = self_test(repository) if argument == '--self-test' else check()
+    os.chdir(tree if argument == '--self-test' else repository if argument == '--publish' else argument)
+    message, result = self_test(repository) if argument == '--self-test' else publish() if argument == '--publish' else check()
     os.chdir('/')
 print(message)
 sys.exit(result)

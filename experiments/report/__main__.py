@@ -21,10 +21,10 @@ import subprocess
 import sys
 import tempfile
 
-MARKER = ".unfinished"
 # A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
+FIRST, LAST = ["error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
 PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # px; the reader of a picture's page can choose among them
 
 
@@ -75,46 +75,35 @@ def check_place(place):
         raise Refusal(place, "is there and no report of this program", "move it away")
 
 
-def locked(path, flags):
-    """Locks a marker and returns it as a file; None if another process has locked it. A lock ends with its process."""
+def locked(folder):
+    """Locks a folder and returns its descriptor; None if another process has it. The lock ends with its process."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)
     try:
-        file = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | flags, 0o666)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return descriptor
     except OSError:
-        return None
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return file
-    except OSError:
-        os.close(file)
+        os.close(descriptor)
         return None
 
 
 def remove_leftovers(place):
-    """Removes the leftovers of killed reports beside the place: folders with a marker that nobody has locked, or an
-    earlier report that a new one had just replaced."""
+    """Removes what killed reports left beside the place: folders of reports, whole or not, that nobody has locked."""
     for path in sorted(place.parent.glob(place.name + ".part-????????")):
-        if path.is_symlink() or not path.is_dir():
-            continue
-        marked = os.path.lexists(path / MARKER)
-        lock = locked(path / MARKER, 0) if marked else None
-        if lock is not None or (not marked and is_report(path)):
+        known = (path / "figures").is_dir() and not path.is_symlink()
+        if known and (lock := locked(path)) is not None:
             shutil.rmtree(path, ignore_errors=True)
-        if lock is not None:
             os.close(lock)
 
 
 def exchange(path, place):
-    """Puts a folder in place in one step; what was there is then at `path`."""
-    libc = ctypes.CDLL(None, use_errno=True)
-    for flag in (1, 2):  # RENAME_NOREPLACE, RENAME_EXCHANGE
-        if libc.renameat2(-100, os.fsencode(path), -100, os.fsencode(place), flag) == 0:
+    """Puts a folder in place in one step; an earlier report is then at `path`."""
+    if place.exists():
+        libc = ctypes.CDLL(None, use_errno=True)
+        if libc.renameat2(-100, os.fsencode(path), -100, os.fsencode(place), 2) == 0:  # RENAME_EXCHANGE
             return
-        if ctypes.get_errno() != errno.EEXIST:
-            break
-    if ctypes.get_errno() not in (errno.EINVAL, errno.ENOSYS):
-        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
-    if place.exists():  # the file system lacks both flags
-        shutil.rmtree(place)
+        if ctypes.get_errno() not in (errno.EINVAL, errno.ENOSYS):
+            raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+        shutil.rmtree(place)  # the file system cannot exchange
     os.rename(path, place)
 
 
@@ -127,11 +116,8 @@ class Unfinished:
     def __enter__(self):
         remove_leftovers(self.place)
         try:
-            part = tempfile.mkdtemp(prefix=self.place.name + ".part-", dir=self.place.parent)
-            self.path = pathlib.Path(part)
-            # The marker gets its name after it is locked, so that no process sees it unlocked.
-            self.lock = locked(self.path / (MARKER + "-new"), os.O_CREAT | os.O_EXCL)
-            os.rename(self.path / (MARKER + "-new"), self.path / MARKER)
+            self.path = pathlib.Path(tempfile.mkdtemp(prefix=self.place.name + ".part-", dir=self.place.parent))
+            self.lock = locked(self.path)  # before it has the folders by which others know it as a report's
             mask = os.umask(0)
             os.umask(mask)
             self.path.chmod(0o777 & ~mask)
@@ -149,7 +135,6 @@ class Unfinished:
         except OSError as error:
             raise Refusal(self.place, f"cannot be put in place: {error.strerror}",
                           "see who may write to the folder") from error
-        (self.place / MARKER).unlink(missing_ok=True)
 
     def __exit__(self, *_):
         if self.path:
@@ -289,7 +274,8 @@ class Reporter:
         plain = [re.sub(r"(?<=[a-z]):\d+", "", word) for word in picture.arguments]
         try:
             path.parent.mkdir(exist_ok=True)
-            said = self.run_picture(type(picture)(picture.name, "", plain, []), ["--html", path, "--resolutions", steps])
+            plain = type(picture)(picture.name, "", plain, [])
+            said = self.run_picture(plain, ["--html", path, "--resolutions", steps])
         except Refusal as error:
             self.notes.append(f"the page of picture {picture.name} is left out: {error.where} {error.reason}")
             return False
@@ -328,8 +314,8 @@ def write(path, content):
 def report(arguments):
     context = json.loads(arguments.context)
     store = Store(arguments.folder)
-    order = [known["name"] for known in context["studies"]]
-    names = sorted(store.names, key=lambda name: order.index(name) if name in order else len(order))
+    order = [*FIRST, *(known["name"] for known in context["studies"])]
+    names = sorted(store.names, key=lambda name: (name in LAST, order.index(name) if name in order else len(order)))
     shard = store.read("SELECT study FROM studies WHERE shards > 1").study
     if len(shard):
         raise Refusal(store.path, f"holds a shard of {shard[0]}", f"farcull merge {arguments.folder}")

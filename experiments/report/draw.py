@@ -1,36 +1,30 @@
 """Figures as files: NAME.svg, NAME.pdf and their numbers as NAME.csv, drawn by matplotlib.
 
-This file places panels, labels and the key, in points from the top left corner, so that nothing
-overlaps and the same numbers give the same file. Colours are those of Okabe and Ito (2008) and of
-Tol's "muted" scheme, which differ for any colour vision; dashes and markers differ in grey too. A
-name that begins with a method has the method's colour in every figure.
+matplotlib places panels, and keeps text from overlapping. Here are the rules for sizes, ticks and looks. Colours are
+those of Okabe and Ito (2008) and of Tol's "muted" scheme, which differ for any colour vision; dashes and markers differ
+in grey too. A name that begins with a method has the method's colour in every figure.
 """
-import csv
 import html
 import io
 import math
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import matplotlib
 matplotlib.use("Agg")
-from matplotlib import font_manager, pyplot, textpath  # noqa: E402
+import pandas as pd  # noqa: E402
+from matplotlib import font_manager, pyplot, textpath, ticker, transforms  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
-from matplotlib.patches import Rectangle  # noqa: E402
 
-from estimates import listed, sentence  # noqa: E402
-from scales import Scale, scale_of, tick_label  # noqa: E402
+from estimates import grouped, listed, sentence  # noqa: E402
 
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
-DOUBLE, SINGLE = 504.0, 244.0  # widths of two columns of a journal and of one, 178 and 86 mm
-LINE = 11.0   # distance of lines of text
-ROW = 10.5    # height of a row of the strip
-FAMILIES = "'DejaVu Sans', Helvetica, Arial, sans-serif"
-NOTE = "Shaded: the axis is linear, from 0 to the end of the shade. Beyond, it is logarithmic."
-
-SOLID, DASHES = "-", ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
+DOUBLE, SINGLE = 504.0, 244.0  # points: the widths of two columns of a journal and of one, 178 and 86 mm
+LINE = 11.0         # points: distance of lines of text
+DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+DASHES = ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
 MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank marks a hollow one
 KNOWN = [  # the first entry whose words are in a name applies
     ("far pairs", "#009e73", 0, "^"), ("interval", "#009e73", 0, "^"),
@@ -41,7 +35,10 @@ KNOWN = [  # the first entry whose words are in a name applies
     ("cgal", "#882255", 2, "v "), ("fcl", "#aa7744", 2, "D"), ("embree", "#999933", 2, "v"),
     ("exact", "#000000", 2, "+"), ("colliding", "#000000", 2, "+"), ("ode", "#661100", 2, "x")]
 FREE = ["#332288", "#117733", "#cc6677", "#44aa99", "#aa4499", "#888800", "#661100", "#6699cc", "#555555", "#dd8800"]
+ENDS = ("x_low", "x_high", "y_low", "y_high")
 
+
+# ---- looks
 
 @dataclass
 class Look:
@@ -51,21 +48,16 @@ class Look:
     width: float = 1.0
     size: float = 3.2
 
-    def line(self):
-        return {"color": self.colour, "linestyle": self.dash, "linewidth": self.width}
-
-    def points(self):
+    def of(self, style):
+        """The arguments of a line for a style of Series."""
         hollow = self.marker.endswith(" ") or self.marker in "+x"
-        return {"color": self.colour, "linestyle": "none", "marker": self.marker.strip(), "markersize": self.size,
+        return {"color": self.colour, "linestyle": "none" if style == "points" else self.dash, "linewidth": self.width,
+                "marker": self.marker.strip() if "points" in style else "", "markersize": self.size,
                 "markeredgewidth": 0.8, "markerfacecolor": "none" if hollow else self.colour}
 
 
-def series_names(figure):
+def names_of(figure):
     return list(dict.fromkeys(s.name for panel in figure.panels for s in panel.series + panel.strip))
-
-
-def mark_names(figure):
-    return list(dict.fromkeys(m.name for panel in figure.panels for m in panel.marks if m.name))
 
 
 def looks_of(figure):
@@ -73,7 +65,7 @@ def looks_of(figure):
     each is thinner than those below it, so that lines with the same values all stay visible."""
     out, times, unknown, thick = {}, {}, 0, 0
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
-    for name in series_names(figure):
+    for name in names_of(figure):
         words = " " + re.sub(r"[^a-z0-9]+", " ", name.split(" = ")[0].lower()) + " "
         known = next((k for k in KNOWN if f" {k[0]} " in words), None)
         if known:
@@ -82,8 +74,8 @@ def looks_of(figure):
             look = Look(known[1], DASHES[(known[2] + n) % len(DASHES)],
                         MARKERS[(at + n) % len(MARKERS)] if n else known[3])
         else:
-            look = Look(FREE[unknown % len(FREE)], DASHES[(unknown + unknown // len(FREE)) % len(DASHES)],
-                        MARKERS[(unknown + unknown // len(MARKERS)) % len(MARKERS)])
+            look = Look(*(of[(unknown + skip) % len(of)] for of, skip in (
+                (FREE, 0), (DASHES, unknown // len(FREE)), (MARKERS, unknown // len(MARKERS)))))
             unknown += 1
         if name in emphasised:
             look.width, look.size = 2.4 - 0.6 * min(thick, 2), 4.8 - 0.8 * min(thick, 2)
@@ -92,34 +84,94 @@ def looks_of(figure):
     return out
 
 
-def text_width(text, size=8):
-    font = font_manager.FontProperties(family="DejaVu Sans", size=size)
+def mark_look(figure, name):
+    names = list(dict.fromkeys(m.name for panel in figure.panels for m in panel.marks))
+    dashes = [(0, (3, 2)), (0, (1, 1.5)), (0, (6, 2)), (0, (4, 1.5, 1, 1.5))]
+    return {"color": "#444444", "linewidth": 0.9, "linestyle": dashes[names.index(name) % len(dashes)], "zorder": 1.5}
+
+
+def text_width(text):
+    font = font_manager.FontProperties(family="DejaVu Sans", size=8)
     return textpath.text_to_path.get_text_width_height_descent(text, font, False)[0]
 
 
-# ---- layout
+# ---- axes
 
-@dataclass
-class Placed:
-    """A placed panel: left, right, top, bottom of the plot, in points from the top left."""
-    panel: object
-    x: Scale = None
-    y: Scale = None
-    labels: list = field(default_factory=lambda: [True, True])  # whether the labels of x and y are drawn
-    room: float = 10.0  # left of the axis for ticks, names of the strip and the label
-    box: tuple = ()
-
-    @property
-    def strip(self):
-        return ROW * len(self.panel.strip) + (4 if self.panel.strip else 0)
+def power_label(exponent):
+    return "10" + str(exponent).translate(DIGITS)
 
 
-def columns_for(figure):
-    panels = len(figure.panels)
-    if panels == 1 or panels == 2 or (panels == 4):
-        return min(panels, 2)
-    fits = all(text_width(p.title) < DOUBLE / 3 - 12 for p in figure.panels)
-    return 3 if fits and not any(p.strip for p in figure.panels) else 2
+def tick_label(value):
+    """12345.678 as 12,346: few digits, no zeros at the end; 10⁵ if it would be long."""
+    size = abs(value)
+    if size != 0 and (size >= 1e7 or size < 1e-4):
+        exponent = math.floor(math.log10(size) + 1e-9)
+        mantissa = round(value / 10.0 ** exponent, 3)
+        return power_label(exponent) if mantissa == 1 else f"{mantissa:g}·{power_label(exponent)}"
+    return f"{value:,.0f}" if size >= 1000 else f"{value:.6g}"
+
+
+def finite(values):
+    return [float(v) for v in values if v is not None and math.isfinite(v)]
+
+
+def log_ticks(values, low, high, most):
+    """At most `most` ticks: at the values if these are powers of two, at powers of ten, at their multiples by 2 and 5,
+    or evenly, whichever first gives two."""
+    distinct = sorted(set(values))
+    if 3 <= len(distinct) <= 10 and all(v > 0 and math.frexp(v)[0] == 0.5 for v in distinct):
+        return distinct[::-(-len(distinct) // most)]
+    first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
+    for factors in ((1,), (1, 2, 5)):
+        ticks = [m * 10.0 ** e for e in range(first - 1, last + 1) for m in factors]
+        ticks = [at for at in ticks if low * (1 - 1e-9) <= at <= high * (1 + 1e-9)]
+        if len(ticks) >= 2:
+            return ticks[::-(-len(ticks) // most)]
+    return ticks if high > 5 * low else [at for at in ticker.MaxNLocator(min(most, 3)).tick_values(low, high) if at > 0]
+
+
+def scale_axis(ax, side, spec, values, room):
+    """Scales an axis for the values. A logarithmic one that shows zeros is linear from 0 to 1 (or, if values are below
+    1, to the power of ten below the least) and shaded there. room: its length in points, for the number of ticks."""
+    values = finite(values)
+    axis, line, span = (ax.xaxis, ax.axvline, ax.axvspan) if side == "x" else (ax.yaxis, ax.axhline, ax.axhspan)
+    scaled, limits = (ax.set_xscale, ax.set_xlim) if side == "x" else (ax.set_yscale, ax.set_ylim)
+    most = max(2, int(room / (32 if side == "x" else 18)))
+    if not spec.log:
+        least, highest = (min(values), max(values)) if values else (0.0, 1.0)
+        least = spec.low if spec.low is not None else 0.0 if 0 < least < highest / 2 else least
+        highest = highest if spec.high is None else spec.high
+        air = 0.03 * max(highest - least, 0)
+        low, high = transforms.nonsingular(least - air * (spec.low is None and least != 0), highest + air * (
+            spec.high is None), 0.5, 1e-300)
+        ticks = ticker.MaxNLocator(min(most, 6), steps=[1, 2, 5, 10]).tick_values(low, high)
+    else:
+        positive = [v for v in values if v > 0] or [1.0]
+        highest = max(spec.high or max(positive), min(positive))
+        least = spec.low or max(min(positive), highest * 1e-200)  # more decades than matplotlib can transform
+        air = 10 ** min(0.3, 0.03 * max(math.log10(highest) - math.log10(least), 0.08))
+        low, high = least / (1 if spec.low else air), highest * (1 if spec.high else air)
+        low, high = (low / 2, high * 2) if high < 1.3 * low else (low, high)
+        if spec.zero and any(v <= 0 for v in values):
+            end = 1.0 if least >= 1 else 10.0 ** math.floor(math.log10(least) + 1e-9)
+            low, high = -0.4 * end, max(high, 1.5 * end)
+            scaled("symlog", linthresh=end, linscale=max(0.3, 0.15 * (math.log10(high) - math.log10(end))))
+            ticks = [0.0] + log_ticks([], end, high, most)
+            span(low, end, color="#f1f1ee", zorder=0)
+            line(0, color="#999999", linewidth=0.6, linestyle=(0, (1, 2)), zorder=0.6)
+        else:
+            scaled("log")
+            ticks = log_ticks(values, low, high, most)
+    limits(low, high)
+    ticks = [at for at in ticks if low <= at <= high] or [least, highest]
+    powers = spec.log and any(at >= 1e5 or 0 < at < 1e-3 for at in ticks)
+    labels = [power_label(round(math.log10(at))) if powers and at > 0 and abs(math.log10(at) % 1 - 0.5) > 0.4999
+              else tick_label(at) for at in ticks]
+    keep = 1
+    while side == "x" and sum(text_width(label) + 8 for label in labels[::keep]) > room and keep < len(ticks):
+        keep += 1
+    axis.set_ticks(ticks[::keep], labels[::keep])
+    axis.set_minor_locator(ticker.NullLocator())
 
 
 def values_along(panel, side):
@@ -130,309 +182,173 @@ def values_along(panel, side):
     return out
 
 
-def fit_drawing(placed):
-    """Gives x and y the same scale, and leaves a tenth of the longer side free."""
-    left, right, top, bottom = placed.box
-    ranges = []
-    for side in "xy":
-        values = [v for v in values_along(placed.panel, side) if math.isfinite(v)] or [0.0]
-        ranges.append((min(values), max(values)))
-    size = max(abs(v) for ends in ranges for v in ends)
-    unit = max(1.1 * max((ranges[0][1] - ranges[0][0]) / (right - left),
-                         (ranges[1][1] - ranges[1][0]) / (bottom - top)),
-               1e-9 * size if size > 0 else 1)
-    for side, ends, room in (("x", ranges[0], right - left), ("y", ranges[1], bottom - top)):
-        middle = ends[0] + (ends[1] - ends[0]) / 2
-        setattr(placed, side, Scale(False, middle - unit * room / 2, middle + unit * room / 2))
-
-
-def wrapped(label, room):
-    """The label, in two lines if it is longer than the axis."""
-    if text_width(label) <= room or " " not in label:
-        return label
-    at = min((m.start() for m in re.finditer(" ", label)), key=lambda i: abs(i - len(label) / 2))
-    return label[:at] + "\n" + label[at + 1:]
-
-
-class Layout:
-    def __init__(self, figure):
-        self.figure, self.looks = figure, looks_of(figure)
-        self.columns = columns_for(figure)
-        self.key = [n for n in series_names(figure) if any(s.name == n for p in figure.panels for s in p.series)]
-        self.key += mark_names(figure)
-        single = len(figure.panels) == 1 and not figure.panels[0].strip
-        narrow = single and all(text_width(n) + 34 < SINGLE - 8 for n in self.key)
-        self.width = SINGLE if narrow else DOUBLE
-        figure.narrow = narrow
-        self.high = 190.0 if single and not narrow else (0, 150.0, 150.0, 105.0)[self.columns]
-        self.direct = self.width == DOUBLE and single and self.can_label()
-        self.placed = [Placed(panel) for panel in figure.panels]
-        lefts = self.scale_panels()
-        right = 12.0 + (max(text_width(n) for n in self.key) if self.direct else 0)
-        wide = (self.width - sum(lefts) - right * self.columns) / self.columns
-        top = self.place_panels(lefts, right, wide)
-        self.place_key(top)
-
-    def can_label(self):
-        """Whether the names are drawn at the ends of their lines instead of in a key."""
-        panel = self.figure.panels[0]
-        return (not panel.drawing and not panel.marks and 0 < len(self.key) <= 6 and
-                all(s.style in ("lines", "lines_points") and len(s.x) > 1 for s in panel.series)
-                and max(text_width(n) for n in self.key) < 0.35 * self.width)
-
-    def scale_panels(self):
-        """Sets the scales of all panels; returns the room left of each column. Labels that all panels
-        share are drawn only at the first panel of a row and the last of a column."""
-        panels, lefts = self.figure.panels, [0.0] * self.columns
-        one_x, one_y = (len({getattr(p, side).label for p in panels}) == 1 for side in "xy")
-        wide = self.width / self.columns - 50
-        for i, placed in enumerate(self.placed):
-            panel, column = placed.panel, i % self.columns
-            if not panel.drawing:
-                placed.x = scale_of(panel.x, values_along(panel, "x"), lambda ticks: sum(
-                    text_width(label) + 7 for _, label in ticks if label) <= wide)
-                placed.y = scale_of(panel.y, values_along(panel, "y"), lambda ticks: sum(
-                    1.5 * LINE for _, label in ticks if label) <= self.high)
-                last = i + self.columns >= len(panels)
-                placed.labels = [not one_x or last, not one_y or column == 0]
-                label = wrapped(panel.y.label, self.high) if placed.labels[1] else ""
-                names = [text_width(t) for _, t in placed.y.ticks]
-                placed.room = max([0.0] + names) + 7 + LINE * (label.count("\n") + bool(label))
-                placed.room = max([placed.room] + [text_width(s.name) + 7 for s in panel.strip])
-            lefts[column] = max(lefts[column], placed.room + 2)
-        return lefts
-
-    def place_panels(self, lefts, right, wide):
-        top, titled = 4.0, any(p.title for p in self.figure.panels)
-        for row in range(0, len(self.placed), self.columns):
-            here = self.placed[row:row + self.columns]
-            top += LINE + 3 if titled else 2
-            x = 0.0
-            for column, placed in enumerate(here):
-                x += lefts[column]
-                placed.box = (x, x + wide, top, top + self.high)
-                if placed.panel.drawing:
-                    fit_drawing(placed)
-                x += wide + right
-            plots = any(not p.panel.drawing for p in here)
-            labelled = any(p.labels[0] and p.panel.x.label for p in here)
-            top += self.high + max(p.strip for p in here)
-            top += LINE + 8 + (LINE if labelled else 0) if plots else 8
-        return top
-
-    def place_key(self, top):
-        self.note_top = None
-        names = [] if self.direct else self.key
-        self.entries = []
-        if names:
-            entry = 34 + max(text_width(n) for n in names)
-            columns = max(1, min(len(names), int((self.width - 8) / entry)))
-            lines = -(-len(names) // columns)
-            columns = -(-len(names) // lines)  # as even as possible
-            start = max(4.0, (self.width - columns * entry + 10) / 2)
-            self.entries = [(n, start + i % columns * entry,
-                             top + LINE * (i // columns + 0.5)) for i, n in enumerate(names)]
-            top += LINE * lines + 4
-        if any(p.x and (p.x.linear_to or p.y.linear_to) for p in self.placed):
-            self.note = NOTE if text_width(NOTE) < self.width - 8 else wrapped(NOTE, 0)
-            self.note_top = top
-            top += LINE * (1 + self.note.count("\n")) + 2
-        self.height = math.ceil(top)
-
-
 # ---- drawing
 
+def columns_for(figure):
+    panels = len(figure.panels)
+    if 0 < figure.columns <= 4 and panels % figure.columns == 0:
+        return figure.columns
+    if panels in (1, 2, 4):
+        return min(panels, 2)
+    fits = all(text_width(p.title) < DOUBLE / 3 - 20 for p in figure.panels)
+    return 3 if fits and same_rows(figure) else 2
+
+
+def same_rows(figure):
+    """Whether the strips of all panels have the same rows, whose names are then drawn once."""
+    return len({tuple(s.name for s in p.strip) for p in figure.panels}) == 1
+
+
 class Drawer:
+    """Draws a figure on `canvas`, a figure of matplotlib."""
+
     def __init__(self, figure):
-        self.layout = Layout(figure)
-        width, height = self.layout.width, self.layout.height
-        self.canvas = pyplot.figure(figsize=(width / 72, height / 72))
-        for placed in self.layout.placed:
-            self.panel(placed)
-        self.key()
+        self.figure, self.looks, panels = figure, looks_of(figure), figure.panels
+        columns = columns_for(figure)
+        self.key = self.handles()
+        widest = max([0] + [text_width(line.get_label()) for line in self.key])
+        single = len(panels) == 1 and not panels[0].strip
+        self.direct = single and widest < 0.35 * DOUBLE and self.can_label(panels[0])
+        figure.narrow = single and not self.direct and widest + 34 < SINGLE - 8
+        self.width = SINGLE if figure.narrow else DOUBLE
+        if self.direct:
+            self.key = []
+        self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
+        if len(panels) > 2 * columns:
+            self.high = min(self.high, 105.0) - 20 * bool(panels[0].strip)
+        self.wide = self.width / columns - 60
+        rows = [panels[at:at + columns] for at in range(0, len(panels), columns)]
+        strips = [max(len(p.strip) for p in row) for row in rows]
+        heights = [part for row, n in zip(rows, strips) for part in (
+            (self.high + 4 * LINE) * any(p.series or not p.strip for p in row) + 0.01, LINE * n + 0.01)]
+        key_columns = max(1, min(len(self.key), int(self.width / (widest + 42)))) if self.key else 1
+        key_high = LINE * 1.2 * -(-len(self.key) // key_columns) + 6 if self.key else 0
+        height = sum(heights) + key_high + 8 + 4 * LINE * (heights[0] < 1)
+        self.canvas = pyplot.figure(figsize=(self.width / 72, height / 72), layout="constrained")
+        self.canvas.get_layout_engine().set(rect=(0, key_high / height, 1, 1 - key_high / height), w_pad=4 / 72,
+                                            h_pad=2 / 72, hspace=0, wspace=0)
+        grid = self.canvas.add_gridspec(len(heights), columns, height_ratios=heights)
+        for at, panel in enumerate(panels):
+            row, column = divmod(at, columns)
+            # A label that the panel below or on the left has as well is drawn only there.
+            below, left = (panels[i] if 0 <= i < len(panels) else None for i in (at + columns, at - 1))
+            self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strips[row], (
+                below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label),
+                column == 0)
+        if self.key:
+            self.canvas.legend(handles=self.key, loc="lower center", ncol=key_columns, frameon=False, handlelength=2.5,
+                               columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
+        self.canvas.draw_without_rendering()
+        self.canvas.set_layout_engine("none")  # the layout is the same for each kind of file
+        for ax in self.canvas.axes:  # the solver's last digits differ from run to run
+            ax.set_position([round(at, 5) for at in ax.get_position(original=True).bounds])
 
-    def x(self, points):
-        return points / self.layout.width
+    def handles(self):
+        """The lines of the key: of each series, then of each mark."""
+        styles = {s.name: s.style for panel in self.figure.panels for s in reversed(panel.series)}
+        out = [Line2D([], [], label=name, **self.looks[name].of(styles[name])) for name in self.looks if name in styles]
+        marks = dict.fromkeys(m.name for panel in self.figure.panels for m in panel.marks if m.name)
+        return out + [Line2D([], [], label=name, **mark_look(self.figure, name)) for name in marks]
 
-    def y(self, points):
-        return 1 - points / self.layout.height
+    def can_label(self, panel):
+        """Whether the names are drawn at the ends of their lines instead of in a key."""
+        return not panel.marks and 0 < len(self.key) <= 6 and all(
+            "lines" in s.style and len(s.x) > 1 for s in panel.series)
 
-    def text(self, x, y, text, **how):
-        how = {"ha": "left", "va": "center", "color": "#222222", **how}
-        return self.canvas.text(self.x(x), self.y(y), text, **how)
-
-    def axes(self, left, right, top, bottom):
-        return self.canvas.add_axes([self.x(left), self.y(bottom), self.x(right) - self.x(left),
-                                     self.y(top) - self.y(bottom)])
-
-    def panel(self, placed):
-        panel, left, top = placed.panel, placed.box[0], placed.box[2]
-        ax = self.axes(*placed.box)
-        if panel.title:
-            self.text(left, top - LINE / 2 - 2, panel.title, color="#000000")
-        self.ticks(ax, placed)
-        if panel.drawing:
-            for side in ax.spines.values():
-                side.set(visible=True, color="#dddddd")
-            ax.grid(False)
-        else:
-            self.shade(ax, placed)
-            self.labels(placed)
+    def panel(self, panel, cells, strip, labelled, first):
+        if panel.strip and not panel.series:
+            ax = self.strip(None, panel, cells[1], strip, first or not same_rows(self.figure))
+            ax.set_title(panel.title, loc="left", color="black", pad=4)
+            ax.set_xlabel(panel.x.label)
+            return
+        ax = self.canvas.add_subplot(cells[0])
+        ax.set_title(panel.title, loc="left", color="black", pad=4)
+        for side, room in (("x", self.wide), ("y", self.high)):
+            scale_axis(ax, side, getattr(panel, side), values_along(panel, side), room)
+        ax.set_ylabel(panel.y.label if labelled[1] else "")
         for mark in panel.marks:
-            at = (placed.x if mark.vertical else placed.y).place(mark.at)
-            if not math.isnan(at):
-                (ax.axvline if mark.vertical else ax.axhline)(at, **self.mark_look(mark.name))
+            if math.isfinite(mark.at) and (mark.at > 0 or not (panel.x if mark.vertical else panel.y).log):
+                (ax.axvline if mark.vertical else ax.axhline)(mark.at, **mark_look(self.figure, mark.name))
         # Emphasised series first: they are thick, so a series with the same values stays visible above.
-        drawn = [self.series(ax, placed, s)
-                 for s in sorted(panel.series, key=lambda s: not s.emphasis)]
+        drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center", va="center", color="#666666")
-        if panel.strip:
-            self.strip(placed)
-        if self.layout.direct:
-            self.direct(ax, placed)
+        if self.direct:
+            self.label_lines(ax, panel)
+        lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
+        lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
-    def ticks(self, ax, placed):
-        for scale, axis, limits in ((placed.x, ax.xaxis, ax.set_xlim), (placed.y, ax.yaxis, ax.set_ylim)):
-            limits(*scale.ends)
-            major = [(scale.place(at), label) for at, label in scale.ticks if label]
-            axis.set_ticks([at for at, _ in major], [label for _, label in major])
-            axis.set_ticks([scale.place(at) for at, label in scale.ticks if not label], minor=True)
-        if placed.panel.strip:
-            ax.tick_params(axis="x", which="both", labelbottom=False)
-
-    def labels(self, placed):
-        panel, (left, right, top, bottom) = placed.panel, placed.box
-        if placed.labels[0]:
-            self.text((left + right) / 2, bottom + placed.strip + 1.5 * LINE + 4, panel.x.label, ha="center")
-        if placed.labels[1]:
-            label = wrapped(panel.y.label, bottom - top)
-            ticks = max([0.0] + [text_width(t) for _, t in placed.y.ticks])
-            self.text(left - ticks - 7 - LINE * (label.count("\n") + 1) / 2, (top + bottom) / 2,
-                      label, ha="center", rotation=90, linespacing=1.1)
-
-    def shade(self, ax, placed):
-        """Shades the linear part of an axis that shows zeros, with a line at 0."""
-        for scale, span, line in ((placed.x, ax.axvspan, ax.axvline), (placed.y, ax.axhspan, ax.axhline)):
-            if scale.linear_to:
-                span(scale.ends[0], scale.place(scale.linear_to), color="#f1f1ee", zorder=0)
-                line(scale.place(0), color="#999999", linewidth=0.6, linestyle=(0, (1, 2)), zorder=0.6)
-
-    def mark_look(self, name):
-        dashes = [(0, (3, 2)), (0, (1, 1.5)), (0, (6, 2)), (0, (4, 1.5, 1, 1.5))]
-        at = mark_names(self.layout.figure).index(name) if name else 0
-        return {"color": "#444444", "linewidth": 0.9, "linestyle": dashes[at % len(dashes)], "zorder": 1.5}
-
-    def bars(self, ax, look, x, y, low, high, horizontal):
-        along = x if horizontal else y
-        ends = [[max(0.0, a - l) if l == l and a == a else math.nan for a, l in zip(along, low)],
-                [max(0.0, h - a) if h == h and a == a else math.nan for a, h in zip(along, high)]]
+    def bars(self, ax, look, along, across, low, high, side):
+        ends = [[max(0.0, b - a) if a == a and b == b else math.nan for a, b in zip(*pair)]
+                for pair in ((low, along), (along, high))]
         if any(e == e for e in ends[0]):
-            ax.errorbar(x, y, **{"xerr" if horizontal else "yerr": ends}, fmt="none",
-                        ecolor=look.colour, elinewidth=0.8, capsize=1.5, capthick=0.8)
+            at = (along, across) if side == "x" else (across, along)
+            ax.errorbar(*at, **{side + "err": ends}, fmt="none", ecolor=look.colour, elinewidth=0.8, capsize=1.5,
+                        capthick=0.8)
 
-    def series(self, ax, placed, s):
+    def series(self, ax, panel, s):
         """Draws a series; False if none of its points has a place."""
-        look = self.layout.looks[s.name]
-        x, y = [placed.x.place(v) for v in s.x], [placed.y.place(v) for v in s.y]
+        look, clean = self.looks[s.name], lambda values, log: [
+            v if v is not None and math.isfinite(v) and (v > 0 or not log) else math.nan for v in values]
+        logs = [ax.get_xscale() == "log", ax.get_yscale() == "log"]
+        x, y = (clean(values, log) for values, log in zip((s.x, s.y), logs))
         if not any(a == a and b == b for a, b in zip(x, y)):
             return False
-        clip = {"clip_on": placed.panel.x.low is not None or placed.panel.x.high is not None}
-        if s.style == "area":
-            ax.fill(x, y, color=look.colour, alpha=0.25, linewidth=0)
-            ax.plot(x, y, **look.line())
-            return True
         if s.x_low:
-            self.bars(ax, look, x, y, *([placed.x.place(v) for v in ends] for ends in (s.x_low, s.x_high)), True)
+            self.bars(ax, look, x, y, clean(s.x_low, logs[0]), clean(s.x_high, logs[0]), "x")
         if s.y_low:
-            self.bars(ax, look, x, y, *([placed.y.place(v) for v in ends] for ends in (s.y_low, s.y_high)), False)
-        if s.style in ("lines", "lines_points"):
-            ax.plot(x, y, **look.line(), **clip)
-        if s.style in ("points", "lines_points"):
-            ax.plot(x, y, **look.points(), **clip)
+            self.bars(ax, look, y, x, clean(s.y_low, logs[1]), clean(s.y_high, logs[1]), "y")
+        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None,
+                **look.of(s.style))
         return True
 
-    def strip(self, placed):
+    def strip(self, above, panel, cell, rows, labelled):
         """Draws a row for each series below the panel, over the same x."""
-        left, right, _, bottom = placed.box
-        rows = placed.panel.strip
-        ax = self.axes(left, right, bottom + 4, bottom + placed.strip)
-        self.ticks(ax, Placed(type(placed.panel)("", placed.panel.x), placed.x, placed.y))
-        ax.set_facecolor("none")
-        ax.set_ylim(len(rows) - 0.5, -0.5)
-        ax.set_yticks(range(len(rows)), [s.name for s in rows])
-        ax.set_yticks([], minor=True)
+        ax = self.canvas.add_subplot(cell, sharex=above)
+        if above is None:
+            scale_axis(ax, "x", panel.x, values_along(panel, "x"), self.wide)
+        else:
+            above.tick_params(axis="x", labelbottom=False)
+        ax.set_ylim(rows - 0.4, -0.6)
+        ax.set_yticks(range(len(panel.strip)), [s.name if labelled else "" for s in panel.strip])
         ax.tick_params(axis="y", length=0)
-        for i, s in enumerate(rows):
-            look, x = self.layout.looks[s.name], [placed.x.place(v) for v in s.x]
+        for i, s in enumerate(panel.strip):
+            ax.axhline(i, color="#e4e4e4", linewidth=0.5, zorder=0.5)
             if s.x_low:
-                self.bars(ax, look, x, [i] * len(x), [placed.x.place(v) for v in s.x_low],
-                          [placed.x.place(v) for v in s.x_high], True)
-            ax.plot(x, [i] * len(x), **look.points(), clip_on=False)
+                self.bars(ax, self.looks[s.name], s.x, [i] * len(s.x), s.x_low, s.x_high, "x")
+            ax.plot(s.x, [i] * len(s.x), **self.looks[s.name].of("points"), clip_on=False, in_layout=False)
+        return ax
 
-    def direct(self, ax, placed):
+    def label_lines(self, ax, panel):
         """Draws the name of each series beside its last point, and moves names apart that would overlap."""
-        left, right, top, bottom = placed.box
-        low, high = placed.y.ends
+        place, (low, high) = ax.yaxis.get_transform().transform, ax.get_ylim()
         ends = []
-        for s in placed.panel.series:
-            known = [y for y in (placed.y.place(v) for v in s.y) if y == y]
+        for s in panel.series:
+            known = [v for v in s.y if v is not None and math.isfinite(v) and (v > 0 or ax.get_yscale() != "log")]
             if known:
-                ends.append([bottom - (known[-1] - low) / (high - low) * (bottom - top), s.name])
+                bottom, top, at = (float(place([v])[0]) for v in (low, high, known[-1]))
+                ends.append([(at - bottom) / (top - bottom), s.name])
         ends.sort()
+        step, over = LINE / self.high, 0.0
         for i in range(1, len(ends)):
-            ends[i][0] = max(ends[i][0], ends[i - 1][0] + LINE - 1)
-        over = ends[-1][0] - bottom if ends else 0
-        for end in reversed(ends):  # moves names up again if the last ones left the panel
-            end[0] = min(end[0], bottom if over > 0 else end[0])
-            bottom = min(bottom, end[0] - LINE + 1) if over > 0 else bottom
+            ends[i][0] = max(ends[i][0], ends[i - 1][0] + step)
+        for end in reversed(ends):  # moves names down again if the last ones left the panel
+            end[0] = min(end[0], 1 - over)
+            over = 1 - end[0] + step
         for y, name in ends:
-            self.text(right + 5, y, name, color=self.layout.looks[name].colour)
-
-    def key(self):
-        figure, styles = self.layout.figure, {}
-        for panel in figure.panels:
-            for s in panel.series:
-                styles.setdefault(s.name, s.style)
-        for name, x, y in self.layout.entries:
-            self.text(x + 24, y, name)
-            ends = [self.x(x), self.x(x + 20)], [self.y(y)] * 2
-            if name not in styles:
-                self.add(Line2D(*ends, **self.mark_look(name)))
-                continue
-            look, style = self.layout.looks[name], styles[name]
-            if style == "area":
-                self.add(Rectangle((ends[0][0], self.y(y + 3)), ends[0][1] - ends[0][0], self.y(y - 3) - self.y(y + 3),
-                                   color=look.colour, alpha=0.25, linewidth=0))
-            if style != "points":
-                self.add(Line2D(*ends, **look.line()))
-            if style in ("points", "lines_points"):
-                self.add(Line2D([self.x(x + 10)], [self.y(y)], **look.points()))
-        if self.layout.note_top is not None:
-            self.text(self.layout.width / 2, self.layout.note_top + LINE * (1 + self.layout.note.count("\n")) / 2,
-                      self.layout.note, ha="center", color="#555555", linespacing=1.1)
-
-    def add(self, line):
-        line.set_transform(self.canvas.transFigure)
-        self.canvas.add_artist(line)
+            ax.text(1.01, y, name, transform=ax.transAxes, va="center", color=self.looks[name].colour)
 
 
 def numbers_of(figure):
     """The CSV of a figure: the drawn values, as they were measured."""
-    out = io.StringIO()
-    writer = csv.writer(out)
-    ends = ("x_low", "x_high", "y_low", "y_high")
-    writer.writerow(["panel", "series", "x", "y", *ends])
-
-    def cell(values, i):
-        known = i < len(values) and values[i] is not None and values[i] == values[i]
-        return repr(float(values[i])) if known else ""
-
+    rows = []
     for panel in figure.panels:
         for s in panel.series + panel.strip:
-            for i in range(len(s.x)):
-                writer.writerow([panel.title, s.name] + [cell(getattr(s, name), i) for name in ("x", "y", *ends)])
-    return out.getvalue()
+            values = {name: list(getattr(s, name)) for name in ("x", "y", *ENDS)}
+            rows += [{"panel": panel.title, "series": s.name, **{
+                name: float(of[i]) if i < len(of) and of[i] is not None else math.nan for name, of in values.items()}}
+                for i in range(len(s.x))]
+    return pd.DataFrame(rows, columns=["panel", "series", "x", "y", *ENDS]).to_csv(index=False, lineterminator="\r\n")
 
 
 def files_of(figure):
@@ -444,45 +360,32 @@ def files_of(figure):
     pyplot.close(canvas)
     words = f"<title>{html.escape(figure.title)}</title>\n<desc>{html.escape(figure.caption)}</desc>"
     out = re.sub(r"(<svg [^>]*>)", lambda m: m.group(1) + "\n " + words, svg.getvalue(), 1)
-    return {"svg": out.replace("'DejaVu Sans'", FAMILIES), "pdf": pdf.getvalue(), "csv": numbers_of(figure)}
+    return {"svg": out.replace("'DejaVu Sans'", "'DejaVu Sans', Helvetica, Arial, sans-serif"), "pdf": pdf.getvalue(),
+            "csv": numbers_of(figure)}
 
 
 def inline_svg(svg, prefix):
     """An SVG for a page with others: its ids get a `prefix`."""
-    out = svg[svg.index("<svg"):]
-    return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, out)
+    return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, svg[svg.index("<svg"):])
 
 
 # ---- which parts of a figure to draw
 
 LONGEST_NAME = 85  # characters that fit into the key
-
-
-def same(a, b):
-    return len(a) == len(b) and all(x == y or (x != x and y != y) for x, y in zip(a, b))
-
-
-def agree(figure, one, other):
-    for panel in figure.panels:
-        a, b = ([s for s in panel.series if s.name == name] for name in (one, other))
-        if len(a) != len(b) or any(
-                x.style != y.style or not all(same(getattr(x, f), getattr(y, f)) for f in (
-                    "x", "y", "x_low", "x_high", "y_low", "y_high")) for x, y in zip(a, b)):
-            return False
-    return True
+SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is logarithmic."
 
 
 def merge_series(figure):
     """Merges series that agree in every panel into one, whose name lists all of them."""
-    groups = []
+    def values_of(name):
+        return repr([[(s.style, [list(map(float, getattr(s, of))) for of in ("x", "y", *ENDS)]) for s in panel.series
+                      if s.name == name] for panel in figure.panels])
+
+    groups = {}
     for name in dict.fromkeys(s.name for panel in figure.panels for s in panel.series):
-        group = next((g for g in groups if agree(figure, g[0], name)), None)
-        if group:
-            group.append(name)
-        else:
-            groups.append([name])
+        groups.setdefault(values_of(name), []).append(name)
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
-    for group in groups:
+    for group in groups.values():
         if len(group) == 1:
             continue
         # The first name gives the colour: the subject of the figure, or ours.
@@ -504,8 +407,8 @@ def drop_panels(figure):
     """Replaces panels without a difference by a sentence of the caption."""
     kept, constant, empty = [], {}, []
     for panel in figure.panels:
-        values = [y for s in panel.series for y in s.y if math.isfinite(y)]
-        if panel.drawing or panel.strip or any(y != values[0] for y in values):
+        values = finite(y for s in panel.series for y in s.y)
+        if panel.strip or len(set(values)) > 1:
             kept.append(panel)
         elif values:
             constant.setdefault(tick_label(values[0]), []).append(panel.title)
@@ -523,3 +426,9 @@ def drop_panels(figure):
 def legible(figure):
     drop_panels(figure)
     merge_series(figure)
+    if not re.search(r"\bn( =|:)", figure.caption):
+        points = sum(len(finite(s.y)) for panel in figure.panels for s in panel.series)
+        figure.caption = f"{sentence(figure.caption)} n = {grouped(points)} drawn points."
+    if any(getattr(panel, side).log and getattr(panel, side).zero and 0 in values_along(panel, side)
+           for panel in figure.panels for side in "xy"):
+        figure.caption = f"{sentence(figure.caption)} {SHADED}"

@@ -52,7 +52,7 @@ class Series:
     name: str
     x: list = field(default_factory=list)
     y: list = field(default_factory=list)
-    style: str = "lines_points"  # or "lines", "points", "area" (a polygon, filled lightly)
+    style: str = "lines_points"  # or "lines", "points"
     emphasis: bool = False       # drawn thick: ours, or the subject of the figure
     x_low: list = field(default_factory=list)  # ends of intervals: as many as x, or none
     x_high: list = field(default_factory=list)
@@ -90,7 +90,6 @@ class Panel:
     y: Axis = field(default_factory=Axis)
     series: list = field(default_factory=list)
     marks: list = field(default_factory=list)
-    drawing: bool = False  # shapes without axes; x and y have the same scale
     strip: list = field(default_factory=list)  # Series without y, a row each below the panel
 
 
@@ -100,6 +99,7 @@ class Figure:
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
+    columns: int = 0      # of panels, up to 4; 0: draw.py chooses
     narrow: bool = False  # one column of two wide (draw.py)
 
 
@@ -273,11 +273,6 @@ def by(rows, name):
 def resolutions(rows):
     """All resolutions above 0 (those declared in pixels), ascending."""
     return sorted(int(r) for r in set(rows.resolution) if r > 0)
-
-
-def find_row(rows, name, resolution):
-    """The first row of a contestant at a resolution; None where there is none."""
-    return next(rows[(rows.contestant == name) & (rows.resolution == resolution)].itertuples(), None)
 
 
 def estimate(row):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from draw import inline_svg
 from estimates import counted, grouped, listed, sentence
+from frame import Table, columns
 from tables import html_prose, html_text, latex_text, table_html
 
 MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
@@ -88,6 +89,15 @@ def rows_of_runs(page):
         for run in drawn.study.all_rows.run:
             out[run][drawn.study.name] += 1
     return out
+
+
+def runs_table(page):
+    rows = rows_of_runs(page)
+    return Table("runs", "", columns(
+        ["run", "started", "commit", "device", "driver", "CPU"], ["cores"], ["options"], ["rows"]), [
+        [str(run.run), run.started, run.commit_id, run.gl_renderer, driver_text(run), run.cpu, str(run.cores),
+         "`" + run.options.replace("`", "\\u0060") + "`", grouped(sum(rows[run.run].values()))]
+        for run in page.runs.itertuples() if run.run in rows])
 
 
 # ---- HTML
@@ -218,27 +228,19 @@ class HtmlPage:
                 f'role="region" aria-label="Table {self.tables}">\n{table_html(table)}</div>\n</figure>\n')
 
     def machine(self):
-        out = '<section id="machine">\n<h2>Where it was measured</h2>\n'
-        rows, devices = rows_of_runs(self.page), collections.Counter()
+        runs, rows, devices = self.page.runs, rows_of_runs(self.page), collections.Counter()
         for drawn in self.page.chapters:
             devices.update(drawn.study.rows.device)
-        for run in self.page.runs.itertuples():
-            if run.run not in rows:
-                continue
-            parts = listed(f"{grouped(n)} {study}" for study, n in sorted(rows[run.run].items()))
-            lines = (("Started", run.started), ("Device", run.gl_renderer),
-                     ("Driver", driver_text(run)), ("CPU", run.cpu), ("Cores", str(run.cores)),
-                     ("Commit", run.commit_id), ("Options", run.options), ("Rows", parts))
-            cells = "".join(f'<tr><th scope="row">{name}</th><td>{html_text(value) or "unknown"}</td></tr>\n' for name,
-                            value in lines)
-            out += (f'<h3>Run {run.run}</h3>\n<table class="machine">\n<tbody>\n{cells}</tbody>\n'
-                    '</table>\n<details>\n<summary>CPU features</summary>\n<p class="features">'
-                    f'{html_text(run.cpu_features) or "unknown"}</p>\n</details>\n')
+        features = "".join(f"<p class=\"features\">Run {run.run}: {html_text(run.cpu_features) or 'unknown'}</p>\n"
+                           for run in runs[runs.run.isin(list(rows))].itertuples())
+        out = ('<section id="machine">\n<h2>Where it was measured</h2>\n<div class="cells" tabindex="0" role="region" '
+               f'aria-label="Runs">\n{table_html(runs_table(self.page))}</div>\n<details>\n<summary>CPU '
+               f'features</summary>\n{features}</details>\n')
         if devices:
             answered = listed(f"{name or 'none'} ({counted(n, 'row', 'rows')})" for name, n in sorted(devices.items()))
             out += f"<p>What answered: {html_text(answered)}.</p>\n"
-        return out + ("<p>This page was made by <code>farcull report</code> from " f"{html_text(self.page.store)}; "
-                      f"figures with their numbers, tables as CSV " "and LaTeX lie beside it in <code>figures/</code> "
+        return out + (f"<p>This page was made by <code>farcull report</code> from {html_text(self.page.store)}; "
+                      "figures with their numbers, tables as CSV and LaTeX lie beside it in <code>figures/</code> "
                       "and <code>tables/</code>. The page itself needs none of them.</p>\n</section>\n")
 
 
@@ -271,16 +273,6 @@ def markdown_table(table):
     sides = "".join("---:|" if side == "r" else "---|" for _, side in table.columns)
     return (markdown_row(name for name, _ in table.columns) + "|" + sides + "\n" +
             "".join(markdown_row(row) for row in table.rows) + "\n")
-
-
-def markdown_machine(page):
-    rows = rows_of_runs(page)
-    out = "".join(markdown_row([str(run.run), run.started, run.commit_id, run.gl_renderer, driver_text(run), run.cpu,
-                                str(run.cores), "`" + run.options.replace("`", "\\u0060") + "`",
-                                grouped(sum(rows[run.run].values()))]) for run in page.runs.itertuples() if run.run in
-                  rows)
-    return ("| run | started | commit | device | driver | CPU | cores | options | rows |\n"
-            "|---|---|---|---|---|---|---:|---|---:|\n" + out) if out else ""
 
 
 def markdown_chapter(number, drawn, count):
@@ -325,7 +317,7 @@ def page_markdown(page):
     count = collections.Counter()
     for i, drawn in enumerate(page.chapters):
         out += markdown_chapter(i + 1, drawn, count)
-    return out + "## Where it was measured\n\n" + markdown_machine(page)
+    return out + "## Where it was measured\n\n" + markdown_table(runs_table(page)).rstrip("\n") + "\n"
 
 
 # ---- LaTeX

@@ -3,10 +3,7 @@ the escapes of each."""
 import csv
 import html
 import io
-import json
 import re
-
-from store import AXES
 
 # Signs that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
 LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
@@ -68,25 +65,11 @@ def table_latex(table):
     return out
 
 
-def value_text(values, name):
-    value = values.get(name)
-    if value is None or isinstance(value, str):
-        return value or ""
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
-
-
 def rows_csv(study):
-    """Everything that the store holds of the study: the axes, then all counts and times by their
-    names, the device, the run, and why nothing was measured."""
-    rows = list(study.all_rows.itertuples())
-    counts, times = ([*dict.fromkeys(name for row in rows for name in getattr(row, kind))]
-                     for kind in ("counts", "times"))
-    lines = [["position", *AXES, *counts, *(name + "_ms" for name in times), "device", "run", "measured", "left_out"]]
-    for row in rows:
-        axes = [getattr(row, name) for name in AXES]
-        nothing = [-1 if name == "frame" else 0 for name in AXES]
-        lines.append([row.position, *("" if a == n else a for a, n in zip(axes, nothing)),
-                      *(value_text(row.counts, name) for name in counts),
-                      *(value_text(row.times, name) for name in times),
-                      row.device, row.run, row.measured, row.left_out])
-    return csv_text(lines)
+    """Everything that the store holds of the study: the axes, all counts and times by their names, the times of the
+    runs, the device, the run, and why nothing was measured."""
+    rows = study.all_rows.drop(columns=["counts", "times", "contestant"])
+    rows = rows.assign(runs=[" ".join(map(repr, runs)) for runs in rows.runs],
+                       **{name: rows[name].astype(object).replace(none, "") for name, none in (
+                           ("resolution", 0), ("frame", -1), ("seed", 0))})
+    return rows.convert_dtypes().to_csv(index=False, lineterminator="\r\n")

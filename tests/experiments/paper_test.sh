@@ -46,6 +46,9 @@ for figure in "$work"/good/figures/*.svg; do
   cmp -s "$figure" "$root/docs/figures/$(basename "$figure")" || fail "docs/figures/$(basename "$figure") is of another program"
 done
 
+bash "$root/experiments/paper.sh" --short --out "$work/short.pdf" >/dev/null || fail "the short paper is not made"
+[[ $(pdfinfo "$work/short.pdf" | awk '/^Pages:/ { print $2 }') == 2 ]] || fail "the short paper has not two pages"
+
 # ---- papers that must not pass ----
 
 bad=$work/bad

@@ -1,8 +1,9 @@
-"""Missed pairs against resolution, for FAR and the form of CULLIDE that misses the fewest; a comparison of all forms
-of CULLIDE; and a picture of CULLIDE beside FAR where CULLIDE misses something."""
+"""Missed pairs against resolution and against the candidates that are left, of FAR and every form of CULLIDE; and a
+picture of CULLIDE beside FAR where CULLIDE misses something."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
+SHOWN = ("", ", one round", ", one round, conservative", ", one round, all views, conservative")  # forms with lines
 LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
 COUNTS = {"colliding pairs": "colliding", "missed pairs": "missed", "of them penetrating": "missed_penetrating",
           "colliding triangles": "colliding_triangles", "missed triangles": "missed_triangles",
@@ -17,42 +18,32 @@ def with_groups(rows):
     return rows.assign(own=rows.scene == rows.groupby("group").scene.transform("first"))
 
 
+def family_of(method):
+    """Whether it is `cullide`, `quick-cullide` or `s-cullide` in any form."""
+    return "cullide" in method
+
+
 def family(rows):
-    """Rows of `cullide`, `quick-cullide` or `s-cullide` in any form."""
-    return rows.method.str.contains("cullide")
-
-
-def left_out(rows):
-    """Forms that appear only in tables: the figures would have too many names with them."""
-    return (rows.method.str.startswith("quick-cullide") | (rows.views == BOTH_DIRECTIONS) |
-            rows.method.str.endswith("--clear all"))
+    return rows.method.map(family_of).astype(bool)
 
 
 class Family:
-    """The forms of CULLIDE (or S-CULLIDE, which tests objects against themselves, where FAR was not measured) that
-    cull triangles, at the scenes and resolutions that all of them have. forms: first those with no more candidates
-    than the rival; within each group by missed pairs, then by candidates."""
+    """The forms of CULLIDE (or S-CULLIDE, which tests objects against themselves, where FAR was not measured), at the
+    scenes and resolutions that all of them have, by missed pairs and then by candidates. rival: FAR there, and what it
+    leaves."""
 
     def __init__(self, rows, own):
         self.name, rival = ("S-CULLIDE", "FAR pairs") if own else ("CULLIDE", "FAR (OBB)")
         rows = rows[~rows.sized].drop_duplicates(["contestant", "scene", "resolution"])
         rows = rows.set_index(["scene", "resolution"], drop=False)
-        of = rows[family(rows) & (rows.method.str.startswith("s-cullide") == own) &
-                  ~rows.method.str.contains("--level objects")]
+        of = rows[family(rows) & (rows.method.str.startswith("s-cullide") == own)]
         forms, rivals = dict(list(of.groupby("contestant"))), rows[rows.contestant == rival]
         common = sorted(set.intersection(*(set(f.index) for f in forms.values()))) if forms else []
         self.rival = rival if common and all(at in rivals.index for at in common) else ""
         self.rival_candidates = total(rivals.loc[common], "candidates") if self.rival else 0
         self.forms = {name: rows.loc[common] for name, rows in forms.items()}
         self.forms = dict(sorted(self.forms.items(), key=lambda form: (
-            not self.culls(form[1]), total(form[1], "missed"), total(form[1], "candidates"))))
-
-    def culls(self, rows):
-        return not self.rival or total(rows, "candidates") <= self.rival_candidates
-
-    @property
-    def published(self):
-        return self.name + ", one round"
+            total(form[1], "missed"), total(form[1], "candidates"))))
 
 
 def families(rows):
@@ -112,22 +103,35 @@ def missed_figure(rows, name, title, shows):
     return out
 
 
+def form_group(row):
+    """The series of a run in the figure of all forms; "" for radii that promise nothing."""
+    if not family_of(row.method):
+        ours = {"far": "FAR, boxes and exact offsets", "far-pairs": "FAR pairs"}
+        return "" if row.radius == "published" else ours.get(row.method, "")
+    forms = {", one round": "as published", ", one round, conservative": "conservative", SHOWN[-1]: "strict"}
+    return "CULLIDE, " + forms.get(row.contestant.partition("CULLIDE")[2], "other forms")
+
+
 def kept_figure(own):
     """Misses against the candidates left; each point is a run."""
-    out = Figure("accuracy-kept", "Missed pairs against the candidates that are left",
-                 "Each point is a run at one resolution. A method that leaves all pairs of overlapping boxes (exact) "
-                 "misses nothing and has culled nothing: below and to the left is better. Scenes that are drawn at "
-                 "random have their own seed. Quick-CULLIDE, objects alone, both directions of each axis and views "
-                 "that all have to clear are in the tables.")
-    rows = own[~own.sized & (column(own, "colliding") > 0) & (column(own, "candidates") > 0) &
-               (own.radius != "published") & (own.offset != "exact") & ~left_out(own) &
-               ~own.method.str.contains("--clear all|--level objects")]
+    out = Figure("accuracy-kept", "What every form misses, against the candidates that it leaves",
+                 "Each point is a run at one resolution; below and to the left is better. The mark is what boxes alone "
+                 "leave (exact), which miss nothing and cull nothing. No form is left out: the strict form "
+                 "is conservative, and all views have to clear a triangle; others are those until nothing changes, "
+                 "in both directions of each axis, where all views have to clear, with objects alone, and "
+                 "Quick-CULLIDE. "
+                 "On one object, CULLIDE is S-CULLIDE. Scenes that are drawn at random have their own seed.")
+    rows = own[~own.sized & (column(own, "colliding") > 0) & (column(own, "candidates") > 0)]
+    rows = rows.assign(series=[form_group(row) for row in rows.itertuples()])
     for group, here in by(rows, "group"):
-        out.panels.append(Panel(group, log("candidates / colliding pairs"), Axis("missed pairs (%)", low=0, high=100), [
-            series_of(name, of, lambda row: row.candidates / row.colliding,
-                      lambda row: share(number(row, "missed"), row.colliding), style="points",
-                      emphasis=name == OURS[0]) for name, of in by(here, "contestant")]))
-    out.caption += f" n = {counted(len(rows), 'run', 'runs')}."
+        boxes = [row.candidates / row.colliding for row in here[here.method == "exact"].itertuples()]
+        here = here[here.series != ""]
+        out.panels.append(Panel(
+            group, log("candidates / colliding pairs", zero=True), log("missed pairs (%)", zero=True, high=100),
+            [series_of(name, of, lambda row: row.candidates / row.colliding,
+                       lambda row: share(number(row, "missed"), row.colliding), style="points")
+             for name, of in sorted(by(here, "series"))], [Mark(at, "boxes alone (exact)") for at in boxes]))
+    out.caption += f" n = {counted((rows.series != '').sum(), 'run', 'runs')}."
     return out
 
 
@@ -136,9 +140,8 @@ def size_figure(own):
     out, runs = Figure(
         "accuracy-size", "Missed pairs against the size of triangles",
         "The resolution is chosen so that a triangle that can take part covers 1, 4 or 16 pixels, on average over the "
-        "triangles and the axes. Scenes that are drawn at random have their own seed. Both directions of each axis are "
-        "in the table."), 0
-    for group, here in by(own[own.sized & (own.views != BOTH_DIRECTIONS)], "group"):
+        "triangles and the axes. Scenes that are drawn at random have their own seed. Other forms are in the table."), 0
+    for group, here in by(own[own.sized & own.form.isin([OURS[0], *(f"CULLIDE{form}" for form in SHOWN)])], "group"):
         forms = list(here.groupby("form"))
         if max(len(rows) for _, rows in forms) == 1:
             out.caption += f" Not drawn, since one size alone fits: {group}."
@@ -150,17 +153,15 @@ def size_figure(own):
     return out
 
 
-def figures_of(rows, headline):
-    seeds = rows.groupby("group").scene.transform("nunique")
+def figures_of(rows):
+    seeds, shown = rows.groupby("group").scene.transform("nunique"), [f"CULLIDE{form}" for form in SHOWN[1:]]
+    drawn = rows.assign(contestant=rows.contestant.str.replace("^S-CULLIDE", "CULLIDE", regex=True))
     own = rows[rows.own]
     figures = [
-        missed_figure(rows.assign(seeds=seeds, wanted=rows.contestant.isin([*OURS, *headline])), "accuracy",
+        missed_figure(drawn.assign(seeds=seeds, wanted=drawn.contestant.isin([*OURS, *shown])), "accuracy",
                       "Missed colliding pairs against resolution",
-                      "FAR, and CULLIDE in the form that misses the fewest pairs and as published."),
-        missed_figure(own.assign(seeds=1, wanted=family(own) & ~left_out(own)), "accuracy-forms", "Forms of CULLIDE",
-                      "Scenes that are drawn at random have their own seed. Quick-CULLIDE, both directions of each "
-                      "axis and views that all have to clear are in the tables."),
-        kept_figure(own), size_figure(own)]
+                      "FAR, and CULLIDE as published and in the two forms that miss less. All other forms are in the "
+                      "next figure. On one object, CULLIDE is S-CULLIDE."), kept_figure(own), size_figure(own)]
     return [figure for figure in figures if figure.panels]
 
 
@@ -208,25 +209,15 @@ def long_table(rows):
 # ---- findings
 
 def add_forms(chapter, rows):
-    """Adds the strongest form of each family and, beside it, the published one."""
-    def in_words(runs):
-        return (f"misses {rate_text(total(runs, 'missed'), total(runs, 'colliding'))} colliding pairs and leaves "
-                f"{grouped(total(runs, 'candidates'))} candidates")
-
+    """Adds what each form of a family misses and leaves."""
     for of in families(rows):
-        if len(of.forms) < 2:
-            continue
-        best, runs = next(iter(of.forms.items()))
-        rival = (f" (among those that leave no more candidates than {of.rival}, which leaves "
-                 f"{grouped(of.rival_candidates)})") if of.rival else ""
-        chapter.find(f"Of {len(of.forms)} forms of {of.name} that cull triangles, \"{best}\" misses the fewest pairs"
-                     f"{rival}: in {counted(len(runs), 'run', 'runs')} it {in_words(runs)}.")
-        if of.published in of.forms:
-            chapter.find(f"As published (\"{of.published}\"), it {in_words(of.forms[of.published])}.")
-        weak = [f"\"{name}\" ({grouped(total(runs, 'missed'))} missed, {grouped(total(runs, 'candidates'))} candidates)"
-                for name, runs in of.forms.items() if not of.culls(runs)]
-        if weak:
-            chapter.find(f"Forms that leave more candidates than {of.rival}: {listed(weak)}.")
+        said = [f"{name} {rate_text(total(runs, 'missed'), total(runs, 'colliding'))}, leaving "
+                f"{grouped(total(runs, 'candidates'))} candidates" for name, runs in of.forms.items()]
+        rival = f"; {of.rival} leaves {grouped(of.rival_candidates)} there" if of.rival else ""
+        runs = next(iter(of.forms.values()))
+        if len(said) > 1:
+            chapter.find(f"Missed by the forms of {of.name}, in {counted(len(runs), 'run', 'runs')} each: "
+                         f"{'; '.join(said)}{rival}.")
 
 
 def add_courses(chapter, rows, forms):
@@ -289,23 +280,20 @@ def pictures_of(rows):
 
 def fill(chapter, study):
     rows = with_groups(study.rows)
-    headline = sorted({name for of in families(rows)
-                       for name in (next(iter(of.forms)), *(n for n in of.forms if n == of.published))})
     add_promises(chapter, study)
     add_forms(chapter, rows)
-    add_courses(chapter, rows, headline)
+    add_courses(chapter, rows, [prefix + form for prefix in ("CULLIDE", "S-CULLIDE") for form in SHOWN[1:3]])
     add_sizes(chapter, rows)
     add_sums(chapter, rows)
     chapter.limits = [
         "Scenes are few and still, so that no miss is no proof; the proof is in docs/reliability.md.",
         "Pairs of one scene do not collide independently of each other, so an interval over pairs is narrower than "
         "one over scenes would be.",
-        "The form that misses the fewest pairs was chosen by the same runs that are shown.",
         "FAR is measured between objects; against themselves objects are tested by S-CULLIDE and FAR pairs alone.",
         "How much CULLIDE misses depends on how a device samples: other devices give other counts.",
         "The published radius may miss nothing in these scenes and pairs in others (see the study of the radius)."]
     add_gaps(chapter, study)
     if len(rows):
-        chapter.figures = figures_of(rows, headline)
+        chapter.figures = figures_of(rows)
         chapter.tables = [forms_table(rows), short_table(rows), long_table(rows)]
         chapter.pictures = pictures_of(rows)

@@ -34,24 +34,24 @@ def over_frames(name, rows, count, style="lines", emphasis=False):
     return Series(name, list(rows.frame), list(column(rows, count)), style, emphasis)
 
 
-def figures_of(courses):
-    energy = Figure("cloth-energy", "Energy of the cloth, frame by frame",
-                    "Left: kinetic energy and all potentials, where 0 is a cloth at rest at the height of the middle "
-                    "of the sphere. Right: iterations of the solver. One simulation of each stiffness.")
+def figure_of(courses):
+    out = Figure("cloth", "Energy of the cloth, work of its solver, and pairs of triangles, frame by frame",
+                 "Energy: kinetic energy and all potentials, where 0 is a cloth at rest at the height of the middle of "
+                 "the sphere. Then, for each stiffness, the pairs that collide, neighbours among them, and the "
+                 "candidates that culling leaves to exact predicates. Most candidates are neighbours, which both "
+                 "methods hand to the "
+                 "predicates: a triangle of the grid shares a vertex with twelve others. n = "
+                 f"{counted(len(courses), 'simulation', 'simulations')}, one of each stiffness.")
     for title, label, count, low in (("total energy", "J", "total", None),
                                      ("work of a step", "factorizations", "iterations", 0)):
-        energy.panels.append(Panel(title, Axis("frame"), Axis(label, low=low), [
+        out.panels.append(Panel(title, Axis("frame"), Axis(label, low=low), [
             over_frames(f"{name} N/m", pairs, count) for name, (pairs, _, _) in courses.items()]))
-    found = Figure("cloth-pairs", "Pairs of triangles of the cloth and the sphere, frame by frame",
-                   "Pairs that collide, neighbours that do among them, and the candidates that culling leaves to "
-                   "exact predicates. Most candidates are neighbours, which both methods hand to the predicates: a "
-                   "triangle of the grid shares a vertex with twelve others.")
     for name, (pairs, far, _) in courses.items():
-        found.panels.append(Panel(f"{name} N/m", Axis("frame"), log("pairs", zero=True), [
+        out.panels.append(Panel(f"{name} N/m", Axis("frame"), log("pairs", zero=True), [
             over_frames("FAR pairs", pairs, "candidates", emphasis=True),
             over_frames("FAR (OBB)", far, "candidates", "points"),
             over_frames("colliding", pairs, "colliding")]))
-    return [energy, found]
+    return out
 
 
 def table_of(courses):
@@ -120,4 +120,4 @@ def fill(chapter, study):
         "The study is not among `farcull experiment all`, since it takes hours on one core."]
     add_gaps(chapter, study)
     if courses:
-        chapter.figures, chapter.tables = figures_of(courses), [table_of(courses)]
+        chapter.figures, chapter.tables = [figure_of(courses)], [table_of(courses)]

@@ -1,9 +1,11 @@
-"""Errors and false positives against time, the Pareto front of each scene, and CULLIDE in the time that FAR takes."""
+"""Errors against time with a row for each method that is never wrong, the Pareto front of each scene, and CULLIDE in
+the time that FAR takes."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
-SHOWN = (*OURS, "FAR (exact)", "CULLIDE, one round", "CULLIDE, one round, conservative", "cgal-boxes")
-MOST_SCENES = 8  # largest number of panels of the first figure
+STRICT = "one round, all views, conservative"  # drawn as "CULLIDE (strict)"
+OWN_TESTS = "FCL and ODE, their own tests"
+MOST_SCENES = 8  # largest number of scenes of the first figure
 
 
 @dataclass
@@ -18,7 +20,6 @@ class Entry:
     wrong: int
     colliding: int
     candidates: int
-    has_candidates: bool
 
     def __post_init__(self):
         self.median = median_estimate(self.times)
@@ -32,13 +33,6 @@ class Entry:
     def error_share(self):
         return share(self.error, self.colliding)
 
-    @property
-    def for_nothing(self):
-        """Candidates that do not collide, over what collides."""
-        if not self.has_candidates or self.colliding == 0:
-            return NONE
-        return (self.candidates - (self.colliding - self.missed)) / self.colliding
-
 
 @dataclass
 class Group:
@@ -46,10 +40,12 @@ class Group:
     name: str
     seeds: int
     entries: list
+    kind: str = ""
 
     @property
     def title(self):
-        return self.name + (f" ({self.seeds} seeds)" if self.seeds > 1 else "")
+        words = [self.kind] * bool(self.kind) + [f"{self.seeds} seeds"] * (self.seeds > 1)
+        return self.name + (f" ({', '.join(words)})" if words else "")
 
     def front(self):
         """The Pareto front: no other entry is as good in both time and error, and better in one. Fastest first; of
@@ -61,8 +57,8 @@ class Group:
         return out
 
     def yardstick(self):
-        """The reference for times: CGAL's box join, which every build has."""
-        return next((e for e in self.entries if e.row.method == "cgal-boxes"), None)
+        """The reference for times: boxes and exact tests, without culling."""
+        return next((e for e in self.entries if e.row.method == "exact"), None)
 
     def by_name(self):
         out = {}
@@ -75,17 +71,22 @@ def entry_of(rows):
     first = next(rows.itertuples())
     times = first.runs if len(rows) == 1 and first.runs else tuple(rows.total_ms)
     return Entry(first, first.contestant, times,
-                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
-                 bool(column(rows, "candidates").notna().all()))
+                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")))
 
 
-def groups_of(rows):
+def kind_of(scene):
+    """scene: the entry of the program for it."""
+    return "scan" if scene.get("needs_meshes") else "random" if "seed" in scene else "smooth" if scene else ""
+
+
+def groups_of(rows, scenes):
     out = []
     for name, here in by(rows.assign(group=rows.scene.map(scene_base)), "group"):
         seeds = here.scene.nunique()
         timed = here[column(here, "total_ms").notna()]
         parts = timed.groupby(["contestant", "resolution"], sort=False) if len(timed) else []
-        out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds]))
+        out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds],
+                         kind_of(scenes.get(name.split(":")[0], {}))))
     return out
 
 
@@ -103,14 +104,14 @@ def sample_of(groups):
 # ---- figures
 
 def cloud(name, points):
-    """Points of pairs (entry, y), over the time with its interval. A line follows the resolution; a method that chooses
-    its resolution is no point of a line."""
-    out = Series(name, style="lines_points" if sum(e.pixels > 0 for e, _ in points) > 1 else "points",
+    """Points of triples: an Estimate of the time, y, and the resolution. A line follows the resolution; a method that
+    chooses its resolution is no point of a line."""
+    out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points",
                  emphasis=name in OURS)
-    for entry, y in points:
-        values = [(entry.ms, y, entry.median.low, entry.median.high) if entry.median.n > 1
-                  else (entry.ms, y, NONE, NONE)]
-        if entry.pixels <= 0:
+    for time, y, pixels in points:
+        ends = (time.low, time.high) if time.n > 1 else (NONE, NONE)
+        values = [(time.value, y, *ends)]
+        if pixels <= 0:
             values = [(NONE,) * 4] * bool(out.x) + values + [(NONE,) * 4]
         for value_of in values:
             for along, v in zip((out.x, out.y, out.x_low, out.x_high), value_of):
@@ -118,68 +119,81 @@ def cloud(name, points):
     return out
 
 
-def drawn_names(group):
-    """Leaves forms in which all views have to clear to the tables, so that the key stays short."""
-    return {name: of for name, of in group.by_name().items() if "all views" not in name}
+def geometric_mean(values):
+    """With the 95 % interval of Student's t in logarithms."""
+    logs = np.log(values)
+    reach = student_t95(len(logs) - 1) * logs.std(ddof=1) / math.sqrt(len(logs)) if len(logs) > 2 else 0
+    return Estimate(*(math.exp(logs.mean() + part) for part in (0, -reach, reach)), len(logs) if reach else 1)
 
 
-def error_panel(title, label, entries):
-    """Methods that were wrong anywhere in the panel as points, the others as rows of the strip. entries: by the name
-    of a method, pairs of an entry and its errors in per cent."""
-    panel = Panel(title, log(label), log("errors (%)", zero=True))
-    for name, points in entries.items():
-        if any(y > 0 for _, y in points):
-            panel.series.append(cloud(name, points))
-        else:
-            panel.strip.append(cloud(name, points))
-    panel.strip.sort(key=lambda s: (s.name not in OURS, min(x for x in s.x if x == x)))
-    return panel
+def summary_of(groups):
+    """Points by the name of a method, over all scenes on which FAR was measured and of those that were measured on
+    each: the geometric mean of the times as multiples of those of `exact`, and the share of the errors."""
+    groups = [g for g in groups if g.yardstick() and any(e.name == OURS[0] for e in g.entries)]
+    found, out = [{(e.name, e.pixels): e for e in group.entries} for group in groups], {}
+    for key in (key for key in (found[0] if len(found) > 1 else ()) if all(key in of for of in found)):
+        entries = [of[key] for of in found]
+        ratio = geometric_mean([e.ms / group.yardstick().ms for e, group in zip(entries, groups)])
+        out.setdefault(key[0], []).append(
+            (ratio, share(sum(e.error for e in entries), sum(e.colliding for e in entries)), key[1]))
+    return out, [group.name for group in groups]
 
 
-def summary_panel(groups):
-    """Methods measured on every scene: the errors on all of them over the median of the times, as multiples of those
-    of cgal-boxes on the same scene."""
-    entries = {}
-    if any(group.yardstick() is None for group in groups):
-        return None
-    found = [{(e.name, e.pixels): e for e in group.entries} for group in groups]
-    for key, first in found[0].items():
-        if "all views" in first.name or not all(key in of for of in found):
-            continue
-        ratios = [of[key].ms / group.yardstick().ms for of, group in zip(found, groups)]
-        whole = Entry(first.row._replace(runs=()), first.name, tuple(ratios),
-                      *(sum(getattr(of[key], n) for of in found) for n in ("missed", "wrong", "colliding",
-                                                                           "candidates")), True)
-        entries.setdefault(first.name, []).append((whole, whole.error_share))
-    return error_panel("all scenes together", "time / that of cgal-boxes", entries) if entries else None
+def row_name(name, pixels, shown):
+    """The row of the strip that holds the point; "" for resolutions that are left to the table."""
+    if name == "FAR (OBB)" and pixels > 0:
+        return f"{name}, {pixels} px" if pixels in shown else ""
+    return name + ", given px" if name == "FAR pairs" and pixels > 0 else name
 
 
-def figures_of(groups):
+def error_panels(titles, labels, all_points):
+    """For each scene a panel: methods that were wrong anywhere in it as points; the others as rows of the strip,
+    which are the same in each panel. all_points: for each panel, points by the name of a method."""
+    shown = sorted({pixels for points in all_points for of in points.values() for *_, pixels in of if pixels > 0})[::2]
+    panels, strips = [], []
+    for title, label, points in zip(titles, labels, all_points):
+        above, rows = {}, {}
+        for name, of in points.items():
+            wrong = any(y > 0 for _, y, _ in of)
+            name = name.removeprefix("S-").replace(", " + STRICT, " (strict)")
+            for point in of:
+                at = row_name(name, point[2], shown) if not wrong else OWN_TESTS if name[:3] in ("fcl", "ode") else name
+                ((above if wrong else rows).setdefault(at, []) if at else []).append(point)
+        panels.append(Panel(title, log(label), log("errors (%)", zero=True), [cloud(*of) for of in above.items()]))
+        strips.append(rows)
+    fastest = {name: min(time.value for strip in strips for time, *_ in strip.get(name, ()))
+               for strip in strips for name in strip}
+    names = sorted(fastest, key=lambda name: (not name.startswith("FAR"), name.split(",")[0] if name.startswith(
+        "FAR") else "", len(name) if name.startswith("FAR") else 0, fastest[name]))
+    for panel, strip in zip(panels, strips):
+        panel.strip = [cloud(name, strip.get(name, [])) for name in names]
+    return panels
+
+
+def figure_of(groups):
     shown, sample = groups[:MOST_SCENES], sample_of(groups)
-    error = Figure(
-        "error-time", "Methods that make errors, and those that make none, by run time",
-        "Above: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
-        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Below, on "
-        "the same time axis: a row for each method that made no error. Of scenes that are drawn with several seeds, "
-        "the sum of the errors and the median of the times. Forms in which all views have to clear are in the table.",
-        [error_panel(group.title, "time (ms)", {name: [(e, e.error_share) for e in of]
-                                                for name, of in drawn_names(group).items()}) for group in shown])
-    summary = summary_panel(shown) if len(shown) > 1 else None
+    points = [{name: [(e.median, e.error_share, e.pixels) for e in of] for name, of in group.by_name().items()}
+              for group in shown]
+    titles, labels = [group.title for group in shown], ["time (ms)"] * len(shown)
+    summary, scenes = summary_of(shown)
     if summary:
-        error.panels.append(summary)
-        error.caption += (" All scenes together: the sum of the errors, and the median over the scenes of the time "
-                          "over that of cgal-boxes on the same scene, of what was measured on each.")
+        points, titles = points + [summary], titles + [f"all {len(scenes)} scenes"]
+        labels.append("time / that of exact")
+    error = Figure(
+        "error-time", "Methods that are wrong (points), and those that never are (rows), by run time",
+        "Points: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
+        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Rows, on "
+        "the same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
+        "the others are in the table. CULLIDE (strict): one round, conservative rasterization, all views have to clear "
+        "a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
+        "seeds, the sum of the errors and the median of the times.", error_panels(titles, labels, points))
+    if summary:
+        error.caption += (
+            f" Last panel: geometric means of the times over {listed(scenes)}, each divided by that of `exact` (boxes "
+            "and exact tests) on the same scene, with the 95 % interval over the scenes (Student's t of the "
+            "logarithms), and all errors together, of what was measured on each.")
     error.caption += f" {sample}."
-    shown = [Group(group.name, group.seeds, [e for e in group.entries if e.name in SHOWN]) for group in groups]
-    kept = Figure(
-        "error-time-false-positives", "Candidates that do not collide against run time",
-        "Candidates that are handed to exact tests and do not collide, over colliding pairs: of FAR, of CULLIDE in two "
-        "forms, and of the boxes of all triangles. The others are in the table of all points. Bars are the 95 % "
-        f"intervals of median times; {sample_of(shown)}.",
-        [Panel(group.title, log("time (ms)"), log("false positives / colliding", zero=True), [
-            cloud(name, [(e, e.for_nothing) for e in of]) for name, of in group.by_name().items()])
-         for group in shown])
-    return [error, kept]
+    return error
 
 
 # ---- tables
@@ -187,7 +201,7 @@ def figures_of(groups):
 def front_table(groups):
     out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are ratios of "
                 f"medians with their 95 % intervals. {sample_of(groups)}",
-                columns(["scene", "method"], ["time over that of cgal-boxes", "missed", "wrong", "colliding"]))
+                columns(["scene", "method"], ["time over that of exact", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()
         out.rows += [[group.name, e.words, times_as_long(e, peer) if peer else "-", grouped(e.missed),
@@ -266,7 +280,7 @@ def add_front(chapter, group):
 
 def fill(chapter, study):
     rows = study.rows
-    groups = groups_of(rows)
+    groups = groups_of(rows, study.constants["scenes"])
     add_promises(chapter, study)
     add_equal_times(chapter, groups)
     for group in groups:
@@ -290,6 +304,6 @@ def fill(chapter, study):
         "do not. farcull bench leaves neighbours out for all."]
     add_gaps(chapter, study)
     if groups:
-        chapter.figures = figures_of(groups)
+        chapter.figures = [figure_of(groups)]
         chapter.tables = [t for t in (front_table(groups), equal_table(groups), all_table(rows))
                           if t.rows or t.name != "error-time-equal"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from frame import *  # noqa: F403: a chapter uses most of it
 
-REFERENCE = "far-pairs"  # stands beside all others in figures
+REFERENCE = "far-pairs"  # of equals the one that is drawn
 # The counts of a score, in the order of peers/score.cpp.
 SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
@@ -18,14 +18,6 @@ PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
               "far-away": "distance from the origin, in sizes"}
 WRONG = "wrong answers per million"
 FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
-TITLES = {"missed": "Missed: pairs that meet and that a library calls apart",
-          "false": "False alarms: pairs apart that a library calls meeting"}
-CAPTION = (
-    "The pairs of the table of examples, one for each contestant: the first triangle is filled, the second has dashed "
-    "edges. Each pair is moved and stretched along x, y and z until its box is a cube, which changes nothing about "
-    "whether triangles meet, and is seen from where both triangles are broad. So every panel has a scale of its own, "
-    "and says nothing of lengths and angles: the table has the coordinates. A triangle that is equal to the other, or "
-    "much smaller, cannot be seen, nor can differences in the last place.")
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
 
@@ -170,35 +162,50 @@ def all_table(rows):
 # ---- figures
 
 def time_figure(rows):
-    points = []
-    for contestant, of in by(rows, "method"):
-        ms, said, errors = column(of, "total_ms").sum(), total(of, "answered"), totals(of, "missed", "wrong")
-        if said and ms:
-            points.append((of.group.iloc[0], Series(contestant, [1e6 * ms / total(of, "timed")], [1e6 * errors / said],
-                                                    "points", contestant == REFERENCE)))
-    return Figure(
-        "libraries-time", "Wrong answers against time",
-        "Wrong answers, missed or false alarms, by closed triangles, over the mean time of a question as the "
-        f"contestant's own process measured it. {REFERENCE} stands in every panel. Neighbours are asked of those alone "
-        "that know them.",
-        [Panel(title, log("time of a pair (ns)", low=50, high=2e6), log(WRONG, zero=True, high=1e6),
-               [series for group, series in points if group == title or series.emphasis])
-         for title in GROUPS if title in dict(points)])
+    """A row for each contestant, first those that err least."""
+    out, points = Figure(
+        "libraries-time", "Wrong answers, and the time of a question, by contestant",
+        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean "
+        "time of a "
+        "question as the contestant's own process measured it. Neighbours are asked of those alone that know them. n = "
+        f"{grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
+    for name, of in by(rows, "method"):
+        ms, said, timed = column(of, "total_ms").sum(), total(of, "answered"), total(of, "timed")
+        if said and timed:
+            points.append((name, *(1e6 * total(of, fault) / said for fault in ("missed", "wrong")), 1e6 * ms / timed))
+    points.sort(key=lambda point: (point[1] + point[2], point[3]))
+    for at, (title, axis) in enumerate(() if not points else (("missed", log("per million", zero=True)),
+                                                              ("false alarms", log("per million", zero=True)),
+                                                              ("time", log("ns a pair")))):
+        out.panels.append(Panel(title, axis, strip=[
+            Series(point[0], [point[at + 1]], style="points") for point in points]))
+    return out
 
 
-def parameter_figure(scores, groups, family):
-    """Errors over the parameter of a family, for the contestants that err there."""
-    sums = scores[(scores.family == "pairs/" + family) & (scores.answered > 0)].groupby(
-        ["contestant", "parameter"])[SCORE].sum()
-    rates = 1e6 * (sums.missed + sums.wrong) / sums.answered
-    erring = rates[rates > 0].index.unique(0)
-    return Figure(
-        "libraries-" + family, f"Wrong answers against the parameter of {family}",
-        "Wrong answers, missed or false alarms, per million of those to pairs with that parameter, without its sign; "
-        "contestants without an error in this family are left out.",
-        [Panel(f"{family}, {title}", log(PARAMETERS[family], zero=True), log(WRONG, zero=True, low=0, high=1e6),
-               [Series(name, list(rates[name].index), list(rates[name])) for name in names])
-         for title in GROUPS if (names := [name for name in groups if groups[name] == title and name in erring])])
+def parameter_figure(chapter, scores, groups):
+    """The best contestant of each kind over the parameter of a family. Adds all of them to the chapter as a table."""
+    table = Table("libraries-parameters", "Wrong answers per million, by the parameter of a family, without its sign",
+                  columns(["family", "contestant"], ["parameter", WRONG, "answered"]), in_text=False)
+    out, best = Figure("libraries-parameters", "Wrong answers of the best contestant of each kind, by parameter"), []
+    for family, label in PARAMETERS.items():
+        sums = scores[(scores.family == "pairs/" + family) & (scores.answered > 0)].groupby(
+            ["contestant", "parameter"])[SCORE].sum()
+        rates = 1e6 * (sums.missed + sums.wrong) / sums.answered
+        table.rows += [[family, name, rounded(at), rounded(rate), grouped(sums.answered[name, at])]
+                       for (name, at), rate in rates.items()]
+        panel = Panel(family, log(label, zero=True), log(WRONG, zero=True, high=1e6))
+        for title in GROUPS:
+            here = [name for name in groups if groups[name] == title and name in rates.index.unique(0)]
+            if here:
+                name = min(here, key=lambda name: (rates[name].mean(), name != REFERENCE))
+                of = rates[name]
+                panel.series.append(Series(title, list(of.index), list(of), emphasis=title == "farcull"))
+                best.append(f"{family}, {title}: {name}")
+        out.panels += [panel] * bool(panel.series)
+    out.caption = ("Missed or false alarms, of those pairs of the family with that parameter, without its sign. Of "
+                   f"each kind the contestant with the least mean: {'; '.join(best)}. All are in {table.name}.csv.")
+    chapter.tables += [table] * bool(table.rows)
+    return out
 
 
 # ---- findings
@@ -263,7 +270,7 @@ def add_others(chapter, rows, pairs):
             chapter.find(f"Of {'pairs of triangles' if pairs else 'meshes'}, {start}: {listed(who)}.")
 
 
-# ---- the smallest pair of each kind of fault of each library, as a table, as pictures, and in the format of the suite
+# ---- the smallest pair of each kind of fault of each library, as a table and in the format of the suite
 
 def decimal(x):
     """The shortest decimal text of a double, with an exponent where that is shorter; no -0."""
@@ -301,40 +308,6 @@ def examples_of(rows):
     return [best[key] for key in dict.fromkeys((one.contestant, one.fault) for one in found)]
 
 
-def in_unit_cube(corners):
-    """Moves and scales the corners along each axis so that their box is the unit cube. Uses halves, since
-    the difference of two doubles may be infinite."""
-    half = corners / 2
-    low, size = half.min(axis=0), half.max(axis=0) - half.min(axis=0)
-    return np.where(size > 0, (half - low) / np.where(size > 0, size, 1), 0)
-
-
-def seen_along(direction, corners):
-    """The corners projected along a direction."""
-    along = np.array(direction) / np.linalg.norm(direction)
-    right = np.cross([0, 0, 1] if abs(along[2]) < 0.9 else [0, 1, 0], along)
-    right /= np.linalg.norm(right)
-    return np.column_stack([corners @ right, corners @ np.cross(along, right)])
-
-
-def clearness(seen):
-    """Large if both triangles are seen from their broad sides; a degenerate one counts by its length."""
-    def size(a, b, c):
-        (ux, uy), (vx, vy) = b - a, c - a
-        return abs(ux * vy - uy * vx) / 2 + 0.1 * max(np.linalg.norm(edge) for edge in (b - a, c - b, a - c))
-    return min(size(*seen[:3]), size(*seen[3:]))
-
-
-def panel_of(example):
-    """Both triangles, seen from the best of 16 directions."""
-    corners = in_unit_cube(example.corners)
-    seen = max((seen_along((x, y, z), corners) for x in (-1, -0.3, 0.3, 1) for y in (0.4, 1) for z in (0.3, 0.8)),
-               key=clearness)
-    return Panel(example.contestant, drawing=True, series=[
-        Series(name, list(seen[at, 0]), list(seen[at, 1]), style) for name, at, style in (
-            ("first triangle", [0, 1, 2, 0], "area"), ("second triangle", [3, 4, 5, 3], "lines"))])
-
-
 def add_examples(chapter, rows):
     """rows: those about pairs of triangles, of contestants that are not ours. Adds nothing where they hold no example.
     Raises ValueError where an example is no pair."""
@@ -352,9 +325,6 @@ def add_examples(chapter, rows):
         "family that the pair was made from.\n" + "".join(
             f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
             for number, one in enumerate(examples)))
-    figures = [Figure("libraries-examples-" + fault, title, CAPTION, [
-        panel_of(one) for one in examples if one.fault == fault]) for fault, title in TITLES.items()]
-    chapter.figures += [figure for figure in figures if figure.panels]
 
 
 def fill(chapter, study):
@@ -378,7 +348,7 @@ def fill(chapter, study):
         scores, groups = scores_of(pairs), dict(pairs.drop_duplicates("method")[["method", "group"]].values)
         chapter.tables = [overview(pairs, True), kinds_table(scores, list(groups))]
         add_examples(chapter, pairs[pairs.library != "farcull"])
-        figures = [time_figure(pairs)] + [parameter_figure(scores, groups, family) for family in PARAMETERS]
+        figures = [time_figure(pairs), parameter_figure(chapter, scores, groups)]
         chapter.figures += [figure for figure in figures if figure.panels]
     chapter.tables += [overview(meshes, False)] * bool(len(meshes))
     if len(rows):

@@ -3,28 +3,28 @@ from frame import *  # noqa: F403: a chapter uses most of it
 
 BOX, EXACT, INTERVALS = "FAR (OBB)", "FAR (exact)", "FAR pairs"
 TIME = "median_ms"
-# Figures: name, column of the rows, axis, title, caption.
-FIGURES = [
-    ("kept", "kept_triangles", "kept triangles", "Triangles that are left to exact tests",
-     "No method can keep fewer than collide. FAR keeps a set, whose triangles may each meet another one than they "
-     "collide with; FAR pairs keeps those that are in a candidate pair."),
-    ("false-positives", "false_positives", "false positives / colliding", "Candidates that do not collide",
-     "Pairs handed to exact tests that do not collide, over pairs that do."),
-    ("fragments", "fragments", "fragments", "Fragments of one drawing of all triangles in every view",
-     "Of FAR: pixel centres in which the fattened triangle is stored or asked. Of FAR pairs: entries in the lists of "
-     "pixels, one for each triangle and pixel that it may touch, in the views that it looked with."),
-    ("time", TIME, "time (ms)", "Time from triangles to pairs",
-     "Medians of the runs with their 95 % intervals as bars, without contexts and shaders. FAR with exact offsets "
-     "draws boxes first.")]
+MEASURES = {"kept triangles": "kept_triangles", "false pos. / colliding": "false_positives", "fragments": "fragments",
+            "time (ms)": TIME}
+CAPTION = (
+    "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one "
+    "than they collide with, FAR pairs those that are in a candidate pair. False positives: pairs handed to exact "
+    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle "
+    "is stored "
+    "or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
+    "each "
+    "triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with 95 % "
+    "intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
 
 
-def figure_of(rows, name, of, label, title, caption):
-    sample = sample_text(rows) if of == TIME else "n = " + counted(len(rows), "point", "points")
-    return Figure("offsets-" + name, title, f"{caption} {sample}.", [
-        Panel(scene, log("resolution (px)"), log(label, zero=True), [
-            times_of(method, track, "resolution") if of == TIME else series_of(method, track, "resolution", of)
-            for method, track in by(scene_rows[scene_rows.resolution > 0], "contestant")])
-        for scene, scene_rows in by(rows, "scene")])
+def figure_of(rows):
+    scenes = by(rows[rows.resolution > 0], "scene")
+    return Figure("offsets", "Triangles and candidates that are left, fragments, and time, by resolution",
+                  f"{CAPTION} {sample_text(rows)}.", [
+                      Panel(scene if at == 0 else "", log("resolution (px)"), log(label, zero=True), [
+                          times_of(method, track, "resolution") if of == TIME else
+                          series_of(method, track, "resolution", of) for method, track in by(here, "contestant")])
+                      for at, (label, of) in enumerate(MEASURES.items()) for scene, here in scenes],
+                  columns=len(scenes))
 
 
 def table_of(rows):
@@ -87,4 +87,4 @@ def fill(chapter, study):
         "On a software device times say nothing about graphics hardware; counts carry over."]
     add_gaps(chapter, study)
     if len(rows):
-        chapter.figures, chapter.tables = [figure_of(rows, *figure) for figure in FIGURES], [table_of(rows)]
+        chapter.figures, chapter.tables = [figure_of(rows)], [table_of(rows)]

@@ -257,61 +257,33 @@ def usual(rows, name):
     return max(times, key=times.get)
 
 
-def placements_by_radius(rows):
-    """The rate of placements with a miss against the radius, by the size of triangles. Corners are snapped to as many
-    bits as in most placements."""
-    bits = usual(rows, "bits")
-    panel = panel_of(f"{bits_text(bits)}, by the size of triangles", "placements with a miss (%)")
-    for side, here in groups(rows[(rows.bits == bits) & np.isfinite(rows.factor)], "side"):
-        factors = groups(here, "factor")
-        if len(factors) > 1:
-            panel.series.append(Series(f"sides of {side:.4g} px", [f for f, _ in factors], [
-                share(total(of, "missed_placements"), total(of, "colliding_placements")) for _, of in factors]))
-    return panel
-
-
-def rates_panel(title, x, rows, name):
-    """Rates with their intervals against a column. As points, not lines: corners that are not snapped (0 bits) do not
-    continue the order of the bits."""
-    panel = Panel(title, x, log("placements with a miss (%)", zero=True))
-    for kind, of in groups(rows, rows.patches + ", " + rows.contact):
-        series = Series(kind, style="points")
-        for at, here in groups(of, name):
-            if total(here, "colliding_placements"):
-                rate = rate_of(total(here, "missed_placements"), total(here, "colliding_placements"))
-                series.x.append(at)
+def placement_figure(placements):
+    """The rate of placements with a miss against the radius, by the size of triangles, with its interval. Corners are
+    snapped to as many bits as in most placements."""
+    bits = usual(placements, "bits")
+    rows = placements[(placements.bits == bits) & np.isfinite(placements.factor)]
+    panel = panel_of("", "placements with a miss (%)")
+    for side, here in groups(rows, "side"):
+        series = Series(f"sides of {side:.4g} px")
+        for factor, of in groups(here, "factor"):
+            if total(of, "colliding_placements"):
+                rate = rate_of(total(of, "missed_placements"), total(of, "colliding_placements"))
+                series.x.append(factor)
                 for ends, part in ((series.y, rate.value), (series.y_low, rate.low), (series.y_high, rate.high)):
                     ends.append(100 * part)
-        panel.series.append(series)
-    return panel
-
-
-def placement_figure(placements):
-    """The rate of placements with a miss, by the radius; and at the published radius, with its interval, by subpixel
-    bits, by the size of triangles and by resolution."""
-    out = Figure("radius-placements", "How often the published radius misses something in random placements")
-    panel, rows = placements_by_radius(placements), placements[placements.published]
-    out.panels += [panel] if panel.series else []
-    if rows.empty:
-        return out
-    bits, pixels = usual(rows, "bits"), usual(rows, "resolution")  # most rows have these, and the other rows vary them
-    others = sorted(rows[rows.bits != bits].side)
-    side = others[0] if others else rows.side.iloc[0]
-    with_bits, with_side, with_pixels = rows.bits == bits, rows.side == side, rows.resolution == pixels
-    out.panels += [
-        rates_panel(f"{rounded(side)} px sides, {pixels} px windows", Axis("subpixel bits (0: not snapped)"),
-                    rows[with_side & with_pixels], "bits"),
-        rates_panel(f"{bits} bits, {pixels} px windows", log("longest side of a triangle (px)"),
-                    rows[with_bits & with_pixels], "side"),
-        rates_panel(f"{bits} bits, {rounded(side)} px sides", log("resolution (px)"), rows[with_bits & with_side],
-                    "resolution")]
-    out.caption = (
+        panel.series += [series] * (len(series.x) > 1)
+    return Figure(
+        "radius-placements", "How often FAR misses something in random placements, by radius",
         "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each "
-        "decided by exact predicates: of those in which a pair collides, those in which one is missed. The first panel "
-        f"is over the radius; the others are at the published radius ({grouped(total(rows, 'placements'))} placements, "
-        "the same ones for each number of subpixel bits), with the 95 % interval of Clopper and Pearson (where none is "
-        "missed, its upper bound is 3 over their number).")
-    return out
+        "decided "
+        "by exact predicates: of those in which a pair collides, those in which one is missed, with the 95 % "
+        "interval of "
+        f"Clopper and Pearson (where none is missed, up to its upper bound). {bits_text(bits).capitalize()}. The "
+        "published "
+        "radius is the last point below 1. n = "
+        f"{counted(total(rows, 'placements'), 'placement', 'placements')}; what was measured at the published "
+        "radius with "
+        "other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
 def placement_table(rows):

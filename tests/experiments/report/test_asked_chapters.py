@@ -182,16 +182,12 @@ def test_contestants_are_sorted_into_those_that_err_change_die_or_do_not():
         libraries(("theirs", of_pairs()), ("theirs", of_pairs(library="x 2"))))
 
 
-def test_examples_are_a_table_a_figure_and_a_file_of_the_suite():
+def test_examples_are_a_table_and_a_file_of_the_suite():
     chapter = libraries(("theirs", of_pairs(missed=5, example_missed=PAIR)), ("others", of_pairs()),
                         ("cullide", of_pairs(library="farcull", missed=5, example_missed=PAIR)))
     assert table(chapter, "libraries-examples") == [[
         "theirs", "missed", "pairs/random", "crossing",
         "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]]
-    panel = figure(chapter, "libraries-examples-missed").panels[0]
-    assert panel.drawing, "its axes would have no meaning"
-    assert [series.style for series in panel.series] == ["area", "lines"], "in grey they would look the same"
-    assert all(abs(x) < 2 for series in panel.series for x in series.x), "it is drawn in a cube of size 1"
     assert chapter.files["libraries-examples.txt"].splitlines()[2:] == ["# theirs missed pairs/random", PAIR]
     for wrong in ("0 0 - crossing 1 2 3", PAIR.replace("crossing", "guess"), PAIR + " 0x1p+0",
                   PAIR.replace("0x0.0p+0", "nan", 1)):
@@ -199,10 +195,19 @@ def test_examples_are_a_table_a_figure_and_a_file_of_the_suite():
             libraries(("liars", of_pairs(example_missed=wrong)))
 
 
-def test_libraries_stand_in_the_panel_of_their_kind_beside_the_reference():
-    chapter = libraries(("far-pairs", of_pairs(True)), ("a", of_pairs(missed=1, library="FCL 1")),
-                        ("b", of_pairs(missed=2, library="CGAL 1")), ("c", of_pairs(missed=3)))
-    panels = {panel.title: [series.name for series in panel.series]
-              for panel in figure(chapter, "libraries-time").panels}
-    assert panels == {"farcull": ["far-pairs"], "FCL and libccd": ["far-pairs", "a"],
-                      "libraries for meshes": ["far-pairs", "b"], "tests of papers, others": ["far-pairs", "c"]}
+def test_libraries_are_rows_from_the_best_to_the_worst():
+    chapter = libraries(("far-pairs", of_pairs(True)), ("a", of_pairs(missed=3, library="FCL 1")),
+                        ("b", of_pairs(missed=2, wrong=0, library="CGAL 1")))
+    rows = [[(s.name, s.x[0]) for s in panel.strip] for panel in figure(chapter, "libraries-time").panels]
+    assert rows[0] == [("far-pairs", 0), ("b", 4000), ("a", 6000)] and [name for name, _ in rows[2]] == ["far-pairs", "b", "a"]
+
+
+def test_the_best_of_each_kind_is_drawn_and_all_are_in_the_table():
+    def sliver(missed):
+        return f"1e3 crossing 1000 500 {missed} 0 500 {missed} 0 500 0 0 0 0 0 0 0 0|"
+
+    chapter = chapter_of("libraries", [row("small/pairs/slivers", name, of_pairs(scores=sliver(n), library="FCL 1"))
+                                       for name, n in (("a", 3), ("b", 2))])
+    found = figure(chapter, "libraries-parameters")
+    assert [(s.name, s.x, s.y) for s in found.panels[0].series] == [("FCL and libccd", [1000], [4000])]
+    assert "slivers, FCL and libccd: b" in found.caption and [r[1] for r in table(chapter, "libraries-parameters")] == ["a", "b"]

@@ -110,11 +110,14 @@ def test_text_of_figures_is_legible(whole, monkeypatch):
         for figure in chapter.figures:
             legible(figure)
             assert overlapping(figure) == [], figure.name
+            assert max(len(panel.series) for panel in figure.panels) <= 6 and " n" in figure.caption, figure.name
             seen.append(figure)
     assert len(seen) == len(list((whole / "figures").glob("*.svg"))) > 20
-    figure = max(seen, key=lambda f: len(draw.Layout(f).entries))
+    figure = max(seen, key=lambda f: len(draw.names_of(f)))
     # The twins: lines that are too near, and letters that are too small.
-    monkeypatch.setattr(draw, "LINE", 5.0)
+    monkeypatch.setitem(draw.matplotlib.rcParams, "font.size", 8)
+    monkeypatch.setattr(draw.pyplot, "figure", lambda figsize, layout, real=draw.pyplot.figure: real(
+        figsize=[side / 2 for side in figsize], layout=layout))
     assert any(" | " in wrong for wrong in overlapping(figure))
     monkeypatch.undo()
     monkeypatch.setitem(draw.matplotlib.rcParams, "font.size", 6)
