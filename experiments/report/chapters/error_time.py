@@ -19,9 +19,11 @@ class Entry:
     colliding: int
     candidates: int
     has_candidates: bool
+    rounds: tuple = ()  # the times by round; empty: there is one
 
     def __post_init__(self):
-        self.median = median_estimate(self.times)
+        self.rounds = self.rounds or (self.times,)
+        self.median = median_estimate(self.times, self.rounds)
         self.ms, self.error, self.pixels = self.median.value, self.missed + self.wrong, self.row.resolution
 
     @property
@@ -73,10 +75,10 @@ class Group:
 
 def entry_of(rows):
     first = next(rows.itertuples())
-    times = first.runs if len(rows) == 1 and first.runs else tuple(rows.total_ms)
-    return Entry(first, first.contestant, times,
+    one = len(rows) == 1 and first.runs
+    return Entry(first, first.contestant, first.runs if one else tuple(rows.total_ms),
                  *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
-                 bool(column(rows, "candidates").notna().all()))
+                 bool(column(rows, "candidates").notna().all()), first.rounds if one else ())
 
 
 def groups_of(rows):
@@ -90,12 +92,13 @@ def groups_of(rows):
 
 
 def times_as_long(entry, other):
-    return estimate_text(ratio_estimate(entry.times, other.times))
+    return estimate_text(ratio_estimate(entry.rounds, other.rounds))
 
 
 def sample_of(groups):
-    """`n = 57 points, each the median of 5 runs; of drawn scenes 5 seeds`."""
-    runs = pd.DataFrame({"runs": [entry.row.runs for group in groups for entry in group.entries]})
+    """sample_text(), with the seeds of drawn scenes."""
+    rows = [entry.row for group in groups for entry in group.entries]
+    runs = pd.DataFrame({"runs": [row.runs for row in rows], "rounds": [row.rounds for row in rows]})
     seeds = sorted({group.seeds for group in groups if group.seeds > 1})
     return sample_text(runs) + (f"; of drawn scenes {listed(map(str, seeds))} seeds" if seeds else "")
 
@@ -159,7 +162,7 @@ def figures_of(groups):
     error = Figure(
         "error-time", "Methods that make errors, and those that make none, by run time",
         "Above: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
-        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Below, on "
+        "median time from triangles to pairs, with its interval as a bar. Lines follow the resolution. Below, on "
         "the same time axis: a row for each method that made no error. Of scenes that are drawn with several seeds, "
         "the sum of the errors and the median of the times. Forms in which all views have to clear are in the table.",
         [error_panel(group.title, "time (ms)", {name: [(e, e.error_share) for e in of]
@@ -174,7 +177,7 @@ def figures_of(groups):
     kept = Figure(
         "error-time-false-positives", "Candidates that do not collide against run time",
         "Candidates that are handed to exact tests and do not collide, over colliding pairs: of FAR, of CULLIDE in two "
-        "forms, and of the boxes of all triangles. The others are in the table of all points. Bars are the 95 % "
+        "forms, and of the boxes of all triangles. The others are in the table of all points. Bars are the "
         f"intervals of median times; {sample_of(shown)}.",
         [Panel(group.title, log("time (ms)"), log("false positives / colliding", zero=True), [
             cloud(name, [(e, e.for_nothing) for e in of]) for name, of in group.by_name().items()])
@@ -185,8 +188,8 @@ def figures_of(groups):
 # ---- tables
 
 def front_table(groups):
-    out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are ratios of "
-                f"medians with their 95 % intervals. {sample_of(groups)}",
+    out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are medians "
+                f"of the ratios of runs in the same turn, with their intervals. {sample_of(groups)}",
                 columns(["scene", "method"], ["time over that of cgal-boxes", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()
@@ -223,7 +226,8 @@ def all_table(rows):
 
     return table_of_rows("error-time-all", "All points; times are medians with the fastest and slowest run", rows, {
         "scene": "=scene", "method": "=contestant", "resolution": resolution_cell("-"), "ms": ms("total_ms"),
-        "fastest": ms("total_min_ms"), "slowest": ms("total_max_ms"), "missed": "missed",
+        "fastest": lambda row: rounded(min(row.runs, default=None)),
+        "slowest": lambda row: rounded(max(row.runs, default=None)), "missed": "missed",
         "wrong": lambda row: grouped(number(row, "wrong")), "candidates": "candidates", "colliding": "colliding",
         "false positives": lambda row: rounded(false_positives(row))})
 
