@@ -81,7 +81,7 @@ class StudiesCommand {
   int run_on(StudiesRequest request, const std::string& name) const;
 
   std::string out_ = kResultsFolder;
-  bool quick_ = false, resume_ = false;
+  bool quick_ = false, resume_ = false, no_times_ = false;
   std::uint64_t seed_ = 1;
   Text shard_, device_, devices_, suite_, contestants_;
 };
@@ -94,6 +94,9 @@ void StudiesCommand::add_to(CLI::App& experiment) {
         {"--quick", &quick_, "", "a smaller grid of the same shape: minutes, not hours"},
         {"--seed", &seed_, "N", "of what is random in the grid; default 1"},
         {"--resume", &resume_, "", "go on with what is in the folder"},
+        {"--no-times", &no_times_, "",
+         "counts alone: run timed points once and keep no time, as\nfor shards side by side on one "
+         "machine"},
         {"--shard", &shard_, "K/N",
          "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
          "Open MPI, else everything"},
@@ -173,6 +176,7 @@ int StudiesCommand::run() {
       (void)known_contestant(contestant);
   }
   request.resume = resume_;
+  request.times = !no_times_;
   request.shard = shard_ ? parse_shard(*shard_)
                          : shard_from_environment([](const char* v) { return std::getenv(v); });
   int status = 0;
@@ -198,6 +202,7 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
       {"experiment", name},
       {"quick", quick_},
       {"seed", seed_},
+      {"no_times", no_times_},
       {"shard", fmt::format("{}/{}", shard.index, shard.of)},
       {"suite", suite_.value_or("")},
       {"contestants", contestants_.value_or("")},
@@ -221,6 +226,14 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
   });
   terminal.clear();
   write_output("-", summary_table(summary));
+  std::size_t void_rounds = 0;
+  for (const StudySummary& study : summary.studies) void_rounds += study.void_rounds;
+  if (void_rounds > 0) {
+    complain(fmt::format(
+        "{} of timed points {} void: other programs took more than {:.0f} % of the "
+        "processors; --resume measures them again",
+        counted(void_rounds, "round", "rounds"), void_rounds == 1 ? "is" : "are", 100 * kMostLoad));
+  }
   for (const std::string& point : summary.failed) complain(point);
   if (!summary.failed.empty()) {
     complain(counted(summary.failed.size(), "point", "points") +

@@ -1,7 +1,6 @@
 """Numbers of a report: medians, intervals and exponents, and their formats.
 
-The rules are those of measure/harness.h, so that a report and `farcull bench` give the same
-intervals for the same runs.
+docs/experiments.md, "Statistics", says which interval holds what, and when none is given.
 """
 import functools
 import math
@@ -10,76 +9,61 @@ from dataclasses import dataclass
 import numpy as np
 
 NONE = math.nan  # a gap in a line
-RESAMPLES = 10000
 FEWEST_FOR_INTERVAL = 6  # points; with fewer, t is large and the interval says little
 
 
 @dataclass
 class Estimate:
-    """A value from n measurements with its 95 % interval."""
+    """A value from n measurements with its interval."""
     value: float = 0
     low: float = 0
     high: float = 0
     n: int = 0
 
 
-@functools.lru_cache(maxsize=None)
-def random_words(count):
-    """The upper 32 bits of the first numbers of std::mt19937_64 with seed 1."""
-    mask, upper, lower = (1 << 64) - 1, np.uint64(0xFFFFFFFF80000000), np.uint64(0x7FFFFFFF)
-    words = [1]
-    for i in range(1, 312):
-        words.append((6364136223846793005 * (words[-1] ^ (words[-1] >> 62)) + i) & mask)
-    state, blocks = np.array(words, dtype=np.uint64), []
-    matrix = np.uint64(0xB5026F5AA96619E9)
-    for _ in range(-(-count // 312)):
-        for i, j in ((0, 156), (156, 311), (311, 312)):  # each part needs the one before
-            x = (state[i:j] & upper) | (np.roll(state, -1)[i:j] & lower)
-            state[i:j] = (np.roll(state, -156)[i:j] ^ (x >> np.uint64(1)) ^
-                          np.where(x & np.uint64(1), matrix, np.uint64(0)))
-        x = state.copy()
-        x ^= (x >> np.uint64(29)) & np.uint64(0x5555555555555555)
-        x ^= (x << np.uint64(17)) & np.uint64(0x71D67FFFEDA60000)
-        x ^= (x << np.uint64(37)) & np.uint64(0xFFF7EEE000000000)
-        blocks.append((x ^ (x >> np.uint64(43))) >> np.uint64(32))
-    return np.concatenate(blocks)[:count]
-
-
-def resampled_medians(*samples):
-    """RESAMPLES medians of each sample, each of a draw with replacement; the samples take turns."""
-    size = sum(len(sample) for sample in samples)
-    words = random_words(RESAMPLES * size).reshape(RESAMPLES, size)
-    out, at = [], 0
-    for sample in samples:
-        n = len(sample)
-        picks = (words[:, at:at + n] * np.uint64(n)) >> np.uint64(32)
-        out.append(np.median(np.sort(np.asarray(sample, float))[picks.astype(np.intp)], axis=1))
-        at += n
-    return out
-
-
-def with_interval(value, n, resampled):
-    ordered, cut = np.sort(resampled), RESAMPLES // 40  # 2.5 %
-    return Estimate(value, float(ordered[cut]), float(ordered[-1 - cut]), n)
+def holds_again(n, cut):
+    """The probability that the median of another n runs lies between run cut + 1 and run n - cut of the first n, by
+    time. In the order of all 2 n runs every mixture of the two measurements is equally likely. The other median, its
+    run `middle`, is below run cut + 1 of the first where at most `cut` of the first come before it."""
+    middle = -(-n // 2)
+    below = sum(math.comb(middle - 1 + i, i) * math.comb(2 * n - middle - i, n - i) for i in range(cut + 1))
+    return 1 - 2 * below / math.comb(2 * n, n)
 
 
 @functools.lru_cache(maxsize=None)
-def median_estimate(values):
-    """The median of a tuple with the percentile interval of the bootstrap."""
-    return with_interval(median(values), len(values), resampled_medians(values)[0])
+def cut_of(n):
+    """How many runs the interval of a median leaves out at each end: as many as can be where the median of another n
+    runs lies in it with at least 95 %; none where even the range of all runs does not reach that."""
+    return max((cut for cut in range(n // 2) if holds_again(n, cut) >= 0.95), default=0)
 
 
+@functools.lru_cache(maxsize=None)
 def coverage(n):
-    """The probability that the 95 % interval of the median of n independent runs contains the true median, n odd. Its
-    ends are runs of some rank from below and from above; each run is below the true median with probability 1/2."""
-    rank = math.ceil(median_estimate(tuple(range(n))).low)
-    return 1 - 2 * sum(math.comb(n, below) for below in range(rank + 1)) / 2**n
+    """The probability that the interval of n runs holds the true median: each run is below it with probability 1/2."""
+    return 1 - 2 * sum(math.comb(n, below) for below in range(cut_of(n) + 1)) / 2**n
+
+
+def median_estimate(values, rounds=()):
+    """The median with its interval (cut_of()), widened to hold the median of each round."""
+    ordered, cut = sorted(values), cut_of(len(values))
+    ends = [ordered[cut], ordered[-1 - cut]] + [median(of) for of in rounds if of]
+    return Estimate(median(values), float(min(ends)), float(max(ends)), len(values))
 
 
 def ratio_estimate(over, under):
-    """The median of `over` divided by that of `under`, both resampled; n: the size of the smaller sample."""
-    one, other = resampled_medians(over, under)
-    return with_interval(median(over) / median(under), min(len(over), len(under)), one / other)
+    """The median of the ratios of runs in the same turn of the same round, with its interval; None if there are none.
+    What slows a whole turn is in both runs and so in no ratio."""
+    rounds = [tuple(a / b for a, b in zip(*both)) for both in zip(over, under)]
+    ratios = [ratio for of in rounds for ratio in of]
+    return median_estimate(ratios, rounds) if ratios else None
+
+
+def interval_text(n):
+    """What the interval of n runs is and holds."""
+    cut = cut_of(n)
+    ends = "from the fastest run to the slowest" if cut == 0 else f"from run {cut + 1} to run {n - cut} by time"
+    return (f"its interval goes {ends}, and were the runs independent it would hold the true median with "
+            f"{100 * coverage(n):.3g} % and the median of another {n} runs with {100 * holds_again(n, cut):.0f} %")
 
 
 def median(values):
@@ -208,7 +192,8 @@ def share(part, whole):
 
 
 def rate_text(hits, of):
-    """`0 of 114,014 (95 % bound: at most 2.6e-5)`, or with the share and its interval."""
+    """`0 of 114,014 (95 % bound: at most 2.6e-5)`, or with the share and its interval. Only for cases that were drawn
+    independently, such as random placements: pairs, objects, frames and resolutions of a scene are not."""
     if of == 0:
         return of_all(hits, of)
     rate = rate_of(int(hits), int(of))
@@ -218,20 +203,10 @@ def rate_text(hits, of):
             f"to {rounded(rate.high, 2)})")
 
 
-def at_most(n):
-    """The upper bound of a rate after n cases without a hit: 3/n (Hanley and Lippman-Hand, 1983)."""
-    return "at most " + rounded(min(1.0, 3 / n), 2)
-
-
-def with_bound(part, whole):
-    """`4 of 3,857`, or `0 of 3,857 (a rate of at most 0.00078)`."""
-    return of_all(part, whole) + (f" (a rate of {at_most(whole)})" if part == 0 and whole else "")
-
-
 def spread(values, unit=""):
-    """`2 (1 to 3)`: the median with the least and the largest; `-` for no values."""
-    if len(values) == 0:
-        return "-"
+    """`2 (1 to 3)`: the median with the least and the largest; the value if it is the only one; `-` for none."""
+    if len(values) < 2:
+        return "".join(rounded(value) + unit for value in values) or "-"
     return f"{rounded(median(values))}{unit} ({rounded(min(values))} to {rounded(max(values))})"
 
 
@@ -242,8 +217,3 @@ def estimate_text(e, digits=3):
     if e.n == 1:
         return rounded(e.value, digits)
     return f"{rounded(e.value, digits)} ({rounded(e.low, digits)} to {rounded(e.high, digits)})"
-
-
-def median_text(values):
-    """The median of values with its interval; `-` for none."""
-    return estimate_text(median_estimate(tuple(values))) if len(values) else "-"

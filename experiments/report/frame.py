@@ -13,7 +13,8 @@ study NAME, and has one function `fill(chapter, study)`, which returns nothing:
     - axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, ""
       where they do not apply), resolution (0: none), frame (-1: none), seed (0: none);
     - count, by its name, or NAME_count if an axis has that name; NaN if the row has none;
-    - time, as NAME_ms ("total_ms"), and `runs`: a tuple of the times of the runs, perhaps empty;
+    - time, as NAME_ms ("total_ms"), and `runs`: a tuple of the times of the runs, perhaps empty, and
+      `rounds`: the same, a tuple for each round; void ones are empty in it;
     - and `contestant`: the method as figures and tables name it ("FAR (OBB)").
 - Read columns that a store may lack by `column(rows, name)`, `total(rows, name)`,
   `value(row, name)`; a row is one of `rows.itertuples()`, with columns as attributes.
@@ -38,8 +39,8 @@ import numpy as np
 import pandas as pd
 
 from estimates import *  # noqa: F401,F403: chapters take numbers from here
-from estimates import (NONE, Estimate, counted, coverage, estimate_text, grouped, listed, median_estimate,
-                       of_all, rate_text, rounded)
+from estimates import (NONE, Estimate, counted, estimate_text, grouped, interval_text, listed, median_estimate,
+                       of_all, rounded, share)
 
 
 class Damaged(ValueError):
@@ -159,7 +160,7 @@ class Study:
 
     @property
     def complete(self):
-        return len(self.all_rows) == len(self.points)
+        return len(self.all_rows) == len(self.points) and bool(self.all_rows.whole.all())
 
 
 # ---- names of points
@@ -276,10 +277,10 @@ def resolutions(rows):
 
 
 def estimate(row):
-    """The median time of the row's runs in ms with its 95 % interval; without interval for one run;
-    None if the row has no time."""
+    """The median time of the row's runs in ms with its interval; without interval for one run; None
+    if the row has no time."""
     if row.runs:
-        return median_estimate(row.runs)
+        return median_estimate(row.runs, row.rounds)
     one = value(row, "total_ms")
     return None if one != one else Estimate(one, one, one, 1)
 
@@ -297,8 +298,19 @@ def of_rows(rows, part, whole):
     return of_all(total(rows, part), total(rows, whole))
 
 
+def missed_of(rows):
+    """`4 of 3,857 (0.10 %, on 2 of 9 scenes)`. Pairs of a scene are not independent, and the scenes
+    were chosen by hand, so that there is no interval."""
+    missed, colliding = total(rows, "missed"), total(rows, "colliding")
+    scenes = rows.scene.map(scene_base)
+    hit = scenes[column(rows, "missed") > 0].nunique()
+    more = f"{rounded(share(missed, colliding), 2)} %, " if missed else ""
+    return f"{of_all(missed, colliding)} ({more}on {hit} of {counted(scenes.nunique(), 'scene', 'scenes')})"
+
+
 def sample_text(rows):
-    """The size of the sample: `n = 24 points, each the median of 9 runs`."""
+    """The size of the sample, and what the intervals of its times hold: `n = 24 points, each the
+    median of 9 runs in 3 rounds; its interval ..`."""
     runs = sorted({max(len(r), 1) for r in rows.runs}) if len(rows) else []
     out = "n = " + counted(len(rows), "point", "points")
     if not runs:
@@ -306,9 +318,10 @@ def sample_text(rows):
     if runs[-1] == 1:
         return out + ", each of 1 run"
     several = str(runs[0]) if len(runs) == 1 else f"{runs[0]} to {runs[-1]}"
-    few = [n for n in runs if n > 1 and coverage(n) < 0.95]
-    return f"{out}, each the median of {several} runs" + (
-        f" (with {few[0]}, an interval called 95 % covers {100 * coverage(few[0]):.0f} %)" if few else "")
+    rounds = max(len(of) for of in rows.rounds) if "rounds" in rows else 1
+    least = next(n for n in runs if n > 1)
+    return (f"{out}, each the median of {several} runs" + (f" in {rounds} rounds" if rounds > 1 else "") +
+            (f"; of {least} runs " if len(runs) > 1 else "; ") + interval_text(least))
 
 
 # ---- series and tables of rows
@@ -408,10 +421,11 @@ def add_promises(chapter, study):
         # Drops the size: at a resolution chosen by the size of triangles it is the same method.
         names = [contestant(row._replace(method=row.method.split(" @")[0]))
                  for row in pairs.itertuples()]
-        chapter.find(f"{listed(dict.fromkeys(names))} missed {rate_text(0, total(pairs, 'colliding'))} colliding pairs "
-                     f"in {counted(len(pairs), 'run', 'runs')}.")
+        scenes = counted(pairs.scene.map(scene_base).nunique(), "scene", "scenes")
+        chapter.find(f"{listed(dict.fromkeys(names))} missed {of_all(0, total(pairs, 'colliding'))} colliding pairs "
+                     f"in {counted(len(pairs), 'run', 'runs')} on {scenes}.")
     if len(points) and not (lost[points.index] > 0).any():
-        chapter.find(f"The lemmas are violated at {rate_text(0, total(points, 'points'))} points "
+        chapter.find(f"The lemmas are violated at {of_all(0, total(points, 'points'))} points "
                      f"in {counted(len(points), 'run', 'runs')}.")
     if silent:
         chapter.find(f"{'One row' if silent == 1 else grouped(silent) + ' rows'} of methods that "
@@ -419,12 +433,21 @@ def add_promises(chapter, study):
 
 
 def add_gaps(chapter, study):
-    """Adds to the limits why points were left out, and how many have no row."""
+    """Adds to the limits why points and times were left out, and how many points have no row."""
     reasons = study.all_rows.left_out[study.all_rows.left_out != ""]
     for reason, count in sorted(reasons.value_counts().items()):
         chapter.limits.append(f"Left out at {of_all(count, len(study.points))} points: {reason}.")
+    rows = study.rows
+    if void := rows.void.sum():
+        chapter.limits.append(
+            f"{counted(void, 'round', 'rounds')} of {of_all((rows.void > 0).sum(), (rows.rounds.map(len) > 0).sum())} "
+            "timed points are void and left out, since other programs took the processors meanwhile.")
+    if untimed := rows.untimed.sum():
+        chapter.limits.append(f"{counted(untimed, 'point', 'points')} have no times: they were measured with "
+                              "`--no-times`.")
     if not study.complete:
-        chapter.limits.append(f"Not finished: {of_all(len(study.all_rows), len(study.points))} points are measured.")
+        chapter.limits.append(f"Not finished: {of_all(study.all_rows.whole.sum(), len(study.points))} points are "
+                              "measured.")
 
 
 def command_of(study, runs):

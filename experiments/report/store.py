@@ -11,6 +11,7 @@ import pandas as pd
 
 from frame import Study, contestant
 
+ROUNDS = 3  # of a timed point: kRounds of experiments/studies/point.h
 AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views", "frame", "seed"]
 
 
@@ -43,9 +44,15 @@ class Store:
         counts = [json.loads(text) for text in rows.counts]
         times = [json.loads(text) for text in rows.times]
         rows["counts"], rows["times"] = counts, times
-        rows["runs"] = [tuple(t["totals"]) if isinstance(t.get("totals"), list) else () for t in times]
+        # A round that is void keeps its place, so that rounds of two rows are the same turns.
+        rounds = [t.get("rounds", []) for t in times]
+        rows["rounds"] = [tuple(() if r["void"] else tuple(r["ms"]) for r in of) for of in rounds]
+        rows["runs"] = [sum(of, ()) for of in rows.rounds]
+        rows["void"] = [sum(r["void"] for r in of) for of in rounds]
+        rows["untimed"] = [t.get("no_times", False) for t in times]
+        rows["whole"] = ["rounds" not in t or len(t["rounds"]) >= ROUNDS or t.get("no_times", False) for t in times]
         values = [{**{n + "_count" if n in AXES else n: v for n, v in c.items()},
-                   **{n + "_ms": v for n, v in t.items() if n != "totals"}}
+                   **{n + "_ms": v for n, v in t.items() if n not in ("rounds", "no_times")}}
                   for c, t in zip(counts, times)]
         rows = pd.concat([rows, pd.DataFrame(values, rows.index)], axis=1)
         rows["contestant"] = [contestant(row) for row in rows.itertuples()]

@@ -223,16 +223,15 @@ struct PointTimes {
   std::optional<double> cull = {}, exact = {};
   std::optional<double> total = {};  // without setup
   std::optional<double> setup = {};
-  std::optional<double> total_min = {}, total_max = {};  // of several runs
-  std::vector<double> totals = {};                       // of several runs, in their order
-  FARCULL_FIELDS(build, cull, exact, total, setup, total_min, total_max, totals)
+  FARCULL_FIELDS(build, cull, exact, total, setup)
 };
 
-/// The result of a point.
+/// The result of one run of a point.
 struct PointResult {
   Counts counts = {};  // the same on every run on the same device, bit for bit; on native and cpu
                        // the same on every machine
   PointTimes times = {};
+  std::uint64_t answer = 0;   // a hash of the pairs, by which runs are compared; it is not stored
   std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build lacks, a

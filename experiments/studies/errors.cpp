@@ -122,7 +122,8 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
 
 struct TimedScene {
   std::string name;
-  bool self = false;  // as in AccuracyScene
+  bool self = false;   // as in AccuracyScene
+  bool drawn = false;  // one of several seeds: 2048 px would take most of the time of the study
 };
 
 // Smooth surfaces, scans, and randomly drawn scenes, these with several seeds.
@@ -136,7 +137,8 @@ std::vector<TimedScene> timed_scenes(bool quick) {
       quick ? std::vector<std::string>{"needles:60"}
             : std::vector<std::string>{"needles:100", "random-soup", "field"};
   for (const std::string& base : drawn) {
-    for (const std::string& name : drawn_scenes(base, quick ? 2 : 5)) out.push_back({name});
+    for (const std::string& name : drawn_scenes(base, quick ? 2 : 5))
+      out.push_back({.name = name, .drawn = true});
   }
   return out;
 }
@@ -177,10 +179,12 @@ void add_drawn(std::vector<Point>& out, const TimedScene& scene, int resolution,
 std::vector<Point> timed_grid(const GridChoice& choice) {
   const std::vector<int> resolutions =
       choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
-  const int repeat = choice.quick ? 3 : 5;
+  const int repeat = choice.quick ? kRounds : 3 * kRounds;
   std::vector<Point> out;
   for (const TimedScene& scene : timed_scenes(choice.quick)) {
-    for (const int resolution : resolutions) add_drawn(out, scene, resolution, repeat);
+    for (const int resolution : resolutions) {
+      if (!scene.drawn || resolution <= 1024) add_drawn(out, scene, resolution, repeat);
+    }
     const NamedScene named{scene.name};
     for (const Method method : {far_pairs, i_collide, exact})
       out.push_back(repeated(plain_point(named, method), repeat));
@@ -207,7 +211,8 @@ Study accuracy_study() {
               "How many colliding pairs and colliding triangles does each method miss against the "
               "exact answer, do more pixels help, and does another form of CULLIDE?",
           .grid = accuracy_grid,
-          .measure = measure_run_point};
+          .measure = measure_run_point,
+          .plain = true};
 }
 
 Study error_time_study() {
@@ -218,7 +223,8 @@ Study error_time_study() {
               "against the libraries that one would take instead?",
           .grid = timed_grid,
           .measure = measure_timed,
-          .library = library_of_peer};
+          .library = library_of_peer,
+          .plain = true};
 }
 
 // ---- "stability" and "cloth" ----
@@ -312,9 +318,6 @@ PointResult measure_stability(const Point& point, Lab& lab) {
     counts->scene_hash = scene_hash(lab.current());
     PointTimes& times = out.times;
     times.total = *times.build + *times.cull + *times.exact;
-    times.total_min.reset();
-    times.total_max.reset();
-    times.totals.clear();
   }
   return out;
 }

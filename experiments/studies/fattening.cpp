@@ -84,7 +84,7 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 using enum Method;
 
 // The same as in the study "scaling".
-constexpr int kRepeat = 9;
+constexpr int kRepeat = 3 * kRounds;
 
 std::vector<Point> grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
@@ -429,7 +429,8 @@ Study radius_study() {
               "a sample or a bound, what happens below that, and how often does the published "
               "radius miss a pair?",
           .grid = radius_grid,
-          .measure = measure_radius};
+          .measure = measure_radius,
+          .plain = true};
 }
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Decides which rows fit together in one store: those with one version of each library. Reads
-// shards, refuses those that do not fit, and writes one store.
+// Reads which shard a process measures. Decides which rows fit together in one store: those with
+// one version of each library. Reads shards, refuses those that do not fit, and writes one store.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -14,12 +14,19 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr long kMostShards = 100'000;
+
+bool is_shard(long index, long of) {
+  return of >= 1 && of <= kMostShards && index >= 1 && index <= of;
+}
 
 // The row's library with its version; empty if the row names none.
 std::string library_of(const Row& row) {
@@ -129,7 +136,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Refuses missing or repeated shards, and points without exactly one row.
+// Refuses missing or repeated shards, and points without exactly one whole row.
 void require_whole(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     const Declaration& all = sources.front().studies[i].declaration;
@@ -145,6 +152,7 @@ void require_whole(const std::vector<Source>& sources) {
                     "name one of the two");
       }
       for (const Row& row : stored.rows) {
+        if (!is_whole(row.measurement)) continue;
         const auto [other, first] = rows.emplace(row.position, source.path);
         if (!first) {
           throw Error(source.path,
@@ -170,6 +178,21 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
+// Gives the rows of one point in several studies the times of the first of these studies: another
+// shard may have timed the others.
+void share_times(std::vector<Source>& sources) {
+  std::map<PointKey, JsonObject> times;
+  for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
+    for (Source& source : sources) {
+      for (Row& row : source.studies[i].rows) {
+        if (rounds_in(row.measurement).value_or(0) == 0 || !row.measurement.left_out.empty())
+          continue;
+        row.measurement.times = times.try_emplace(row.point, row.measurement.times).first->second;
+      }
+    }
+  }
+}
+
 // Refuses rows with two versions of a library.
 void require_one_version_each(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
@@ -180,6 +203,62 @@ void require_one_version_each(const std::vector<Source>& sources) {
 }
 
 }  // namespace
+
+Shard parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const std::optional<long> index = parse_number<long>(text.substr(0, slash));
+  const std::optional<long> of =
+      slash == std::string::npos ? std::nullopt : parse_number<long>(text.substr(slash + 1));
+  if (!index || !of || !is_shard(*index, *of)) {
+    throw Error("--shard", "'" + text + "' is no shard",
+                fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostShards));
+  }
+  return {static_cast<int>(*index), static_cast<int>(*of), "--shard"};
+}
+
+Shard shard_from_environment(const std::function<const char*(const char*)>& variable) {
+  const char* const remedy = "give --shard K/N, or 1/1 for the whole";
+  const auto number = [&](const char* name) -> std::optional<long> {
+    const char* const text = variable(name);
+    if (text == nullptr) return std::nullopt;
+    const std::optional<long> out = parse_number<long>(text);
+    if (!out) throw Error(name, fmt::format("'{}' is no number", text), remedy);
+    return out;
+  };
+  const auto made = [&](const char* name, long index, long of) -> Shard {
+    if (!is_shard(index, of))
+      throw Error(name, fmt::format("makes this part {} of {}, which is none", index, of), remedy);
+    return {static_cast<int>(index), static_cast<int>(of), name};
+  };
+
+  const std::optional<long> task = number("SLURM_ARRAY_TASK_ID");
+  const std::optional<long> rank = number("OMPI_COMM_WORLD_RANK");
+  const std::optional<long> size = number("OMPI_COMM_WORLD_SIZE");
+  // A single process under mpirun or srun does not divide the work.
+  const bool ranks = rank && size && *size != 1;
+  if (task && ranks) {
+    throw Error("SLURM_ARRAY_TASK_ID", "and OMPI_COMM_WORLD_RANK both say which part this is",
+                remedy);
+  }
+  if (task) {
+    const long least = number("SLURM_ARRAY_TASK_MIN").value_or(0);
+    const std::optional<long> most = number("SLURM_ARRAY_TASK_MAX");
+    const std::optional<long> count = number("SLURM_ARRAY_TASK_COUNT");
+    if (!most || !count || *most - least + 1 != *count) {
+      throw Error("SLURM_ARRAY_TASK_COUNT", "the array has gaps, or does not say where it ends",
+                  "submit it as --array=1-N, or give --shard K/N");
+    }
+    // A resubmitted part of an array would appear to be the whole.
+    if (least != 0 && least != 1) {
+      throw Error("SLURM_ARRAY_TASK_MIN", fmt::format("the array begins at {}", least),
+                  "submit it as --array=1-N, all of it (what is done is not measured again), or "
+                  "give --shard K/N");
+    }
+    return made("SLURM_ARRAY_TASK_ID", *task - least + 1, *count);
+  }
+  if (ranks) return made("OMPI_COMM_WORLD_RANK", *rank + 1, *size);
+  return {};
+}
 
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
                            const std::vector<Point>& points, const std::vector<std::size_t>& open) {
@@ -269,6 +348,7 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
   }
   require_one_version_each(sources);
   require_whole(sources);
+  share_times(sources);
 
   const Uninterrupted uninterrupted;
   Part part(out + ".part-" + std::to_string(::getpid()));

@@ -156,6 +156,18 @@ std::optional<DepthMode> column_of(const std::string& text) {
   return choice_of<DepthMode>(text, kDepthModes);
 }
 
+int runs_of(const Point& point) {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.repeat; }) {
+          return of.repeat;
+        } else {
+          return 1;
+        }
+      },
+      point);
+}
+
 PointKey key_of(const Point& point) {
   return std::visit([](const auto& of) { return key_of(of); }, point);
 }

@@ -68,14 +68,14 @@ struct RunPoint {
   ClearRule clear = ClearRule::any;
   bool objects_alone = false;
   bool conservative = false;
-  int repeat = 1;  // runs; the one with the median time counts; 1 for a MotionFrame
+  int repeat = 1;  // see runs_of(); 1 for a MotionFrame
 };
 
 /// A library in place of a method (peers/peer.h).
 struct PeerPoint {
   PointScene scene;
   std::string peer;
-  int repeat = 1;
+  int repeat = 1;  // see runs_of()
 };
 
 /// The lemma experiment (lemma/lemma.h) with one generator at one radius.
@@ -123,7 +123,7 @@ struct NeighbourPoint {
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 0;   // of a diagram, in cells; 0: the method has none
   double widening = 1;  // of the reliable diagram; below 1 it promises nothing
-  int repeat = 1;       // runs
+  int repeat = 1;       // see runs_of()
 };
 
 /// The distances of a scene, by farcull or by a library (peers/peer.h).
@@ -131,7 +131,7 @@ struct DistancePoint {
   PointScene scene;
   std::string contestant;  // "farcull", or the name of a peer
   DistanceTask task = DistanceTask::nearest;
-  int repeat = 1;
+  int repeat = 1;  // see runs_of()
 };
 
 using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint,
@@ -177,6 +177,13 @@ std::string column_text(const std::optional<DepthMode>& mode);
 template <class T>
 std::optional<T> column_of(const std::string& text);
 
+/// In how many rounds a point is timed. All timed points of a run are visited in each round, so
+/// that minutes lie between the rounds of a point (run_studies.h).
+inline constexpr int kRounds = 3;
+/// The runs of the point in all rounds; at most 1: only its counts matter, and one run gives them.
+int runs_of(const Point& point);
+inline bool is_timed(const Point& point) { return runs_of(point) > 1; }
+
 PointKey key_of(const Point& point);
 std::vector<PointKey> keys_of(const std::vector<Point>& points);
 
@@ -197,7 +204,7 @@ struct LemmaScene {
 /// Precondition: the text is a name(); std::logic_error otherwise.
 LemmaScene parse_lemma_scene(const std::string& text);
 
-// Points that several studies use. Each is measured once unless `repeat` is set.
+// Points that several studies use. They are not timed unless `repeat` is set.
 
 /// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact.
 inline RunPoint far_point(PointScene scene, const std::string& offset, const RadiusRule& radius,
@@ -263,7 +270,7 @@ inline RunPoint plain_point(PointScene scene, Method method, int resolution = 0)
 inline constexpr RadiusRule kBudgetRadius = {};
 inline constexpr RadiusRule kPublishedRadius = {.published = true};
 
-/// The same point, measured `repeat` times.
+/// The same point, timed with `repeat` runs, a multiple of kRounds.
 template <class OfPoint>
 OfPoint repeated(OfPoint point, int repeat) {
   point.repeat = repeat;

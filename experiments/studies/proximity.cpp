@@ -1,12 +1,13 @@
 // The study "proximity" measures the size of potential neighbour sets, the nearest neighbours that
-// a grid loses, and the errors and times of libraries' distances. The exact answers of the last
-// scene are cached, since many points share a scene.
+// a grid loses, and the errors and times of libraries' distances. The exact answers of all scenes
+// are kept, since many points share a scene and rounds come back to it.
 //
 // Sud, Govindaraju, Gayle, Kabul and Manocha, Fast Proximity Computation Among Deformable Models
 // using Discrete Voronoi Diagrams, SIGGRAPH 2006.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -30,8 +31,7 @@ constexpr unsigned kThreads = 1;
 struct Exact {
   Scene scene;
   std::string hash;
-  DistanceTask task = DistanceTask::nearest;
-  std::vector<PeerDistance> distances;  // of that task
+  std::vector<PeerDistance> distances;  // of the task that was asked for
   std::uint64_t accounted = 0;          // pairs of triangles
   std::vector<NearestObjects> nearest;  // of the task `nearest`
 };
@@ -57,13 +57,12 @@ void require_alike(const std::string& where, const Exact& exact) {
 
 const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::string& where,
                       Lab& lab) {
-  static Exact last;
+  static std::map<std::pair<std::string, DistanceTask>, Exact> known;
   Scene scene = open_scene(wanted, lab);
   for (Object& object : scene.objects) object.self = false;
   std::string hash = scene_hash(scene);
-  if (last.hash == hash && last.task == task) return last;
-  last = {};
-  Exact now{.scene = std::move(scene), .hash = {}, .task = task, .distances = {}, .nearest = {}};
+  if (const auto at = known.find({hash, task}); at != known.end()) return at->second;
+  Exact now{.scene = std::move(scene), .hash = hash, .distances = {}, .nearest = {}};
   const bool nearest = task == DistanceTask::nearest;
   const DistanceRecord record =
       distances(now.scene,
@@ -78,22 +77,7 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
     now.nearest = nearest_objects(now.scene, lab.progress());
     require_alike(where, now);
   }
-  now.hash = std::move(hash);
-  last = std::move(now);
-  return last;
-}
-
-// Returns the counts of the first run and the times of all. All other runs must have equal counts.
-template <class Run>
-PointResult repeated_runs(const Point& point, int repeat, const Run& run) {
-  auto [first, ms] = repeat_point(point, repeat, [&] {
-    auto [counts, one_ms] = run();
-    return std::pair(Outcome{.pairs = {}, .counts = std::move(counts), .device = "cpu"}, one_ms);
-  });
-  PointResult out{.counts = std::move(first.counts), .device = "cpu"};
-  out.times.total = ms[median_run(ms)];
-  if (repeat > 1) add_extremes(out.times, ms);
-  return out;
+  return known.emplace(std::pair(std::move(hash), task), std::move(now)).first->second;
 }
 
 using enum NeighbourMethod;
@@ -104,7 +88,7 @@ std::vector<int> resolutions(bool quick) {
 constexpr int kCellsInMotion = 256;    // cells, for scenes that move
 constexpr int kCountResolution = 128;  // cells, for times against the number of objects
 constexpr int kMostInDiagrams = 400;   // objects in a scene; for diagrams
-constexpr int kRuns = 9;               // as in the study "scaling"
+constexpr int kRuns = 3 * kRounds;     // as in the study "scaling"
 constexpr int kSeeds = 3;              // of clusters
 
 // Adds both diagrams at each resolution, and the methods without cells. unwidened: also adds the
@@ -197,31 +181,23 @@ void add_counts(bool quick, std::vector<Point>& out) {
 
 PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab) {
   const Exact& exact = exact_of(point.scene, DistanceTask::nearest, describe(Point(point)), lab);
-  std::string left_out;
-  PointResult out = repeated_runs(point, point.repeat, [&] {
-    const Stopwatch watch;
-    const NeighbourSets sets = neighbour_sets(exact.scene,
-                                              {.method = point.method,
-                                               .resolution = point.resolution,
-                                               .widening = point.widening,
-                                               .threads = kThreads},
-                                              lab.progress());
-    const double ms = watch.ms();
-    SetCounts counts;
-    if (sets.left_out.empty()) {
-      counts.sizes = sizes_of(exact.scene, sets, exact.nearest);
-    } else {
-      left_out = sets.left_out;
-    }
-    counts.triangles = exact.scene.triangles.size();
-    counts.objects = exact.scene.objects.size();
-    counts.accounted = exact.accounted;
-    counts.promises = point.method != NeighbourMethod::voronoi && point.widening >= 1;
-    counts.scene_hash = exact.hash;
-    return std::pair(Counts(counts), ms);
-  });
-  if (!left_out.empty()) return {.device = "none", .left_out = std::move(left_out)};
-  return out;
+  const Stopwatch watch;
+  NeighbourSets sets = neighbour_sets(exact.scene,
+                                      {.method = point.method,
+                                       .resolution = point.resolution,
+                                       .widening = point.widening,
+                                       .threads = kThreads},
+                                      lab.progress());
+  const double ms = watch.ms();
+  if (!sets.left_out.empty()) return {.device = "none", .left_out = std::move(sets.left_out)};
+  SetCounts counts;
+  counts.sizes = sizes_of(exact.scene, sets, exact.nearest);
+  counts.triangles = exact.scene.triangles.size();
+  counts.objects = exact.scene.objects.size();
+  counts.accounted = exact.accounted;
+  counts.promises = point.method != NeighbourMethod::voronoi && point.widening >= 1;
+  counts.scene_hash = exact.hash;
+  return {.counts = counts, .times = {.total = ms}, .device = "cpu"};
 }
 
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
@@ -232,24 +208,22 @@ PointResult measure_distances(const DistancePoint& point, const DistancePeer& co
   if (contestant.refuses) none.left_out = contestant.refuses(exact.scene);
   if (!none.left_out.empty()) return none;
   const PeerQuestion question{.task = point.task};
-  return repeated_runs(point, point.repeat, [&] {
-    if (lab.progress()) lab.progress()(contestant.name);
-    const Stopwatch watch;
-    const PeerDistances answer = contestant.run(exact.scene, question, kThreads);
-    const double ms = watch.ms();
-    const DistanceErrors errors = errors_of(point.task, answer.distances, exact.distances);
-    const std::uint64_t asked = exact.distances.size();
-    DistanceCounts counts{.asked = asked,
-                          .errors = errors,
-                          .triangles = exact.scene.triangles.size(),
-                          .objects = exact.scene.objects.size(),
-                          .accounted = exact.accounted,
-                          .wrong = asked - errors.exact + errors.beyond,
-                          .promises = contestant.name == farcull_distances().name,
-                          .library = contestant.library,
-                          .scene_hash = exact.hash};
-    return std::pair(Counts(std::move(counts)), ms);
-  });
+  if (lab.progress()) lab.progress()(contestant.name);
+  const Stopwatch watch;
+  const PeerDistances answer = contestant.run(exact.scene, question, kThreads);
+  const double ms = watch.ms();
+  const DistanceErrors errors = errors_of(point.task, answer.distances, exact.distances);
+  const std::uint64_t asked = exact.distances.size();
+  DistanceCounts counts{.asked = asked,
+                        .errors = errors,
+                        .triangles = exact.scene.triangles.size(),
+                        .objects = exact.scene.objects.size(),
+                        .accounted = exact.accounted,
+                        .wrong = asked - errors.exact + errors.beyond,
+                        .promises = contestant.name == farcull_distances().name,
+                        .library = contestant.library,
+                        .scene_hash = exact.hash};
+  return {.counts = std::move(counts), .times = {.total = ms}, .device = "cpu"};
 }
 
 std::vector<DistancePeer> distance_contestants() {

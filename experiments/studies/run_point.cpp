@@ -1,5 +1,5 @@
-// Opens the scenes of points and runs methods and libraries on them. Each run is compared with the
-// truth and with the first run.
+// Opens the scenes of points, runs methods and libraries on them, and compares each run with the
+// truth.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -135,13 +135,22 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
   return count_contacts(scene, missed).penetrating;
 }
 
-Outcome outcome_of(const Scene& scene, const Truth& truth, const Record& record) {
-  Outcome out;
-  out.pairs = record.collisions.all();
-  out.device = answered(record);
+// FNV-1a over the numbers of the triangles.
+std::uint64_t hash_of(const std::vector<TrianglePair>& pairs) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const TrianglePair& pair : pairs) {
+    for (const std::uint32_t triangle : {pair.a, pair.b})
+      hash = (hash ^ triangle) * 1099511628211ULL;
+  }
+  return hash;
+}
+
+PointResult result_of(const Scene& scene, const Truth& truth, const Record& record) {
+  const std::vector<TrianglePair> pairs = record.collisions.all();
+  PointResult out{.answer = hash_of(pairs), .device = answered(record)};
   RunCounts counts;
-  fill(counts, scene, truth, errors_of(truth, out.pairs), record.found.count);
-  counts.missed_penetrating = missed_penetrating(scene, truth, out.pairs);
+  fill(counts, scene, truth, errors_of(truth, pairs), record.found.count);
+  counts.missed_penetrating = missed_penetrating(scene, truth, pairs);
   counts.colliding_triangles = truth.triangles;
   counts.kept_triangles = record.found.triangle_count;
   counts.kept_objects = record.found.object_count;
@@ -194,29 +203,7 @@ const Scene& open_scene(const PointScene& scene, Lab& lab) {
   return lab.scene(key.scene, pixel_corners);
 }
 
-std::pair<Outcome, std::vector<double>> repeat_point(
-    const Point& point, int repeat, const std::function<std::pair<Outcome, double>()>& run) {
-  Outcome first;
-  std::vector<Timed> timed = measure_in_turns(1, {.counted = repeat}, [&](std::size_t, int round) {
-    auto [outcome, ms] = run();
-    if (round == 0) {
-      first = std::move(outcome);
-    } else {
-      require_same(key_of(point), first, outcome);
-    }
-    return ms;
-  });
-  return {std::move(first), std::move(timed.front().ms)};
-}
-
-void add_extremes(PointTimes& times, const std::vector<double>& ms) {
-  const auto [least, most] = std::minmax_element(ms.begin(), ms.end());
-  times.total_min = *least;
-  times.total_max = *most;
-  times.totals = ms;
-}
-
-void require_same(const PointKey& point, const Outcome& first, const Outcome& other) {
+void require_same(const PointKey& point, const PointResult& first, const PointResult& other) {
   std::string different;
   const auto add = [&different](const std::string& text) {
     different += (different.empty() ? "" : ", ") + text;
@@ -232,10 +219,7 @@ void require_same(const PointKey& point, const Outcome& first, const Outcome& ot
   for (const auto& [name, both] : values) {
     if (both.first != both.second) add(name + " " + both.first + " and " + both.second);
   }
-  if (first.pairs != other.pairs) {
-    add(fmt::format("{} and {} pairs that are in one answer alone",
-                    lacking(first.pairs, other.pairs), lacking(other.pairs, first.pairs)));
-  }
+  if (first.answer != other.answer) add("the pairs themselves");
   if (different.empty()) return;
   throw Error(describe(point), "two runs of the same point differ: " + different,
               "run farcull doctor; the device is not deterministic");
@@ -306,23 +290,14 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
     options.resolution = static_cast<int>(size->resolution);
   }
   const Truth& truth = lab.truth();
-  double setup = 0;
-  std::vector<Record> records;
-  auto [outcome, ms] = repeat_point(point, point.repeat, [&] {
-    if (!moving) lab.session().sweep().forget();
-    records.push_back(run(scene, options, lab.session(), lab.progress()));
-    setup += records.back().ms.setup;
-    return std::pair(outcome_of(scene, truth, records.back()), compared_ms(records.back()));
-  });
-  Record& record = records[median_run(ms)];
-  std::get<RunCounts>(outcome.counts).size = size;
-  PointResult out{.counts = std::move(outcome.counts),
-                  .times = {.cull = record.ms.cull,
-                            .exact = record.ms.exact,
-                            .total = compared_ms(record),
-                            .setup = setup},
-                  .device = std::move(outcome.device)};
-  if (point.repeat > 1) add_extremes(out.times, ms);
+  if (!moving) lab.session().sweep().forget();
+  Record record = run(scene, options, lab.session(), lab.progress());
+  PointResult out = result_of(scene, truth, record);
+  std::get<RunCounts>(out.counts).size = size;
+  out.times = {.cull = record.ms.cull,
+               .exact = record.ms.exact,
+               .total = compared_ms(record),
+               .setup = record.ms.setup};
   if (kept != nullptr) *kept = std::move(record);
   return out;
 }
@@ -342,32 +317,22 @@ PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads) {
   if (!out.left_out.empty()) return out;
   const Truth truth = without_neighbours(scene, lab.truth());
   const BenchRun run = peer.set_up(threads);
-  std::vector<BenchAnswer> answers;
-  auto [outcome, ms] = repeat_point(point, point.repeat, [&] {
-    if (lab.progress()) lab.progress()(peer.name);
-    const Stopwatch watch;
-    BenchAnswer answer = run(scene);
-    const double total = watch.ms();
-    const Errors errors = errors_of(truth, answer.pairs);
-    PeerCounts counts;
-    fill(counts, scene, truth, errors, answer.candidate_pairs);
-    counts.wrong = errors.wrong;
-    counts.colliding_triangles = truth.triangles;
-    counts.library = peer.library;
-    Outcome one{.pairs = std::exchange(answer.pairs, {}),
-                .counts = std::move(counts),
-                .device = out.device};
-    answers.push_back(std::move(answer));
-    return std::pair(std::move(one), total);
-  });
-  const std::size_t middle = median_run(ms);
-  const BenchAnswer& answer = answers[middle];
-  out.counts = std::move(outcome.counts);
+  if (lab.progress()) lab.progress()(peer.name);
+  const Stopwatch watch;
+  const BenchAnswer answer = run(scene);
+  const double total = watch.ms();
+  const Errors errors = errors_of(truth, answer.pairs);
+  PeerCounts counts;
+  fill(counts, scene, truth, errors, answer.candidate_pairs);
+  counts.wrong = errors.wrong;
+  counts.colliding_triangles = truth.triangles;
+  counts.library = peer.library;
+  out.counts = std::move(counts);
   out.times = {.build = answer.build_ms,
                .cull = answer.candidates_ms,
                .exact = answer.exact_ms,
-               .total = ms[middle]};
-  add_extremes(out.times, ms);
+               .total = total};
+  out.answer = hash_of(answer.pairs);
   return out;
 }
 

@@ -37,44 +37,30 @@ RunOptions options_of(const RunPoint& point, const Lab& lab);
 /// The name of the device that answered: PointResult::device.
 std::string answered(const Record& record);
 
-/// Opens the scene and runs the point's method on it `repeat` times; the run with the median time
-/// counts. A run does not depend on earlier ones in the lab: far-pairs has its device open, and
-/// i-collide starts without lists. Only on a MotionFrame does i-collide keep the lists of the
-/// previous frame, which is its purpose; a second run of the same frame would find them sorted, so
-/// `repeat` is 1 there (std::logic_error otherwise). Throws Error as run() and require_same() do.
-/// The counts are RunCounts without `fragments`. record: receives the run with the median time; may
-/// be null.
+/// Opens the scene and runs the point's method on it once. A run does not depend on earlier ones in
+/// the lab: far-pairs has its device open, and i-collide starts without lists. Only on a
+/// MotionFrame does i-collide keep the lists of the previous frame, which is its purpose; a second
+/// run of the same frame would find them sorted, so `repeat` is 1 there (std::logic_error
+/// otherwise). Throws Error as run() does. The counts are RunCounts without `fragments`. record:
+/// receives the run; may be null.
 PointResult measure_run(const RunPoint& point, Lab& lab, Record* record = nullptr);
 /// The same for a Point that is a RunPoint, without the record.
 inline PointResult measure_run_point(const Point& point, Lab& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
 }
 
-/// Opens the scene and runs the library on it, `repeat` times on `threads` threads; the run with
-/// the median time counts. Pairs of neighbours count neither as missed nor as wrong, since
-/// libraries leave them out. Left out if this build lacks the library or the library refuses the
-/// scene. Throws std::logic_error if there is no such peer, and Error as require_same() does.
+/// Opens the scene and runs the library on it once on `threads` threads. Pairs of neighbours count
+/// neither as missed nor as wrong, since libraries leave them out. Left out if this build lacks the
+/// library or the library refuses the scene. Throws std::logic_error if there is no such peer.
 PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads);
 
 /// The library of a PeerPoint with its version; empty if this build lacks it, and for all other
 /// points (Study::library).
 std::string library_of_peer(const Point& point);
 
-/// The result of one of several runs of a point, without times.
-struct Outcome {
-  std::vector<TrianglePair> pairs;  // sorted
-  Counts counts = {};
-  std::string device;
-};
-/// Throws Error if two runs of a point differ in anything: neither then represents the point. The
-/// error names each difference with both values, a miss among them.
-void require_same(const PointKey& point, const Outcome& first, const Outcome& other);
-/// The outcome of the first of `repeat` runs and the times of all in ms. All other outcomes must be
-/// equal to it. run: returns an outcome and its time.
-std::pair<Outcome, std::vector<double>> repeat_point(
-    const Point& point, int repeat, const std::function<std::pair<Outcome, double>()>& run);
-/// The least and the largest of several times, and all of them.
-void add_extremes(PointTimes& times, const std::vector<double>& ms);
+/// Throws Error if two runs of a point differ in anything but times: neither then represents the
+/// point. The error names each difference with both values, a miss among them.
+void require_same(const PointKey& point, const PointResult& first, const PointResult& other);
 
 /// Runs the generator of the point. Left out if the window is larger than the device can draw. The
 /// counts are LemmaCounts. Throws Error for faults of the device.
@@ -85,9 +71,8 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab);
 // which shares no code with the search, has decided every pair of triangles and found no nearer
 // one.
 
-/// Runs the method `repeat` times on one thread; the run with the median time counts. The counts
-/// are SetCounts. Left out if the diagram would keep too many pairs. Throws Error if the accounting
-/// refutes the exact answers, or if two runs differ.
+/// Runs the method once on one thread. The counts are SetCounts. Left out if the diagram would keep
+/// too many pairs. Throws Error if the accounting refutes the exact answers.
 PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab);
 
 /// The same for a DistancePoint and its contestant. The counts are DistanceCounts. Left out if this

@@ -1,42 +1,41 @@
-// The list of studies, the loop over their open points, the shard that this process measures, and
-// the sums that it prints.
+// The list of studies, the rounds over their open points, and the sums that are printed.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 #include <variant>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/base/text.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/method.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/run_point.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
-constexpr long kMostShards = 100'000;
-
-bool is_shard(long index, long of) {
-  return of >= 1 && of <= kMostShards && index >= 1 && index <= of;
-}
-
 // A study with the points to measure.
 struct Task {
-  const Study* study;
+  const Study* study = nullptr;
   std::vector<Point> points;
-  std::vector<std::size_t> open;  // positions
-  double seconds = 0;             // of the points measured in this run
-  std::size_t measured = 0;
+  std::vector<PointKey> keys;
+  std::vector<std::size_t> open;            // positions
+  std::map<std::size_t, Measurement> rows;  // of open points: what their rows hold so far
+  double seconds = 0;                       // of this run
+  std::size_t measured = 0;                 // points
+  std::size_t visits = 0, visits_left = 0;  // a visit is a point, or a round of it
 };
 
 void make_folder(const std::string& folder) {
@@ -51,6 +50,11 @@ void make_folder(const std::string& folder) {
 std::string device_text(const Provenance& provenance) {
   const std::string& version = provenance.gl_version;
   return provenance.gl_renderer + (version.empty() ? "" : " (" + version + ")");
+}
+
+bool is_alike(const Provenance& a, const Provenance& b) {
+  return a.commit == b.commit && device_text(a) == device_text(b) &&
+         a.cpu_features == b.cpu_features;
 }
 
 // Refuses to continue if earlier rows are of another program or machine: a table would show both as
@@ -79,14 +83,27 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
   }
 }
 
+using Json = nlohmann::ordered_json;
+
+// So that they are measured again.
+void drop_void_rounds(JsonObject& times) {
+  Json kept = Json::array();
+  for (const Json& round : times["rounds"]) {
+    if (!round["void"].get<bool>()) kept.push_back(round);
+  }
+  times["rounds"] = std::move(kept);
+}
+
 Task open_task(Store& store, const Study& study, const StudiesRequest& request) {
-  Task task{.study = &study, .points = study.grid(request.choice), .open = {}};
-  const std::vector<PointKey> keys = keys_of(task.points);
+  Task task;
+  task.study = &study;
+  task.points = study.grid(request.choice);
+  task.keys = keys_of(task.points);
   store.declare({.study = study.name,
                  .choice = request.choice,
                  .shard = request.shard.index,
                  .of = request.shard.of,
-                 .points = keys});
+                 .points = task.keys});
   const StoredStudy stored = store.study(study.name);
   if (!stored.rows.empty() && !request.resume) {
     throw Error(store.path(),
@@ -95,8 +112,18 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   }
   require_alike(store, stored, request.provenance);
   std::vector<bool> done(task.points.size());
-  // A library or mesh that was missing may be available now.
-  for (const Row& row : stored.rows) done[row.position] = row.measurement.left_out.empty();
+  for (const Row& row : stored.rows) {
+    // A library or mesh that was missing may be available now.
+    if (!row.measurement.left_out.empty()) continue;
+    Measurement known = row.measurement;
+    if (request.times && rounds_in(known)) {
+      drop_void_rounds(known.times);
+      done[row.position] = rounds_in(known) >= kRounds;
+    } else {
+      done[row.position] = is_whole(known);
+    }
+    if (!done[row.position]) task.rows.emplace(row.position, std::move(known));
+  }
   for (std::size_t i = 0; i < task.points.size(); ++i) {
     if (!done[i] && request.shard.holds(i)) task.open.push_back(i);
   }
@@ -120,25 +147,42 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Seconds for the remaining points, at the mean time of their study's points in this run, or of the
-// points of all studies if their study has none yet.
-std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, std::size_t next) {
+// Seconds for what is left, at the mean time of a visit of the same study in this run, or of any
+// study if this one had none yet.
+std::optional<double> remaining(const std::vector<Task>& tasks) {
   double seconds = 0;
-  std::size_t measured = 0;
+  std::size_t visits = 0;
   for (const Task& task : tasks) {
     seconds += task.seconds;
-    measured += task.measured;
+    visits += task.visits;
   }
-  if (measured == 0) return std::nullopt;
+  if (visits == 0) return std::nullopt;
   double out = 0;
-  for (std::size_t t = at; t < tasks.size(); ++t) {
-    const Task& task = tasks[t];
-    const std::size_t left = task.open.size() - (t == at ? next : 0);
-    out += static_cast<double>(left) * (task.measured > 0
-                                            ? task.seconds / static_cast<double>(task.measured)
-                                            : seconds / static_cast<double>(measured));
+  for (const Task& task : tasks) {
+    out += static_cast<double>(task.visits_left) *
+           (task.visits > 0 ? task.seconds / static_cast<double>(task.visits)
+                            : seconds / static_cast<double>(visits));
   }
   return out;
+}
+
+bool has_times(const Measurement& row) {
+  return row.left_out.empty() && rounds_in(row).value_or(0) > 0;
+}
+
+// Adds a round and makes the total anew.
+void add_round(JsonObject& times, const std::vector<double>& ms, const std::optional<Load>& load,
+               bool is_void) {
+  Json rounds = times->value("rounds", Json::array());
+  rounds.push_back({{"ms", ms}, {"load", load ? Json(load->share) : Json()}, {"void", is_void}});
+  std::vector<double> all;
+  for (const Json& round : rounds) {
+    if (round["void"].get<bool>()) continue;
+    for (const double one : round["ms"]) all.push_back(one);
+  }
+  times = Json::object();
+  if (!all.empty()) times["total"] = middle(std::move(all));
+  times["rounds"] = std::move(rounds);
 }
 
 // Measures the open points of all tasks and stores every row at once.
@@ -151,58 +195,263 @@ class Runner {
       now_.points += study.points;
       now_.done += study.before;
     }
+    for (Task& task : tasks) {
+      for (const std::size_t at : task.open) task.visits_left += visits_left(task, at);
+    }
+    find_known();
   }
 
   void run() {
-    const std::int64_t run = store_.begin_run(request_.provenance);
+    run_ = store_.begin_run(request_.provenance);
     Interruptible interruptible(static_cast<long>(now_.points), "points",
                                 "they are kept; the same command with --resume goes on",
                                 is_terminal(stderr));
+    interruptible_ = &interruptible;
     interruptible.done(static_cast<long>(now_.done));
-    for (std::size_t t = 0; t < tasks_.size(); ++t) {
-      Task& task = tasks_[t];
-      now_.study = task.study->name;
-      for (std::size_t i = 0; i < task.open.size(); ++i) {
-        const Point& point = task.points[task.open[i]];
-        now_.point = describe(point);
-        now_.remaining_s = remaining(tasks_, t, i);
-        show("");
-        const Stopwatch watch;
-        const std::optional<Measurement> measurement = measure(*task.study, point);
-        if (!measurement) continue;
-        store_.add(now_.study, run, task.open[i], *measurement);
-        task.seconds += watch.ms() / 1000;
-        ++task.measured;
-        interruptible.done(static_cast<long>(++now_.done));
+    if (request_.times) time_points(0);
+    for (Task& task : tasks_) {
+      for (const std::size_t at : task.open) {
+        if (!request_.times || !is_timed(task.points[at])) count_point(task, at);
       }
     }
+    for (int round = 1; request_.times && round < kRounds; ++round) time_points(round);
   }
 
  private:
+  // A point of a task.
+  struct At {
+    Task* task;
+    std::size_t position;
+
+    const Point& point() const { return task->points[position]; }
+    const PointKey& key() const { return task->keys[position]; }
+  };
+  // What runs of a point in one round gave.
+  struct Runs {
+    At at;
+    std::optional<PointResult> first = {};  // empty: none has come to its end
+    std::vector<double> ms = {};
+    bool failed = false;
+  };
+
+  int rounds_of(const Task& task, std::size_t position) const {
+    const auto row = task.rows.find(position);
+    return row == task.rows.end() ? 0 : rounds_in(row->second).value_or(0);
+  }
+  std::size_t visits_left(const Task& task, std::size_t position) const {
+    if (!request_.times || !is_timed(task.points[position])) return 1;
+    return static_cast<std::size_t>(kRounds - rounds_of(task, position));
+  }
+  bool is_due(const Task& task, std::size_t position, int round) const {
+    return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
+  }
+
+  // What the store knows of points that other studies have too.
+  void find_known() {
+    std::set<std::int64_t> alike;
+    for (const auto& [run, then] : store_.runs()) {
+      if (is_alike(then, request_.provenance)) alike.insert(run);
+    }
+    for (const std::string& name : store_.studies()) {
+      const auto task =
+          std::ranges::find(tasks_, name, [](const Task& t) { return t.study->name; });
+      for (Row& row : store_.study(name).rows) {
+        if (!alike.contains(row.run)) continue;
+        if (rounds_in(row.measurement)) drop_void_rounds(row.measurement.times);
+        know(row.point, row.measurement, task != tasks_.end() && task->study->plain);
+      }
+    }
+  }
+  // A frame of a motion is left out: its lists depend on the frames before.
+  void know(const PointKey& key, const Measurement& row, bool plain) {
+    if (key.frame >= 0 || !row.left_out.empty()) return;
+    if (has_times(row)) {
+      Measurement& times = timed_[key];
+      if (rounds_in(times).value_or(0) < *rounds_in(row)) times.times = row.times;
+    }
+    if (plain) {
+      counted_.try_emplace(key, Measurement{.counts = row.counts, .device = row.device});
+    }
+  }
+  // The counts that a plain study has of the point.
+  const Measurement* counted(const At& at) const {
+    if (!at.task->study->plain || !std::holds_alternative<RunPoint>(at.point())) return nullptr;
+    const auto known = counted_.find(at.key());
+    return known == counted_.end() ? nullptr : &known->second;
+  }
+
+  // One round of all timed points: the points of one scene together.
+  void time_points(int round) {
+    for (Task& task : tasks_) {
+      std::vector<At> block;
+      const auto finish = [&] {
+        if (!block.empty()) time_block(block, round);
+        block.clear();
+      };
+      for (const std::size_t at : task.open) {
+        if (!is_timed(task.points[at]) || !is_due(task, at, round)) continue;
+        const PointKey& key = task.keys[at];
+        if (!block.empty() &&
+            (block.front().key().scene != key.scene || block.front().key().frame != key.frame))
+          finish();
+        const auto known = timed_.find(key);
+        if (known != timed_.end() && *rounds_in(known->second) > rounds_of(task, at)) {
+          take_times({&task, at}, known->second);
+        } else {
+          block.push_back({&task, at});
+        }
+      }
+      finish();
+    }
+  }
+
+  void take_times(const At& at, const Measurement& known) {
+    const Stopwatch watch;
+    const std::size_t before = visits_left(*at.task, at.position);
+    std::optional<Measurement> row;
+    if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end()) {
+      row = own->second;
+    } else if (const Measurement* counts = counted(at)) {
+      row = *counts;
+    } else {
+      show(at, "");
+      if (const std::optional<PointResult> result = measure(at)) row = stored(*result);
+    }
+    if (row && row->left_out.empty()) row->times = known.times;
+    if (row) put(at, std::move(*row));
+    passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
+  }
+
+  // The points of a scene in turn, as often as runs fall on a round; again if the machine was busy.
+  void time_block(const std::vector<At>& block, int round) {
+    constexpr int kTries = 3;
+    const Stopwatch watch;
+    const int turns = std::max(1, runs_of(block.front().point()) / kRounds);
+    std::vector<Runs> runs;
+    std::optional<Load> load;
+    bool is_void = true;
+    for (int tried = 0; is_void && tried < kTries; ++tried) {
+      runs.clear();
+      for (const At& at : block) runs.push_back({.at = at});
+      const LoadMeter meter;
+      measure_in_turns(runs.size(), {.counted = turns}, [&](std::size_t i, int) {
+        if (is_due(*runs[i].at.task, runs[i].at.position, round)) run_once(runs[i], round);
+        return 0.0;
+      });
+      load = meter.now();
+      is_void = load && load->beyond(request_.most_load);
+    }
+    for (Runs& of : runs) {
+      if (of.failed || !of.first) continue;
+      Measurement row = stored(*of.first);
+      if (row.left_out.empty()) {
+        row.times = Json::object();
+        if (const auto own = of.at.task->rows.find(of.at.position); own != of.at.task->rows.end())
+          row.times = own->second.times;
+        add_round(row.times, of.ms, load, is_void);
+      }
+      put(of.at, std::move(row));
+    }
+    passed(*block.front().task, watch, block.size());
+  }
+
+  void run_once(Runs& runs, int round) {
+    if (runs.failed || (runs.first && !runs.first->left_out.empty())) return;
+    show(runs.at, fmt::format("round {} of {}", round + 1, kRounds));
+    std::optional<PointResult> result = measure(runs.at);
+    runs.failed = !result.has_value();
+    if (runs.failed) return;
+    if (result->times.total) runs.ms.push_back(*result->times.total);
+    if (!runs.first) runs.first = std::move(result);
+  }
+
+  // A point without times.
+  void count_point(Task& task, std::size_t position) {
+    const At at{&task, position};
+    const Stopwatch watch;
+    std::optional<Measurement> row;
+    if (const auto own = task.rows.find(position); own != task.rows.end()) {
+      row = own->second;
+    } else if (const Measurement* counts = counted(at)) {
+      row = *counts;
+    } else {
+      show(at, "");
+      if (const std::optional<PointResult> result = measure(at)) row = stored(*result);
+    }
+    if (row && row->left_out.empty() && is_timed(at.point())) {
+      Json rounds = row->times->value("rounds", Json::array());
+      row->times = Json{{"rounds", std::move(rounds)}, {"no_times", true}};
+    }
+    if (row) put(at, std::move(*row));
+    passed(task, watch, 1);
+  }
+
+  void put(const At& at, Measurement row) {
+    Task& task = *at.task;
+    store_.add(task.study->name, run_, at.position, row);
+    know(at.key(), row, task.study->plain);
+    const bool whole = is_whole(row) || !row.left_out.empty();
+    task.rows.insert_or_assign(at.position, std::move(row));
+    if (!whole) return;
+    closed_.insert({&task, at.position});
+    ++task.measured;
+    interruptible_->done(static_cast<long>(++now_.done));
+  }
+
+  void passed(Task& task, const Stopwatch& watch, std::size_t visits) {
+    task.seconds += watch.ms() / 1000;
+    task.visits += visits;
+    task.visits_left -= std::min(visits, task.visits_left);
+  }
+
+  void show(const At& at, const std::string& stage) {
+    now_.study = at.task->study->name;
+    now_.point = describe(at.key());
+    now_.remaining_s = remaining(tasks_);
+    show(stage);
+  }
   void show(const std::string& stage) {
     now_.stage = stage;
     if (progress_) progress_(now_);
   }
 
-  // Empty if measuring failed: the failure is noted, and the next point gets a new device.
-  std::optional<Measurement> measure(const Study& study, const Point& point) {
-    std::string why = lacking(key_of(point));
-    if (!why.empty()) return Measurement{.device = "none", .left_out = std::move(why)};
+  // Empty if measuring failed, or gave another answer than before: the failure is noted, nothing
+  // more of the point is measured in this run, and the next point gets a new device.
+  std::optional<PointResult> measure(const At& at) {
+    std::string why = lacking(at.key());
+    if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
     if (!lab_) {
       lab_.emplace(request_.device, [this](const std::string& stage) { show(stage); });
     }
     std::string failure;
     try {
-      return stored(study.measure(point, *lab_));
+      PointResult out = at.task->study->measure(at.point(), *lab_);
+      if (request_.times && is_timed(at.point()) && out.left_out.empty())
+        require_as_before(at, out);
+      return out;
     } catch (const Error& error) {
       failure = error.what();
     } catch (const std::bad_alloc&) {
       failure = "out of memory";
     }
     summary_.failed.push_back(now_.study + ": " + now_.point + ": " + failure);
+    closed_.insert({at.task, at.position});
     lab_.reset();
     return std::nullopt;
   }
+
+  // All runs of a point must agree: those of this process in everything, those of an earlier one in
+  // their counts.
+  void require_as_before(const At& at, const PointResult& result) {
+    const auto [first, is_new] = first_.try_emplace({at.task, at.position}, result);
+    if (!is_new) return require_same(at.key(), first->second, result);
+    const auto row = at.task->rows.find(at.position);
+    if (row == at.task->rows.end() || *stored(result).counts == *row->second.counts) return;
+    throw Error(describe(at.key()), "its counts are not those of an earlier round",
+                "run farcull doctor; the device is not deterministic");
+  }
+
+  using Place = std::pair<const Task*, std::size_t>;
 
   const StudiesRequest& request_;
   StudiesSummary& summary_;
@@ -211,65 +460,15 @@ class Runner {
   const std::function<void(const StudiesProgress&)>& progress_;
   StudiesProgress now_;
   std::optional<Lab> lab_;
+  std::int64_t run_ = 0;
+  Interruptible* interruptible_ = nullptr;
+  std::set<Place> closed_;                   // points that are whole, or failed
+  std::map<Place, PointResult> first_;       // of timed points: the first run
+  std::map<PointKey, Measurement> timed_;    // the times that some study has of a point
+  std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of it
 };
 
 }  // namespace
-
-Shard parse_shard(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  const std::optional<long> index = parse_number<long>(text.substr(0, slash));
-  const std::optional<long> of =
-      slash == std::string::npos ? std::nullopt : parse_number<long>(text.substr(slash + 1));
-  if (!index || !of || !is_shard(*index, *of)) {
-    throw Error("--shard", "'" + text + "' is no shard",
-                fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostShards));
-  }
-  return {static_cast<int>(*index), static_cast<int>(*of), "--shard"};
-}
-
-Shard shard_from_environment(const std::function<const char*(const char*)>& variable) {
-  const char* const remedy = "give --shard K/N, or 1/1 for the whole";
-  const auto number = [&](const char* name) -> std::optional<long> {
-    const char* const text = variable(name);
-    if (text == nullptr) return std::nullopt;
-    const std::optional<long> out = parse_number<long>(text);
-    if (!out) throw Error(name, fmt::format("'{}' is no number", text), remedy);
-    return out;
-  };
-  const auto made = [&](const char* name, long index, long of) -> Shard {
-    if (!is_shard(index, of))
-      throw Error(name, fmt::format("makes this part {} of {}, which is none", index, of), remedy);
-    return {static_cast<int>(index), static_cast<int>(of), name};
-  };
-
-  const std::optional<long> task = number("SLURM_ARRAY_TASK_ID");
-  const std::optional<long> rank = number("OMPI_COMM_WORLD_RANK");
-  const std::optional<long> size = number("OMPI_COMM_WORLD_SIZE");
-  // A single process under mpirun or srun does not divide the work.
-  const bool ranks = rank && size && *size != 1;
-  if (task && ranks) {
-    throw Error("SLURM_ARRAY_TASK_ID", "and OMPI_COMM_WORLD_RANK both say which part this is",
-                remedy);
-  }
-  if (task) {
-    const long least = number("SLURM_ARRAY_TASK_MIN").value_or(0);
-    const std::optional<long> most = number("SLURM_ARRAY_TASK_MAX");
-    const std::optional<long> count = number("SLURM_ARRAY_TASK_COUNT");
-    if (!most || !count || *most - least + 1 != *count) {
-      throw Error("SLURM_ARRAY_TASK_COUNT", "the array has gaps, or does not say where it ends",
-                  "submit it as --array=1-N, or give --shard K/N");
-    }
-    // A resubmitted part of an array would appear to be the whole.
-    if (least != 0 && least != 1) {
-      throw Error("SLURM_ARRAY_TASK_MIN", fmt::format("the array begins at {}", least),
-                  "submit it as --array=1-N, all of it (what is done is not measured again), or "
-                  "give --shard K/N");
-    }
-    return made("SLURM_ARRAY_TASK_ID", *task - least + 1, *count);
-  }
-  if (ranks) return made("OMPI_COMM_WORLD_RANK", *rank + 1, *size);
-  return {};
-}
 
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress) {
@@ -286,6 +485,12 @@ StudiesSummary run_studies(const StudiesRequest& request,
     summary.studies.push_back(
         {.study = study.name, .points = mine, .before = mine - task.open.size()});
   }
+  const bool timed = request.times && std::ranges::any_of(tasks, [](const Task& task) {
+                       return std::ranges::any_of(
+                           task.open, [&](std::size_t i) { return is_timed(task.points[i]); });
+                     });
+  std::optional<TimingLock> lock;
+  if (timed) lock.emplace(request.lock);
   Runner(request, summary, tasks, store, progress).run();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     StudySummary& study = summary.studies[t];
@@ -293,6 +498,8 @@ StudiesSummary run_studies(const StudiesRequest& request,
     study.seconds = tasks[t].seconds;
     for (const Row& row : store.study(study.study).rows) {
       study.left_out += !row.measurement.left_out.empty();
+      for (const Json& round : row.measurement.times->value("rounds", Json::array()))
+        study.void_rounds += round["void"].get<bool>();
       if (breaks_promise(row.measurement))
         summary.broken.push_back(study.study + ": " + describe(row.point));
     }

@@ -1,5 +1,8 @@
-// Measures the points of studies one after the other and stores every result at once. Also joins
-// shards of studies.
+// Measures the points of studies and stores every result at once. Also joins shards of studies.
+//
+// Timed points are measured in kRounds rounds: all timed points of all studies once, then all other
+// points, then all timed points again, and again. So minutes lie between the rounds of a point. In
+// a round the points of one scene run in turn, so that a slow moment falls on all methods alike.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +13,7 @@
 
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
+#include "experiments/system/machine.h"
 
 namespace farcull {
 
@@ -71,6 +75,10 @@ Shard parse_shard(const std::string& text);
 /// variable if it is no number, the array has gaps, or both are set.
 Shard shard_from_environment(const std::function<const char*(const char*)>& variable);
 
+/// If other programs take more of the processors than this, times are measured again, and in the
+/// end void.
+constexpr double kMostLoad = 0.1;
+
 struct StudiesRequest {
   std::vector<Study> studies;
   std::string folder;  // created if it does not exist
@@ -79,6 +87,9 @@ struct StudiesRequest {
   Shard shard;
   std::string device;     // as --device
   Provenance provenance;  // of this run
+  bool times = true;      // false: a timed point is run once, for its counts, and has no times
+  double most_load = kMostLoad;
+  std::string lock = TimingLock::kFile;  // another one for tests
 };
 
 /// The progress of a run.
@@ -87,16 +98,17 @@ struct StudiesProgress {
   std::string point;                  // in words
   std::string stage;                  // of its run
   std::size_t done = 0, points = 0;   // of this shard in all studies, earlier runs included
-  std::optional<double> remaining_s;  // at the mean time so far; empty until a point was measured
+  std::optional<double> remaining_s;  // at the mean time so far; empty until something was measured
 };
 
 struct StudySummary {
   std::string study;
-  std::size_t points = 0;    // of this shard
-  std::size_t before = 0;    // had a row already
-  std::size_t measured = 0;  // in this run, including those left out
-  std::size_t left_out = 0;  // of all rows: nothing could be measured; the row says why
-  double seconds = 0;        // of this run
+  std::size_t points = 0;       // of this shard
+  std::size_t before = 0;       // had a row already
+  std::size_t measured = 0;     // in this run, including those left out
+  std::size_t left_out = 0;     // of all rows: nothing could be measured; the row says why
+  std::size_t void_rounds = 0;  // of timed points, by all rows
+  double seconds = 0;           // of this run
 };
 
 struct StudiesSummary {
@@ -109,12 +121,15 @@ struct StudiesSummary {
   std::vector<std::string> broken;
 };
 
-/// Measures every point without a row, or with a row that says why nothing was measured. After an
-/// Error at a point the error is noted and the next point gets a new device; an Error of the store
-/// ends the run. Signals end the program, with a line that says how many points are stored. Throws
-/// Error for a folder that cannot be created, for a store that Store or Store::declare() refuses,
-/// if it has rows of a study and `resume` is not set, and if it has rows of another commit of
-/// farcull, another device, other CPU features, or another version of a library.
+/// Measures every point without a row, with a row that says why nothing was measured, or whose row
+/// lacks rounds or has void ones. Two studies do not measure the same twice: times that a study of
+/// the store has of the same point are taken from there, and so are the counts between studies that
+/// are `plain`. Holds the TimingLock while points are timed. After an Error at a point the error is
+/// noted and the next point gets a new device; an Error of the store ends the run. Signals end the
+/// program, with a line that says how many points are stored. Throws Error for a folder that cannot
+/// be created, for a store that Store or Store::declare() refuses, if another process measures
+/// times, if it has rows of a study and `resume` is not set, and if it has rows of another commit
+/// of farcull, another device, other CPU features, or another version of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

@@ -99,7 +99,22 @@ bool breaks_promise(const Measurement& measurement) {
   return false;
 }
 
+std::optional<int> rounds_in(const Measurement& row) {
+  const auto rounds = row.times->find("rounds");
+  if (rounds == row.times->end() || !rounds->is_array()) return std::nullopt;
+  return static_cast<int>(rounds->size());
+}
+
+bool is_whole(const Measurement& row) {
+  return rounds_in(row).value_or(kRounds) >= kRounds || row.times->value("no_times", false);
+}
+
 // ---- the store ----
+
+bool StoredStudy::complete() const {
+  return rows.size() == declaration.points.size() &&
+         std::ranges::all_of(rows, [](const Row& row) { return is_whole(row.measurement); });
+}
 
 namespace {
 
@@ -423,13 +438,16 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction. A row that says why nothing was measured is replaced.
-    SQLite::Statement insert(
-        state_->database,
+    // One statement is one transaction. A row that says why nothing was measured is replaced, and
+    // one that lacks rounds or has void ones.
+    static const std::string text = fmt::format(
         "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "
         "SET run = excluded.run, measured = excluded.measured, device = excluded.device, counts = "
         "excluded.counts, times = excluded.times, left_out = excluded.left_out WHERE rows.left_out "
-        "!= ''");
+        "!= '' OR json_array_length(rows.times, '$.rounds') < {} OR EXISTS (SELECT * FROM "
+        "json_each(rows.times, '$.rounds') WHERE json_extract(value, '$.void'))",
+        kRounds);
+    SQLite::Statement insert(state_->database, text);
     insert.bind(1, study);
     insert.bind(2, static_cast<std::int64_t>(row.position));
     insert.bind(3, row.run);

@@ -62,9 +62,20 @@ struct Row {
 struct StoredStudy {
   Declaration declaration;
   std::vector<Row> rows;  // by position
-  /// Whether every point of the grid has a row.
-  bool complete() const { return rows.size() == declaration.points.size(); }
+  /// Whether every point of the grid has a row that is whole.
+  bool complete() const;
 };
+
+// The times of a timed point (is_timed()), in its row:
+//   total     the median over the runs of all rounds that are not void
+//   rounds    for each round so far its runs in ms, the share of the processors that other programs
+//             took meanwhile ("load"; null if the system does not say), and whether this was too
+//             much ("void")
+//   no_times  true if the point was measured without times (--no-times)
+/// How many rounds the row has; empty if its point is not timed.
+std::optional<int> rounds_in(const Measurement& row);
+/// Whether nothing of the row is left to be measured.
+bool is_whole(const Measurement& row);
 
 class Store {
  public:
@@ -89,8 +100,9 @@ class Store {
   /// Repeating a declaration changes nothing. Throws Error if the study was declared differently.
   void declare(const Declaration& declaration);
   /// Adds a row in one transaction; it is on the disk when the function returns. Replaces a row
-  /// that says why nothing was measured. Throws Error if the point has another row, is not in the
-  /// grid, or the disk refuses; the file is then unchanged.
+  /// that says why nothing was measured, and one that lacks rounds or has void ones. Throws Error
+  /// if the point has another row, is not in the grid, or the disk refuses; the file is then
+  /// unchanged.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
   /// The same for a row of another store; row.run is the number in this one. Ignores `point`.

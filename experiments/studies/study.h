@@ -35,6 +35,8 @@ struct Study {
   /// of the count `library` in its row. Empty: no library answers it, or the library is missing.
   /// Null: no point of this study asks a library.
   std::function<std::string(const Point&)> library = {};
+  /// A RunPoint has the counts of measure_run() and no others, so that studies share its row.
+  bool plain = false;
   /// A campaign is not part of `all`: it takes many hours, needs what most machines lack, or has
   /// its own page of results. It may alternate between its scenes, so that an early stop has
   /// results for all of them.

@@ -1,15 +1,24 @@
-// Reads /proc and the scheduler.
+// Reads /proc and the scheduler; locks a file.
 #include "experiments/system/machine.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sched.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <initializer_list>
+#include <sstream>
 #include <string_view>
 #include <thread>
 
@@ -89,5 +98,78 @@ std::optional<double> PeakMemory::grown_mib() const {
   if (!before_kib_ || !peak) return std::nullopt;
   return std::max(0.0, *peak - *before_kib_) / 1024;
 }
+
+LoadMeter::LoadMeter() : before_(read()) {}
+
+// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks. Guests are in user.
+std::optional<LoadMeter::Ticks> LoadMeter::read() {
+  cpu_set_t mine;
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0) return std::nullopt;
+  Ticks out;
+  std::ifstream stat("/proc/stat");
+  for (std::string line; std::getline(stat, line);) {
+    std::istringstream words(line);
+    std::string name;
+    words >> name;
+    if (!name.starts_with("cpu") || name.size() == 3) continue;
+    const int cpu = std::atoi(name.c_str() + 3);
+    if (cpu >= CPU_SETSIZE || !CPU_ISSET(cpu, &mine)) continue;
+    double ticks = 0;
+    for (int field = 0; field < 8 && words >> ticks; ++field) {
+      out.all += ticks;
+      if (field != 3 && field != 4) out.busy += ticks;
+    }
+  }
+  if (out.all == 0) return std::nullopt;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage = {};
+    ::getrusage(who, &usage);
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime}) {
+      out.own += (static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec)) *
+                 static_cast<double>(::sysconf(_SC_CLK_TCK));
+    }
+  }
+  return out;
+}
+
+// Each tick of a processor falls on a busy moment or does not, so n ticks have a standard deviation
+// of at most sqrt(n) / 2.
+std::optional<Load> LoadMeter::now() const {
+  const std::optional<Ticks> after = read();
+  if (!before_ || !after) return std::nullopt;
+  const double all = std::max(1.0, after->all - before_->all), error = std::sqrt(all) + 2;
+  const double others = after->busy - before_->busy - (after->own - before_->own);
+  if (others < -2 * error) return std::nullopt;
+  return Load{std::clamp(others / all, 0.0, 1.0), error / all};
+}
+
+TimingLock::TimingLock(const std::string& path) {
+  // A file of another user cannot be opened for writing, and is locked as well.
+  const auto open = [&](int flags) { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); };
+  const bool ours = (file_ = open(O_RDWR)) >= 0 || (file_ = open(O_RDWR | O_CREAT)) >= 0;
+  if (!ours && (file_ = open(O_RDONLY)) < 0) {
+    throw Error(path, std::string("cannot be opened: ") + std::strerror(errno),
+                "let it be written, or measure without times (--no-times)");
+  }
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    std::array<char, 32> holder = {};
+    const ssize_t length = ::pread(file_, holder.data(), holder.size() - 1, 0);
+    ::close(file_);
+    throw Error(
+        path,
+        fmt::format("process {} measures times on this machine, and two at once would measure each "
+                    "other",
+                    length > 0 ? holder.data() : "unknown"),
+        "wait for its end, or measure without times (--no-times)");
+  }
+  if (!ours) return;
+  ::fchmod(file_, 0666);
+  const std::string own = std::to_string(::getpid());
+  if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
+    // The number is for the message alone.
+  }
+}
+
+TimingLock::~TimingLock() { ::close(file_); }
 
 }  // namespace farcull

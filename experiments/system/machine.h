@@ -1,4 +1,5 @@
-// The machine as measurements report it: cores, memory, names.
+// The machine as measurements report it: cores, memory, names, what else runs on it; and the lock
+// of programs that measure times.
 #pragma once
 
 #include <optional>
@@ -30,6 +31,49 @@ class PeakMemory {
 
  private:
   std::optional<double> before_kib_;
+};
+
+/// What other programs took of the processors that this process may use.
+struct Load {
+  double share = 0;  // of their time, 0 to 1
+  /// Two standard deviations of `share`, since the system counts by ticks of a clock.
+  double error = 0;
+  bool beyond(double limit) const { return share - error > limit; }
+};
+
+/// The load since construction: the time in which these processors were busy (/proc/stat, with what
+/// a hypervisor stole) less the time of this process and of its children that have ended. The load
+/// average of the system is not asked: in a container it counts the processes of all others,
+/// wherever they run, and it lags by a minute.
+class LoadMeter {
+ public:
+  LoadMeter();
+  /// Empty if the system does not say: there is no /proc/stat, or it misses this process's own time
+  /// (gVisor). A container that sees its own time alone (lxcfs) reports none of the others.
+  std::optional<Load> now() const;
+
+ private:
+  struct Ticks {
+    double busy = 0, all = 0, own = 0;  // clock ticks
+  };
+  static std::optional<Ticks> read();
+  std::optional<Ticks> before_;
+};
+
+/// Held by the one process of a machine that measures times, until it ends, however it ends.
+class TimingLock {
+ public:
+  static constexpr const char* kFile = "/tmp/farcull-times.lock";
+
+  /// Throws Error naming the process that holds the lock, or the path if it cannot be opened.
+  /// Another path is for tests.
+  explicit TimingLock(const std::string& path = kFile);
+  ~TimingLock();
+  TimingLock(const TimingLock&) = delete;
+  TimingLock& operator=(const TimingLock&) = delete;
+
+ private:
+  int file_ = -1;
 };
 
 }  // namespace farcull

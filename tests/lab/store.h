@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 #include <nlohmann/json.hpp>
+#include "experiments/studies/point.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
@@ -59,6 +60,7 @@ inline Study counting_study(std::size_t points, std::chrono::microseconds pause 
 /// Which of the points of counting_study() this is, from 1.
 inline int number_of(const Point& point) { return std::get<LemmaPoint>(point).side; }
 
+/// Times are measured however busy the machine is, and beside other tests.
 inline StudiesRequest lab_request(const std::string& folder, std::vector<Study> studies,
                                   bool resume = false) {
   return {.studies = std::move(studies),
@@ -67,7 +69,38 @@ inline StudiesRequest lab_request(const std::string& folder, std::vector<Study> 
           .resume = resume,
           .shard = {},
           .device = {},
-          .provenance = lab_provenance()};
+          .provenance = lab_provenance(),
+          .most_load = 1,
+          .lock = folder + "/lock"};
+}
+
+/// A study of timed points, one for each name: scenes "a", "b", .. with methods far-pairs and
+/// exact. `runs` grows by "SCENE METHOD" with each run. The nth run of the study takes n ms.
+inline Study timed_study(const std::vector<std::string>& scenes, std::vector<std::string>& runs,
+                         const std::string& name = "timed") {
+  return {.name = name,
+          .title = "times",
+          .question = "in which order?",
+          .grid =
+              [=](const GridChoice&) {
+                std::vector<Point> out;
+                for (const std::string& scene : scenes) {
+                  for (const Method method : {Method::far_pairs, Method::exact})
+                    out.push_back(repeated(plain_point(NamedScene{scene}, method), 2 * kRounds));
+                }
+                return out;
+              },
+          .measure =
+              [&runs](const Point& point, Lab&) {
+                const PointKey key = key_of(point);
+                runs.push_back(key.scene + " " + key.method);
+                RunCounts counts;
+                counts.colliding = key.method.size();
+                return PointResult{.counts = counts,
+                                   .times = {.total = static_cast<double>(runs.size())},
+                                   .device = "cpu"};
+              },
+          .plain = true};
 }
 
 /// The number of rows of a study; 0 where it is not declared.

@@ -71,7 +71,7 @@ def tables_of(rows, best):
     return [out, table_of_rows(
         "culling-all", "Every scene, way to cull and resolution, without neighbours", rows,
         {"scene": "=scene", "culled by": "=way", "px": resolution_cell("-"), "colliding": "pairs", "candidates": "left",
-         "candidates/colliding": "~left_each", "cull (ms)": "~cull_ms"})]
+         "candidates/colliding": "~left_each"})]
 
 
 def add_choice(chapter, best):

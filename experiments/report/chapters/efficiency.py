@@ -78,16 +78,16 @@ def quick_row(scene, frames):
 
 
 def tables_of(scenes):
-    interval = "with the 95 % interval that it would have were the frames independent"
+    ends = "with the least and the largest"
     return [
         Table("efficiency-factors",
               "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles "
-              f"whose boxes meet, and pairs of them; median of the frames in which FAR keeps something, {interval}",
+              f"whose boxes meet, and pairs of them; median of the frames in which FAR keeps something, {ends}",
               columns(["scene", "offset"], ["frames", "objects", "triangles", "pairs"]),
               [[scene, offset, grouped(len(factors(frames, method, "object_triangles"))),
-                median_text(factors(frames, method, "object_triangles")),
-                median_text(factors(frames, method, "kept_triangles")),
-                median_text(factors(frames, method, "candidates", "candidates"))]
+                spread(factors(frames, method, "object_triangles")),
+                spread(factors(frames, method, "kept_triangles")),
+                spread(factors(frames, method, "candidates", "candidates"))]
                for scene, frames in scenes.items() for method, offset in ((OBB, "OBB"), (EXACT, "exact"))
                if measured(frames, method)]),
         Table("efficiency-quick",
@@ -98,9 +98,9 @@ def tables_of(scenes):
               [quick_row(scene, frames) for scene, frames in scenes.items() if measured(frames, QUICK)]),
         Table("efficiency-times",
               "Time in ms from moved vertices to exact pairs: median of the frames that all methods of the scene have, "
-              f"{interval}, each run once", columns(["scene"], ["triangles", "frames"] + METHODS),
+              f"{ends}; each frame is run once", columns(["scene"], ["triangles", "frames"] + METHODS),
               [[scene, cell(frames.triangles[BOXES].iloc[0]), grouped(len(over))] +
-               [median_text(over.total_ms[method].dropna()) for method in METHODS]
+               [spread(over.total_ms[method].dropna()) for method in METHODS]
                for scene, frames in scenes.items() for over in [common(frames, METHODS)]])]
 
 
@@ -122,11 +122,11 @@ def add_factors(chapter, scenes):
 
 def add_missed(chapter, rows):
     known = rows[column(rows, "missed").notna() & column(rows, "colliding").notna()]
-    parts = [f"{method} {with_bound(total(of, 'missed'), total(of, 'colliding'))}"
+    parts = [f"{method} {of_all(total(of, 'missed'), total(of, 'colliding'))}"
              for method in (OBB, EXACT, PAIRS, BOXES, PLAIN, QUICK) if len(of := known[known.contestant == method])]
     if parts:
-        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame; the bounds are 3/N, "
-                     f"at 95 % were all N independent): {listed(parts)}.")
+        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame): "
+                     f"{listed(parts)}.")
 
 
 def add_quick(chapter, scenes):

@@ -20,9 +20,11 @@ class Entry:
     wrong: int
     colliding: int
     candidates: int
+    rounds: tuple = ()  # the times by round; empty: there is one
 
     def __post_init__(self):
-        self.median = median_estimate(self.times)
+        self.rounds = self.rounds or (self.times,)
+        self.median = median_estimate(self.times, self.rounds)
         self.ms, self.error, self.pixels = self.median.value, self.missed + self.wrong, self.row.resolution
 
     @property
@@ -69,9 +71,10 @@ class Group:
 
 def entry_of(rows):
     first = next(rows.itertuples())
-    times = first.runs if len(rows) == 1 and first.runs else tuple(rows.total_ms)
-    return Entry(first, first.contestant, times,
-                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")))
+    one = len(rows) == 1 and first.runs
+    return Entry(first, first.contestant, first.runs if one else tuple(rows.total_ms),
+                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
+                 first.rounds if one else ())
 
 
 def kind_of(scene):
@@ -91,12 +94,13 @@ def groups_of(rows, scenes):
 
 
 def times_as_long(entry, other):
-    return estimate_text(ratio_estimate(entry.times, other.times))
+    return estimate_text(ratio_estimate(entry.rounds, other.rounds))
 
 
 def sample_of(groups):
-    """`n = 57 points, each the median of 5 runs; of drawn scenes 5 seeds`."""
-    runs = pd.DataFrame({"runs": [entry.row.runs for group in groups for entry in group.entries]})
+    """sample_text(), with the seeds of drawn scenes."""
+    rows = [entry.row for group in groups for entry in group.entries]
+    runs = pd.DataFrame({"runs": [row.runs for row in rows], "rounds": [row.rounds for row in rows]})
     seeds = sorted({group.seeds for group in groups if group.seeds > 1})
     return sample_text(runs) + (f"; of drawn scenes {listed(map(str, seeds))} seeds" if seeds else "")
 
@@ -182,7 +186,7 @@ def figure_of(groups):
     error = Figure(
         "error-time", "Methods that are wrong (points), and those that never are (rows), by run time",
         "Points: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
-        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Rows, on "
+        "median time from triangles to pairs, with its interval as a bar. Lines follow the resolution. Rows, on "
         "the same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
         "the others are in the table. CULLIDE (strict): one round, conservative rasterization, all views have to clear "
         "a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
@@ -199,8 +203,8 @@ def figure_of(groups):
 # ---- tables
 
 def front_table(groups):
-    out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are ratios of "
-                f"medians with their 95 % intervals. {sample_of(groups)}",
+    out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are medians "
+                f"of the ratios of runs in the same turn, with their intervals. {sample_of(groups)}",
                 columns(["scene", "method"], ["time over that of exact", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()
@@ -237,7 +241,8 @@ def all_table(rows):
 
     return table_of_rows("error-time-all", "All points; times are medians with the fastest and slowest run", rows, {
         "scene": "=scene", "method": "=contestant", "resolution": resolution_cell("-"), "ms": ms("total_ms"),
-        "fastest": ms("total_min_ms"), "slowest": ms("total_max_ms"), "missed": "missed",
+        "fastest": lambda row: rounded(min(row.runs, default=None)),
+        "slowest": lambda row: rounded(max(row.runs, default=None)), "missed": "missed",
         "wrong": lambda row: grouped(number(row, "wrong")), "candidates": "candidates", "colliding": "colliding",
         "false positives": lambda row: rounded(false_positives(row))})
 

@@ -12,7 +12,7 @@ CAPTION = (
     "is stored "
     "or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
     "each "
-    "triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with 95 % "
+    "triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with their "
     "intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
 
 
@@ -29,7 +29,7 @@ def figure_of(rows):
 
 def table_of(rows):
     out = table_of_rows(
-        "offsets", "Boxes, exact offsets and intervals; times are medians of the runs with their 95 % intervals. " +
+        "offsets", "Boxes, exact offsets and intervals; times are medians of the runs with their intervals. " +
         sample_text(rows), rows,
         {"scene": "=scene", "resolution (px)": lambda row: str(row.resolution), "method": "=contestant",
          "kept triangles": "kept_triangles", "candidates": "candidates", "false positives": "~false_positives",
@@ -49,13 +49,12 @@ def add_comparison(chapter, rows, a, b):
     for name, label in (("kept_triangles", "kept triangles"), ("candidates", "candidates"), ("fragments", "fragments"),
                         (TIME, "time")):
         ratios = column(pairs, name) / column(pairs, name + "_b")
-        ratios = tuple(ratios[np.isfinite(ratios)])
-        if not ratios:
+        scenes = ratios[np.isfinite(ratios)].groupby(pairs.scene).median()
+        if scenes.empty:
             return
-        e = median_estimate(ratios)
-        words.append(f"{rounded(e.value)} times ({rounded(e.low)} to {rounded(e.high)}, n = {e.n}) the {label}")
-    chapter.find(f"{a} against {b}, median over scenes and resolutions with the 95 % interval that it would have were "
-                 f"these independent: {', '.join(words)}.")
+        words.append(f"{spread(scenes)} times the {label}")
+    chapter.find(f"{a} against {b}, median over the resolutions of a scene, and of these the median over "
+                 f"{counted(len(scenes), 'scene', 'scenes')} with the least and the largest: {', '.join(words)}.")
 
 
 def add_order(chapter, rows):

@@ -85,12 +85,11 @@ def add_kept_promises(chapter, rows):
                      f"{'does' if silent == 1 else 'do'} not say what they lost.")
     sets, distances = rows[known & rows.sets], rows[known & ~rows.sets]
     if len(sets) and not broken:
-        chapter.find(f"{listed(sorted(set(sets.name)))} lost {rate_text(0, total(sets, 'with_nearest'))} nearest "
-                     f"neighbours of objects, and {rate_text(0, total(sets, 'nearest_pairs'))} nearest pairs of "
-                     f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run; the "
-                     "bounds take all of them as independent.")
+        chapter.find(f"{listed(sorted(set(sets.name)))} lost {of_all(0, total(sets, 'with_nearest'))} nearest "
+                     f"neighbours of objects, and {of_all(0, total(sets, 'nearest_pairs'))} nearest pairs of "
+                     f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run.")
     if len(distances) and not broken:
-        chapter.find(f"Of the distances of farcull {rate_text(0, total(distances, 'asked'))} were not the nearest "
+        chapter.find(f"Of the distances of farcull {of_all(0, total(distances, 'asked'))} were not the nearest "
                      "double.")
 
 
@@ -99,17 +98,15 @@ def add_kept_promises(chapter, rows):
 def lost_series(scene, method):
     of = scene.of(method)
     of = of[of.with_nearest > 0]
-    rates = [rate_of(int(min(row.missed, row.with_nearest)), int(row.with_nearest)) for row in of.itertuples()]
-    return Series(method, list(of.index), [100 * r.value for r in rates], emphasis=method == RELIABLE,
-                  y_low=[100 * r.low for r in rates], y_high=[100 * r.high for r in rates])
+    return Series(method, list(of.index), [share(row.missed, row.with_nearest) for row in of.itertuples()],
+                  emphasis=method == RELIABLE)
 
 
 def lost_figure(scenes):
     scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
     return Figure(
         "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
-        "An object is lost if none of its nearest neighbours is in its set. Bars are 95 % intervals of the share, were "
-        "the objects independent. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
+        "An object is lost if none of its nearest neighbours is in its set. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
         "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost "
         f"are in the table. {objects_text(scenes)}.",
         [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
@@ -159,7 +156,7 @@ def efficiency_table(rest, moving, finest):
         "proximity-efficiency",
         "Culling efficiency: how many times more triangles the boxes of objects leave in the sets. Of scenes at rest "
         f"the diagrams have {finest} cells along the scene; of scenes that move, the median over the frames with the "
-        "95 % interval that it would have were the frames independent",
+        "least and the largest",
         columns(["scene"], ["frames", "triangles per object, boxes", TREES, RELIABLE, PUBLISHED]))
     for scene in rest:
         out.rows.append([scene.base, "-", rounded(scene.value(BOXES, 0, "triangles_each"))] + [
@@ -167,8 +164,8 @@ def efficiency_table(rest, moving, finest):
     for scene in moving:
         frames = scene.sums.index.unique(1)
         factors = [[scene.factor(method, frame, frame) for frame in frames] for method in (TREES, RELIABLE, PUBLISHED)]
-        out.rows.append([scene.base, grouped(len(frames)), median_text(scene.of(BOXES).triangles_each)] +
-                        [median_text([x for x in of if x > 0]) for of in factors])
+        out.rows.append([scene.base, grouped(len(frames)), spread(scene.of(BOXES).triangles_each)] +
+                        [spread([x for x in of if x > 0]) for of in factors])
     return out
 
 
@@ -204,8 +201,8 @@ def count_figure(chapter, rows, exponents):
             chapter.find(f"Exponent of time over objects, of {what}, with its 95 % interval: {listed(said)}.")
         out.panels += [panel] * bool(panel.series)
     if drawn:
-        out.caption = (f"{sample_text(pd.concat(drawn))}, on one thread, with its 95 % interval as a bar. Objects "
-                       "stand at the same density. Distances are from the triangles to the distance of each object "
+        out.caption = (f"On one thread: {sample_text(pd.concat(drawn))}. Bars are the intervals. Objects stand at the "
+                       "same density. Distances are from the triangles to the distance of each object "
                        "from its nearest one, trees included.")
     return out
 
@@ -215,8 +212,8 @@ def error_figure(rows):
     out = Figure(
         "proximity-error", "Errors of distances against time",
         "The largest error of a distance over the exact distance, of those where neither is 0; those that are wrong in "
-        f"another way are in the table. {sample_text(drawn)} on one thread, from the triangles to the distances, with "
-        "its 95 % interval as a bar.")
+        "another way are in the table. Times go from the triangles to the distances, on one thread: "
+        f"{sample_text(drawn)}. Bars are the intervals.")
     for scene, of in by(drawn, "scene"):
         panel = Panel(scene, log("time (ms)"), log("largest relative error", zero=True))
         for name, row in by(of, "name"):
@@ -231,7 +228,7 @@ def distance_table(rows):
         "proximity-distances",
         "Distances asked for, those that are not the nearest double, and of these: lacking, 0 where objects are apart "
         "or the reverse, of another object that is not as near; the largest relative error of the others; time in ms "
-        "as the median with its 95 % interval", pd.concat([rows[:0]] + [of for _, of in by(rows, "scene")]),
+        "as the median with its interval", pd.concat([rows[:0]] + [of for _, of in by(rows, "scene")]),
         {"scene": "=scene", "contestant": "=name", "asked": "asked", "off": "wrong", "lacking": "lacking",
          "other 0": "other_zero", "other object": "other_object",
          "largest error": lambda row: rounded(value(row, "largest_relative"), 2), "time (ms)": estimate_cell,
@@ -270,8 +267,7 @@ def fill(chapter, study):
     chapter.limits = [
         "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It "
         "runs on one thread of the CPU, so that its times say nothing about graphics hardware.",
-        "Objects of one scene are not independent, so that intervals of shares are the best that so many objects "
-        "allow.",
+        "Objects of one scene are not independent, so that shares of them have no intervals.",
         "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",
         "Most of the time of a library is that of building its trees, which a program that asks again would build "
         "once."]

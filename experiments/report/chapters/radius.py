@@ -237,7 +237,7 @@ def add_headline(chapter, runs, placements):
                 if lost == 0 and total(constructed, "missed") else
                 f"; on the constructed pixel-corners it missed {of} here")
         chapter.find("On scenes that were not constructed against it, the published radius missed "
-                     f"{rate_text(lost, total(natural, 'colliding'))} colliding pairs in "
+                     f"{missed_of(natural)} colliding pairs in "
                      f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
     for bits, rows in groups(placements[placements.published], "bits"):
         longest = rounded(column(rows, "largest_miss_px").max())

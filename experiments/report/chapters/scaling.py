@@ -25,13 +25,12 @@ def miss_table(chapter, rows):
     """Missed and colliding pairs by method, over all rows; a method that misses is a finding."""
     out = Table(
         "scaling-missed",
-        "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run. Where none "
-        "is missed, the upper bound of the rate, 3/N (at 95 % were all N independent)",
-        columns(["method"], ["points", "colliding", "missed", "rate"]))
+        "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run",
+        columns(["method"], ["points", "colliding", "missed", "share (%)"]))
     for method, of in rows[column(rows, "missed").notna()].groupby("contestant"):
         missed, colliding = total(of, "missed"), total(of, "colliding")
-        rate = "-" if not colliding else rounded(missed / colliding) if missed else at_most(colliding)
-        out.rows.append([method, grouped(len(of)), grouped(colliding), grouped(missed), rate])
+        out.rows.append([method, grouped(len(of)), grouped(colliding), grouped(missed),
+                         rounded(share(missed, colliding))])
         if missed or method == "CULLIDE":
             chapter.find(f"{method} missed {of_all(missed, colliding)} colliding pairs over all sizes.")
     return out
@@ -41,7 +40,7 @@ def caption_of(rows, drawn):
     sides = sorted({side for plot in PLOTS if plot != "resolution" for side in resolutions(rows_of(rows, plot))})
     drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and "
                "not at the largest sizes. ") if sides else ""
-    return (f"{sample_text(drawn)}, with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x "
+    return (f"{sample_text(drawn)}. Bars are the intervals. Both axes are logarithmic, so that a power of x "
             f"is a straight line. {drawing}Density and colliding pairs are two views of the same rows: the same "
             "objects in ever smaller boxes.")
 
@@ -56,7 +55,7 @@ def fill(chapter, study):
         "Exponent b of time = a x^b, by least squares in logarithms over the whole range, with its 95 % interval "
         f"(Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
         columns(["x", "method"], ["from", "to", "points", "exponent"]))
-    times = Table("scaling-times", "Time from triangles to exact pairs: median of the runs, with its 95 % interval",
+    times = Table("scaling-times", "Time from triangles to exact pairs: median of the runs, with its interval",
                   columns(["x", "method"], ["value", "runs", "time (ms)"]), in_text=False)
     for plot, (title, axis, *_) in PLOTS.items():
         of, said = rows_of(rows[column(rows, "total_ms").notna()], plot), []

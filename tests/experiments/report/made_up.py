@@ -19,11 +19,14 @@ CONSTANTS = {"scene_resolution": 512, "few_triangles": 1000, "users": {}, "depth
                         "two-bunnies": {"needs_meshes": True, "description": "scans"}}}
 
 
-def row(scene, method, counts=(), ms=2.0, left_out="", runs=None, **axes):
-    """A row of a study: its point, counts and times. Counts of None are not there."""
+def row(scene, method, counts=(), ms=2.0, left_out="", runs=None, void=(), **axes):
+    """A row of a study: its point, counts and times. Counts of None are not there. runs: in three rounds of the same
+    length, those in `void` void."""
     times = {} if ms is None else {"total": ms}
     if runs:
-        times["totals"] = list(runs)
+        each = -(-len(runs) // 3)
+        times["rounds"] = [{"ms": list(runs[i * each:(i + 1) * each]), "load": 0.01, "void": i in void}
+                           for i in range(3)]
     point = {**dict.fromkeys(TEXTS, ""), "resolution": 0, "frame": -1, "seed": 0, "scene": scene, "method": method}
     if method == "far":
         point |= {"offset": "obb", "radius": "budget"}

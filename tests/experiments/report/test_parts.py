@@ -1,4 +1,5 @@
 """The parts of a report: numbers, axes, figures, tables and pages."""
+import itertools
 import math
 import xml.dom.minidom
 
@@ -31,18 +32,60 @@ def test_exponents():
         assert estimates.exponent_of(*few) is None
 
 
-# Known values: 1 - 0.05^(1/100), tables of Clopper and Pearson's interval, the 10,000th number of std::mt19937_64.
+# Known values: 1 - 0.05^(1/100) and tables of Clopper and Pearson's interval.
 def test_intervals():
     rate = estimates.rate_of(5, 100)
     assert estimates.rate_of(0, 100).high == pytest.approx(0.029513, abs=1e-6) and estimates.rate_of(0, 100).low == 0
     assert (rate.low, rate.high) == pytest.approx((0.016432, 0.112835), abs=1e-6)
     assert estimates.rate_of(7, 7).high == 1 and estimates.rate_text(0, 0) == "0 of 0"
-    assert estimates.at_most(114014) == "at most 2.6e-05" and estimates.at_most(2) == "at most 1"
-    assert estimates.with_bound(0, 3000).endswith("(a rate of at most 0.0010)") and estimates.with_bound(4, 9) == "4 of 9"
-    assert int(estimates.random_words(10)[0]) == 2469588189546311528 >> 32, "std::mt19937_64 with seed 1"
     median = estimates.median_estimate((5.0, 1.0, 3.0))
     assert (median.value, median.low, median.high, median.n) == (3, 1, 5, 3)
     assert estimates.student_t95(4) == pytest.approx(2.776445, abs=1e-6)
+
+
+def held(n, cut):
+    """holds_again() by counting: each way to mix the runs of two measurements, in the order of time."""
+    kept = every = 0
+    for firsts in itertools.combinations(range(2 * n), n):
+        others = [at for at in range(2 * n) if at not in firsts]
+        below = others[-(-n // 2) - 1] < firsts[cut]
+        above = others[n // 2] > firsts[n - 1 - cut]
+        every += 1
+        kept += not (below or above)
+    return kept / every
+
+
+def test_the_interval_of_a_median_holds_what_it_says():
+    for n, cut in ((1, 0), (3, 0), (5, 0), (5, 1), (7, 0), (7, 1), (9, 0), (9, 1)):
+        assert estimates.holds_again(n, cut) == pytest.approx(held(n, cut))
+    for n in (4, 6):  # the median is the mean of two, so that no less is held
+        assert held(n, 0) - 0.02 < estimates.holds_again(n, 0) <= held(n, 0)
+    assert [estimates.cut_of(n) for n in (3, 5, 9, 15, 27)] == [0, 0, 0, 1, 6]
+    # The binomial by itself: 5 runs hold the true median with 15 in 16, which is no 95 %.
+    assert [estimates.coverage(n) for n in (3, 5, 9)] == [3 / 4, 15 / 16, 255 / 256]
+    assert "75 % and the median of another 3 runs with 60 %" in estimates.interval_text(3)
+    # The twin: a run less at each end no longer holds the median of another nine with 95 %.
+    assert held(9, 0) >= 0.95 > held(9, 1)
+
+
+def test_the_interval_holds_the_median_of_every_round():
+    runs = list(range(15))
+    cut = estimates.median_estimate(runs)
+    assert (cut.low, cut.high) == (1, 13)
+    slow = estimates.median_estimate(runs, [runs[:5], runs[5:10], [12, 13, 14, 14, 14]])
+    assert (slow.value, slow.low, slow.high) == (7, 1, 14)
+    # A round that is void has none.
+    assert estimates.median_estimate(runs, [runs, []]).high == 13
+
+
+def test_ratios_are_of_runs_in_the_same_turn():
+    slow = ((2, 20, 2), (2, 2, 200))  # turns in which the machine was slow
+    ratio = estimates.ratio_estimate(slow, tuple(tuple(2 * x for x in of) for of in slow))
+    assert (ratio.value, ratio.low, ratio.high, ratio.n) == (0.5, 0.5, 0.5, 6)
+    # The twin: turns that are not the same.
+    assert estimates.ratio_estimate(slow, ((4, 4, 40), (400, 4, 4))).high == 50
+    # A round that is void on one side has no ratio.
+    assert estimates.ratio_estimate(slow, ((4, 40, 4), ())).n == 3 and estimates.ratio_estimate(slow, ((), ())) is None
 
 
 @pytest.mark.parametrize("value, text", [(12345.6, "12,346"), (0.01234, "0.0123"), (0, "0"), (10, "10"), (-1.5, "-1.50"),

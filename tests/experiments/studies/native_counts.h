@@ -54,12 +54,11 @@ inline bool is_counted(const Point& point) {
       point);
 }
 
-/// The points of a study's quick grid, each run once: repeats only make its time better.
+/// The points of a study's quick grid.
 inline std::vector<StudyGridPoint> quick_points(const Study& study) {
   std::vector<StudyGridPoint> out;
   for (Point& point : study.grid({.quick = true, .seed = 1})) {
     if (!is_counted(point)) continue;
-    if (auto* const run = std::get_if<RunPoint>(&point)) run->repeat = 1;
     out.push_back({&study, std::move(point)});
   }
   return out;
