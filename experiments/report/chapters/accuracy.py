@@ -253,7 +253,7 @@ def add_sizes(chapter, rows):
                  if name in ("CULLIDE, one round", "FAR (OBB)", "CULLIDE, one round, conservative")]
         if words:
             chapter.find(f"Where a triangle covers {rounded(size)} {'pixel' if size == 1 else 'pixels'} on average: "
-                         f"{'; '.join(words)}.")
+                         f"{'; '.join(words)}. The forms of CULLIDE draw the same pixels without a ball.")
 
 
 def add_sums(chapter, rows):
@@ -261,7 +261,8 @@ def add_sums(chapter, rows):
     others = rows[~rows.index.isin(promising(rows).index) & ~family(rows) & (rows.method != "exact")]
     for name, runs in others.groupby("contestant"):
         chapter.find(f"{name} promises nothing, and missed {rate_text(total(runs, 'missed'), total(runs, 'colliding'))}"
-                     f" colliding pairs in {counted(len(runs), 'run', 'runs')} here.")
+                     f" colliding pairs in {counted(len(runs), 'run', 'runs')} here"
+                     f"{not_snapped(runs) if 'published radius' in name else ''}.")
 
 
 def pictures_of(rows):
