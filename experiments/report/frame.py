@@ -472,7 +472,9 @@ def risk_text(rows, pairs):
         return "how many pairs were at risk was not counted"
     if not any(count for count, _ in words):
         return "no pair was at risk, so this says nothing about the radius"
-    return f"at risk there: {listed(text for _, text in words)}"
+    small = len(words) == 2 and words[0][0] == 0
+    return f"at risk there: {listed(text for _, text in words)}" + (
+        ", so these scenes test that a ball is needed, not how large it has to be" if small else "")
 
 
 def culled_shares(rows):
@@ -483,6 +485,11 @@ def culled_shares(rows):
     return share(triangles - left, triangles), share(left - kept, triangles)
 
 
+def without_size(row):
+    """The contestant without the size of triangles: at a resolution chosen by it the method is the same."""
+    return contestant(row._replace(method=row.method.split(" @")[0]))
+
+
 def add_kept(chapter, rows, pairs):
     """Adds that the rows missed nothing, by what decided: views, whose pixels and radius could have lost the pairs at
     risk, or boxes alone, which could have lost none."""
@@ -491,15 +498,14 @@ def add_kept(chapter, rows, pairs):
                         (pairs[used.isna()], "")):
         if not len(runs):
             continue
-        # Drops the size: at a resolution chosen by the size of triangles it is the same method.
-        names = [contestant(row._replace(method=row.method.split(" @")[0])) for row in runs.itertuples()]
+        names = [without_size(row) for row in runs.itertuples()]
         drawn = not (column(runs, "views_used") == 0).all()
         chapter.find(f"{listed(dict.fromkeys(names))} missed {rate_text(0, total(runs, 'colliding'))} colliding pairs "
                      f"in {counted(len(runs), 'run', 'runs')}{words}; " + (
                          risk_text(rows, runs) if drawn else
                          "no view was drawn, so these tested no radius, pixel or depth") + ".")
     drawn = pairs[used > 0]
-    shares = [(name, culled_shares(of)) for name, of in by(drawn, "contestant")]
+    shares = [(name, culled_shares(of)) for name, of in by(drawn, without_size)]
     if shares:
         chapter.find("Culled where views decided, of all triangles: " + listed(
             f"{name} {rounded(boxes)} % by boxes and {rounded(views)} % by views" for name, (boxes, views) in shares) +

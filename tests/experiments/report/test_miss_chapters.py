@@ -84,7 +84,7 @@ def test_what_decided_stands_beside_what_was_not_missed():
         {"at_risk": 0, "at_risk_bare": 0})
     assert "at risk there: 14 pairs without a ball." in said_of_misses((), row("s", "cullide", counts(7), resolution=64))
     assert "was not counted" in said_of_misses((), row("s", "cullide", counts(7), resolution=128)), "other pixels"
-    assert "drawn this" not in said
+    assert "test that a ball is needed, not how large it has to be" in said_of_misses({"at_risk": 0, "at_risk_bare": 3})
 
 
 # ---- accuracy
