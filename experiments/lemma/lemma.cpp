@@ -187,6 +187,12 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
+// depth_rounding(), and the same for a buffer of 16 bits: it rounds by 1 / (2^16 - 1) more when it
+// stores, and by 2^-24 when it is read back as a float.
+double rounding_of(int depth_bits) {
+  return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
+}
+
 // Compares a point with the samples of a pixel that contains it.
 void count(const ExactPoint& point, float entry, float exit, const Window& window, int depth_bits,
            bool stored, LemmaRow& row) {
@@ -204,7 +210,7 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
   const double by = stored ? beyond_stored(point, entry, exit, depth_scale(window)) * 0x1p24
                            : beyond(point, entry, exit) / step;
   if (by <= 0) return;
-  ++(stored && by <= depth_rounding(depth_bits) ? row.rounded : row.not_bounding);
+  ++(stored && by <= rounding_of(depth_bits) ? row.rounded : row.not_bounding);
   row.largest_steps = std::max(row.largest_steps, by);
   row.largest_px = std::max(row.largest_px, by * step);
 }

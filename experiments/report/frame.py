@@ -215,6 +215,15 @@ def scene_base(scene):
     return scene.split("@seed")[0]
 
 
+NOT_SNAPPED = ("the native canvas, which drew this, does not snap corners of triangles to a grid; devices of OpenGL do, "
+               "for example Mesa's to 8 bits of a pixel")
+
+
+def not_snapped(rows):
+    """A sentence for what the published radius missed, if the native canvas drew all rows; else ""."""
+    return f" ({NOT_SNAPPED})" if len(rows) and "device" in rows and (rows.device == "native").all() else ""
+
+
 # ---- values of rows
 
 def value(row, name):
@@ -418,18 +427,98 @@ def add_promises(chapter, study):
                 else f" misses {part} colliding pairs, and promises to miss none."))
     pairs, points = known[~lemma], known[lemma]
     if len(pairs) and not (lost[pairs.index] > 0).any():
-        # Drops the size: at a resolution chosen by the size of triangles it is the same method.
-        names = [contestant(row._replace(method=row.method.split(" @")[0]))
-                 for row in pairs.itertuples()]
-        scenes = counted(pairs.scene.map(scene_base).nunique(), "scene", "scenes")
-        chapter.find(f"{listed(dict.fromkeys(names))} missed {of_all(0, total(pairs, 'colliding'))} colliding pairs "
-                     f"in {counted(len(pairs), 'run', 'runs')} on {scenes}.")
+        add_kept(chapter, study.rows, pairs)
     if len(points) and not (lost[points.index] > 0).any():
+        smaller = study.rows[study.rows.method.str.startswith("lemma") & (study.rows.radius == "0.9") &
+                             (study.rows.depth_mode != "fixed")]
         chapter.find(f"The lemmas are violated at {of_all(0, total(points, 'points'))} points "
-                     f"in {counted(len(points), 'run', 'runs')}.")
+                     f"in {counted(len(points), 'run', 'runs')}; " + (
+                         f"with 0.9 of the radius at {of_rows(smaller, 'violations', 'points')}." if len(smaller) else
+                         "a smaller radius was not tried."))
     if silent:
         chapter.find(f"{'One row' if silent == 1 else grouped(silent) + ' rows'} of methods that "
                      f"promise {'does' if silent == 1 else 'do'} not say what they missed.")
+
+
+# ---- what answered, and which pairs could have been missed
+
+def same_pixels(rows, row):
+    """The rows of the same scene and frame, in as many pixels along the same views."""
+    views = ("", "x,y,z") if row.views in ("", "x,y,z") else (row.views,)
+    return rows[(rows.scene == row.scene) & (rows.frame == row.frame) & (rows.resolution == row.resolution) &
+                rows.views.isin(views)]
+
+
+def at_risk(rows, row):
+    """How many pairs of the row are lost with 0.9 of the radius, and without a ball, in the same scene, views and
+    pixels; NaN where that is not known. Without a ball: as CULLIDE draws, if FAR was not run so."""
+    if row.method not in ("far", "far-pairs") or row.method == "far-pairs" and row.views != "x,y,z":
+        return NONE, NONE
+    here = same_pixels(rows, row)
+    fars = here[here.method == "far"]
+    own = fars[(fars.offset == row.offset) & (fars.depth_mode == row.depth_mode)] if row.method == "far" else \
+        fars[fars.offset == "obb"]
+    bare = [column(own[own.radius.isin(["", "budget"])], "at_risk_bare"), column(own[own.radius == "0"], "missed"),
+            column(here[here.method == "cullide"], "missed")]
+    smaller = [column(own[own.radius.isin(["", "budget"])], "at_risk"), column(own[own.radius == "0.9"], "missed")]
+    return tuple(next((value for values in known for value in values if value == value), NONE)
+                 for known in (smaller if row.method == "far" else [], bare))
+
+
+def risk_text(rows, pairs):
+    """`at risk there: 9 pairs with 0.9 of the radius and 12 without a ball`."""
+    if not len(pairs):
+        return ""
+    words = []
+    for values, radius in zip(zip(*(at_risk(rows, row) for row in pairs.itertuples())), (
+            "with 0.9 of the radius", "without a ball")):
+        known = [value for value in values if value == value]
+        if known:
+            part = "" if len(known) == len(values) else f" (counted in {of_all(len(known), len(values))} runs)"
+            words.append((sum(known), f"{counted(sum(known), 'pair', 'pairs')} {radius}{part}"))
+    if not words:
+        return "how many pairs were at risk was not counted"
+    if not any(count for count, _ in words):
+        return "no pair was at risk, so this says nothing about the radius"
+    small = len(words) == 2 and words[0][0] == 0
+    return f"at risk there: {listed(text for _, text in words)}" + (
+        ", so these scenes test that a ball is needed, not how large it has to be" if small else "")
+
+
+def culled_shares(rows):
+    """Of all triangles of the rows, the per cent that boxes took away, and that views did. Inside an object FAR also
+    keeps triangles that boxes leave to no view, for pairs in one patch."""
+    triangles, kept = total(rows, "triangles"), total(rows, "kept_triangles")
+    left = int(np.fmax(column(rows, "left_by_boxes"), column(rows, "kept_triangles")).sum())
+    return share(triangles - left, triangles), share(left - kept, triangles)
+
+
+def without_size(row):
+    """The contestant without the size of triangles: at a resolution chosen by it the method is the same."""
+    return contestant(row._replace(method=row.method.split(" @")[0]))
+
+
+def add_kept(chapter, rows, pairs):
+    """Adds that the rows missed nothing, by what decided: views, whose pixels and radius could have lost the pairs at
+    risk, or boxes alone, which could have lost none."""
+    used = column(pairs, "views_used")
+    for runs, words in ((pairs[used > 0], " in which views decided"), (pairs[used == 0], " in which boxes alone decided"),
+                        (pairs[used.isna()], "")):
+        if not len(runs):
+            continue
+        names = [without_size(row) for row in runs.itertuples()]
+        drawn = not (column(runs, "views_used") == 0).all()
+        chapter.find(f"{listed(dict.fromkeys(names))} missed {of_all(0, total(runs, 'colliding'))} colliding pairs "
+                     f"in {counted(len(runs), 'run', 'runs')} on "
+                     f"{counted(runs.scene.map(scene_base).nunique(), 'scene', 'scenes')}{words}; " + (
+                         risk_text(rows, runs) if drawn else
+                         "no view was drawn, so these tested no radius, pixel or depth") + ".")
+    drawn = pairs[used > 0]
+    shares = [(name, culled_shares(of)) for name, of in by(drawn, without_size)]
+    if shares:
+        chapter.find("Culled where views decided, of all triangles: " + listed(
+            f"{name} {rounded(boxes)} % by boxes and {rounded(views)} % by views" for name, (boxes, views) in shares) +
+            ".")
 
 
 def add_gaps(chapter, study):

@@ -60,9 +60,12 @@ struct NeighbourCounts {
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;  // of `missed` (verify/contact.h); the rest touches
-  /// Pairs that the same run misses with 0.9 of its radius; empty: not measured. If it is 0, a run
-  /// without misses says nothing about the radius.
-  std::optional<std::uint64_t> at_risk = {};
+  /// Pairs that the same run misses with 0.9 of its radius, and without a ball; empty: not
+  /// measured. If both are 0, a run without misses says nothing about the radius.
+  std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
+  /// What culled: the triangles that boxes left to views or to a join, and the views that were
+  /// drawn. Without a view the boxes of triangles decided.
+  std::uint64_t left_by_boxes = 0, views_used = 0;
   std::uint64_t colliding_triangles = 0;  // of the truth
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // the method guarantees to miss nothing, by its options
@@ -77,7 +80,8 @@ struct RunCounts : AnswerCounts {
   std::optional<NeighbourCounts> neighbours = {};
   FARCULL_FIELDS(colliding, missed, missed_penetrating, colliding_triangles, missed_triangles,
                  candidates, kept_triangles, kept_objects, triangles, objects, promises, scene_hash,
-                 revoked, at_risk, object_triangles, drawn, radius, fragments, size, neighbours)
+                 revoked, left_by_boxes, views_used, at_risk, at_risk_bare, object_triangles, drawn,
+                 radius, fragments, size, neighbours)
 };
 
 /// Counts of a PeerPoint.
@@ -121,18 +125,22 @@ struct PlacementCounts {
 struct ClothCounts {
   std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; the first includes the others
   std::uint64_t candidates = 0;                             // pairs given to exact tests
+  std::uint64_t neighbour_candidates = 0;                   // of them, which no method culls
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
-  bool promises = false;                                         // as in RunCounts
+  std::uint64_t left_by_boxes = 0, views_used = 0;               // as in RunCounts
+  std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};  // likewise
+  bool promises = false;                                         // likewise
   std::optional<bool> revoked = {};                              // likewise
   std::string scene_hash;
   double kinetic = 0, total = 0, slack = 0;  // J
   double residual = 0;                       // N
   std::uint64_t iterations = 0;
   bool converged = false;
-  FARCULL_FIELDS(colliding, neighbours, missed, candidates, kept_triangles, triangles, accounted,
-                 by_boxes, by_predicates, promises, scene_hash, kinetic, total, slack, residual,
-                 iterations, converged, revoked)
+  FARCULL_FIELDS(colliding, neighbours, missed, candidates, neighbour_candidates, kept_triangles,
+                 triangles, accounted, by_boxes, by_predicates, promises, scene_hash, kinetic,
+                 total, slack, residual, iterations, converged, revoked, left_by_boxes, views_used,
+                 at_risk, at_risk_bare)
 };
 
 constexpr int kSceneResolution = 512;  // px, for PixelCounts

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <variant>
 
 #include "experiments/studies/point.h"
@@ -48,12 +49,8 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   return out;
 }
 
-// The published radius has no guarantee, so no view can be skipped: a run takes up to five times as
-// long as with the budget radius, and such runs dominate the time of the study.
-int most_published(const std::string& offset, bool quick) {
-  return quick || offset == "exact" ? 1024 : 4096;
-}
-
+// Of forms of CULLIDE, and of FAR at other radii than the budget's: these promise nothing, so that
+// no view can be skipped, and a run takes up to five times as long.
 constexpr int kMostOfForms = 1024;  // px
 
 // CULLIDE as published, and with its changes one by one and together. A scene that is drawn again
@@ -106,9 +103,8 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
         for (const std::string offset : {"obb", "exact"}) {
           if (scene.again && offset == "exact") continue;
           out.push_back(far_point(named, offset, kBudgetRadius, resolution));
-          if (resolution <= most_published(offset, choice.quick)) {
+          if (!scene.again && offset == "obb" && resolution <= kMostOfForms)
             out.push_back(far_point(named, offset, kPublishedRadius, resolution));
-          }
         }
       }
       out.push_back(plain_point(named, far_pairs, resolution));
@@ -118,6 +114,11 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
     add_forms(scene, out);
   }
   return out;
+}
+
+PointResult measure_accuracy(const Point& point, Lab& lab) {
+  const auto& run = std::get<RunPoint>(point);
+  return run.resolution <= kMostOfForms ? measure_with_risk(run, lab) : measure_run(run, lab);
 }
 
 struct TimedScene {
@@ -211,8 +212,7 @@ Study accuracy_study() {
               "How many colliding pairs and colliding triangles does each method miss against the "
               "exact answer, do more pixels help, and does another form of CULLIDE?",
           .grid = accuracy_grid,
-          .measure = measure_run_point,
-          .plain = true};
+          .measure = measure_accuracy};
 }
 
 Study error_time_study() {
@@ -233,78 +233,69 @@ namespace {
 
 using enum Method;
 
-constexpr int kResolution = 512;
 constexpr const char* kLibrary = "fcl-float";
 constexpr long kFrames = 500;  // of the cloth
 
-RunPoint drawn(const PointScene& scene, Method method, const char* offset = "") {
-  RunPoint out{.scene = scene, .method = method, .offset = offset, .resolution = kResolution};
-  if (method == far) out.radius = kBudgetRadius;
+// FAR pairs along the axes that FAR draws, in as many pixels: views decide, not boxes.
+RunPoint pairs_in_views(const PointScene& scene, int resolution) {
+  RunPoint out = plain_point(scene, far_pairs, resolution);
+  out.views = "x,y,z";
   return out;
 }
 
-void add_between_objects(std::vector<Point>& out, const PointScene& scene) {
-  out.insert(out.end(), {drawn(scene, cullide), PeerPoint{scene, kLibrary},
-                         drawn(scene, far, "obb"), drawn(scene, far, "exact"),
-                         plain_point(scene, far_pairs), plain_point(scene, exact)});
+void add_between_objects(std::vector<Point>& out, const PointScene& scene, int resolution) {
+  out.insert(out.end(), {cullide_point(scene, cullide, resolution), PeerPoint{scene, kLibrary},
+                         far_point(scene, "obb", kBudgetRadius, resolution),
+                         far_point(scene, "exact", kBudgetRadius, resolution),
+                         pairs_in_views(scene, resolution), plain_point(scene, exact)});
 }
 
-void add_against_itself(std::vector<Point>& out, const PointScene& scene) {
-  out.insert(out.end(), {drawn(scene, s_cullide), PeerPoint{scene, kLibrary},
-                         plain_point(scene, far_pairs), plain_point(scene, exact)});
+void add_against_itself(std::vector<Point>& out, const PointScene& scene, int resolution) {
+  out.insert(out.end(), {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, kLibrary},
+                         far_point(scene, "obb", kBudgetRadius, resolution),
+                         pairs_in_views(scene, resolution), plain_point(scene, exact)});
 }
 
-void add_built_in(std::vector<Point>& out, bool quick) {
-  const auto add = [&](const std::string& name) { add_between_objects(out, NamedScene{name}); };
-  const auto powers = [quick](int from, int to, int quick_step, int step) {
-    std::vector<int> all;
-    for (int i = from; i <= to; i += quick ? quick_step : step) all.push_back(i);
-    return all;
+// Each family from a value that is harmless to its extreme.
+void add_contacts(std::vector<Point>& out, bool quick) {
+  struct Family {
+    const char* name;
+    std::vector<const char*> values, few;
   };
-  const int slivers = quick ? 200 : 400, sheets = quick ? 6 : 8, large = quick ? 40 : 100,
-            pairs = quick ? 216 : 512;
-  for (const int k : powers(2, 12, 5, 2)) add(fmt::format("slivers:{}:1e{}", slivers, k));
-  for (const int k : powers(1, 14, 6, 1)) add(fmt::format("stack:{}:1e-{}", sheets, k));
-  for (const int k : powers(0, 12, 6, 2)) add(fmt::format("mixed:{}:1e{}", large, k));
-  for (const char* sign : {"-", ""}) {
-    for (const int k : powers(0, 12, 6, 3)) add(fmt::format("gap:{}:{}1e{}", pairs, sign, k));
-    // A pixel of the widest view is 9e12 ulps.
-    add(fmt::format("gap:{}:{}1e13", pairs, sign));
+  const std::vector<Family> families = {
+      {"slivers", {"1e2", "1e4", "1e6", "1e9", "1e12"}, {"1e2", "1e12"}},
+      {"stack", {"1e-1", "1e-3", "1e-6", "1e-10", "1e-14"}, {"1e-1", "1e-14"}},
+      {"mixed", {"1e0", "1e3", "1e6", "1e12"}, {"1e0", "1e12"}},
+      // A pixel is 2^45 ulps, 3.5e13.
+      {"gap",
+       {"-1e13", "-1e9", "-1e3", "-1e0", "0", "1e0", "1e6", "1e12", "1e14"},
+       {"-1e13", "-1e0", "0", "1e0", "1e14"}},
+      {"offset", {"1e0", "1e3", "1e6", "1e9", "1e12"}, {"1e0", "1e12"}},
+      {"scale", {"1e-9", "1e-3", "1e3", "1e9"}, {"1e-9", "1e9"}}};
+  for (const Family& family : families) {
+    for (const char* value : quick ? family.few : family.values) {
+      add_between_objects(out, ContactCells{family.name, quick ? 18 : 24, value}, kCellsResolution);
+    }
   }
-  add(fmt::format("gap:{}:0", pairs));
-  using Change = ChangedScene::Change;
-  const std::string moved = quick ? "crowd:60" : "crowd:200";
-  for (const int k : powers(0, 9, 3, 1))
-    add_between_objects(out, ChangedScene{moved, Change::offset, k});
-  for (const int k : powers(-9, 9, 9, 3))
-    add_between_objects(out, ChangedScene{moved, Change::scale, k});
 }
+
+constexpr int kClothResolution = 512;  // px
 
 void add_cloth(std::vector<Point>& out, bool quick) {
-  const std::vector<long> frames =
-      quick ? std::vector<long>{40} : std::vector<long>{10, 25, 40, 60, 80, 100};
+  const std::vector<long> frames = quick ? std::vector<long>{40} : std::vector<long>{25, 60, 100};
   for (const int k : {2, 4, 6, 8}) {
     const std::string name = fmt::format("cloth:{}:1e{}", quick ? 450 : 800, k);
-    for (const long frame : frames) add_against_itself(out, MotionFrame{name, frame, kFrames});
-    for (const long frame : frames) add_between_objects(out, ClothApart{name, frame});
+    for (const long frame : frames)
+      add_against_itself(out, MotionFrame{name, frame, kFrames}, kClothResolution);
+    for (const long frame : frames)
+      add_between_objects(out, ClothApart{name, frame}, kClothResolution);
   }
 }
 
 std::vector<Point> stability_grid(const GridChoice& choice) {
   std::vector<Point> out;
-  add_built_in(out, choice.quick);
+  add_contacts(out, choice.quick);
   add_cloth(out, choice.quick);
-  return out;
-}
-
-// Measures a run and counts the pairs at risk (RunCounts::at_risk).
-PointResult measure_with_risk(const RunPoint& run, Lab& lab) {
-  PointResult out = measure_run(run, lab);
-  auto* counts = std::get_if<RunCounts>(&out.counts);
-  if (run.method != far || counts == nullptr) return out;
-  RunPoint smaller = run;
-  smaller.radius = RadiusRule{.factor = 0.9};
-  counts->at_risk = std::get<RunCounts>(measure_run(smaller, lab).counts).missed;
   return out;
 }
 
@@ -334,9 +325,9 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
       const std::string name = fmt::format("cloth:{}:1e{}", triangles, k);
       for (long frame = begin; frame < std::min(frames, begin + kTurn); ++frame) {
         const MotionFrame scene{name, frame, frames};
-        out.emplace_back(plain_point(scene, Method::far_pairs));
+        out.emplace_back(pairs_in_views(scene, kClothResolution));
         if (frame % kOfFar == 0)
-          out.emplace_back(far_point(scene, "obb", kBudgetRadius, kResolution));
+          out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
       }
     }
   }
@@ -364,6 +355,7 @@ PointResult measure_cloth(const Point& point, Lab& lab) {
   counts.missed = all.false_negatives;
   counts.colliding = record.collisions.pairs.size() + counts.neighbours + counts.missed;
   counts.candidates = record.found.count;
+  counts.neighbour_candidates = record.collisions.neighbours;
   counts.kept_triangles = record.found.triangle_count;
   counts.triangles = scene.triangles.size();
   counts.accounted = all.pairs_total;
@@ -372,6 +364,8 @@ PointResult measure_cloth(const Point& point, Lab& lab) {
   counts.promises = promises(record.options);
   if (counts.promises && !record.promise.holds) counts.revoked = true;
   counts.scene_hash = record.scene_hash;
+  std::tie(counts.left_by_boxes, counts.views_used) = mechanism_of(scene, record);
+  if (of.method == far) std::tie(counts.at_risk, counts.at_risk_bare) = pairs_at_risk(of, lab);
   counts.kinetic = note(notes, "kinetic J");
   counts.total = note(notes, "total J");
   counts.slack = note(notes, "slack J");

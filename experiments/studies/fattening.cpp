@@ -8,10 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/canvas/fatten.h"
+#include "core/native/canvas.h"
 #include "core/view/regions.h"
 #include "core/view/view.h"
 #include "experiments/lemma/lemma.h"
@@ -118,7 +122,7 @@ FragmentCounts fragments_of(const std::vector<PairView>& views) {
 PointResult measure(const Point& of, Lab& lab) {
   const RunPoint& point = std::get<RunPoint>(of);
   Record record;
-  PointResult out = measure_run(point, lab, &record);
+  PointResult out = measure_with_risk(point, lab, &record);
   FragmentCounts& counts = std::get<RunCounts>(out.counts).fragments.emplace();
   if (point.method == far) {
     const Fragments fragments = count_fragments(lab.current(), record, point.offset);
@@ -172,13 +176,44 @@ Study offsets_study() {
 
 namespace {
 
+// The native canvas with a depth buffer of 16 bits of fixed point, for depths() alone: what a
+// monotone rounding of the nearest or the farthest depth gives is the nearest or the farthest of
+// the rounded depths.
+class CoarseCanvas final : public Canvas {
+ public:
+  CoarseCanvas(DepthMode mode, const SolidProgram& solid)
+      : canvas_(mode, solid), limits_(canvas_.limits()) {
+    limits_.depth_bits = 16;
+  }
+  const RasterLimits& limits() const override { return limits_; }
+  void begin(const Window& window, const Drawables& drawables) override {
+    canvas_.begin(window, drawables);
+  }
+  std::vector<std::uint8_t> run(const Pass&) override {
+    throw std::logic_error("CoarseCanvas: only depths are offered");
+  }
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override {
+    return canvas_.samples(verb, draws);
+  }
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override {
+    std::vector<float> out = canvas_.depths(verb, draws);
+    for (float& z : out) z = std::nearbyint(z * 0xffff) / 0xffff;
+    return out;
+  }
+
+ private:
+  NativeCanvas canvas_;
+  RasterLimits limits_;
+};
+
 LemmaSettings settings_of(const LemmaPoint& point) {
   LemmaSettings settings;
   settings.points = point.points * lemma_generators().size();
   settings.generator = point.generator;
   settings.seed = point.seed;
   settings.displace = point.worst;
-  settings.stored = point.depth_mode == DepthMode::fixed || point.depth_format.has_value();
+  settings.stored =
+      point.coarse || point.depth_mode == DepthMode::fixed || point.depth_format.has_value();
   settings.side = point.side;
   settings.depth = point.depth / 2;
   return settings;
@@ -192,11 +227,11 @@ constexpr const char* kGenerators[] = {
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
   // Each side with its border makes a viewport of a power of two. The largest depth is that of a
-  // window (core/view/view.h, fit_window).
-  const std::vector<int> sides =
-      choice.quick ? std::vector{508, 1020} : std::vector{508, 2044, 4092};
+  // window (core/view/view.h, fit_window): there a step of 24 bits is longer than the chord of the
+  // ball at the corner of a pixel, and a step of 16 bits in one of 2^13 px.
+  const std::vector<int> sides = choice.quick ? std::vector{508, 1020} : std::vector{508, 4092};
   const std::vector<double> depths =
-      choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p12, 0x1p16, 0x1p20};
+      choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p13, 0x1p20};
   std::vector<Point> out;
   for (const char* generator : kGenerators) {
     for (const double depth : depths) {
@@ -204,16 +239,24 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
           .generator = generator, .points = points, .depth = depth, .seed = choice.seed};
       for (const int side : sides) {
         point.side = side;
-        for (const DepthMode mode : {DepthMode::fragment, DepthMode::fixed}) {
+        const auto add = [&](DepthMode mode, std::optional<DepthFormat> format,
+                             const std::vector<RadiusRule>& radii) {
           point.depth_mode = mode;
-          for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
-            point.depth_format = format;
-            for (const RadiusRule& radius : {kPublishedRadius, kBudgetRadius}) {
-              point.radius = radius;
-              out.push_back(point);
-            }
+          point.depth_format = format;
+          point.coarse = !format;
+          for (const RadiusRule& radius : radii) {
+            point.radius = radius;
+            out.push_back(point);
           }
+        };
+        // 0.9 of the radius shows that the points are hard enough to notice a smaller one.
+        const std::vector<RadiusRule> computed = {parse_radius("0.9"), kPublishedRadius,
+                                                  kBudgetRadius};
+        for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
+          add(DepthMode::fragment, format, computed);
+          add(DepthMode::fixed, format, {kPublishedRadius, kBudgetRadius});
         }
+        add(DepthMode::fragment, {}, {parse_radius("0.9"), kBudgetRadius});
       }
     }
   }
@@ -368,12 +411,17 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
   // The rule of promises() in method/run.h for runs of FAR.
   counts.promises = !fixed && !point.radius.published && point.radius.factor >= 1;
   std::unique_ptr<WorstCanvas> worst;
+  std::unique_ptr<CoarseCanvas> coarse;
   Canvas* canvas = nullptr;
   if (point.worst) {
     worst = std::make_unique<WorstCanvas>(fattener.solid,
                                           WorstCanvasOptions{.depth_bits = bits24 ? 24 : 32});
     canvas = worst.get();
     out.device = "cpu";
+  } else if (point.coarse) {
+    coarse = std::make_unique<CoarseCanvas>(fattener.mode, fattener.solid);
+    canvas = coarse.get();
+    out.device = "native";
   } else {
     const bool native = lab.session().canvas_device().native;
     if (counts.promises && !native && !lab.session().verdict(Reliance::drawing).holds)

@@ -34,10 +34,6 @@ void add_scene(const MotionFrame& scene, PointKey& key) {
   key.scene = scene.name;
   key.frame = scene.frame;
 }
-void add_scene(const ChangedScene& scene, PointKey& key) {
-  const bool offset = scene.change == ChangedScene::Change::offset;
-  key.scene = fmt::format("{}@{}-1e{}", scene.name, offset ? "offset" : "scale", scene.power);
-}
 void add_scene(const ClothApart& scene, PointKey& key) {
   key.scene = scene.name + "@apart";
   key.frame = scene.frame;
@@ -45,6 +41,9 @@ void add_scene(const ClothApart& scene, PointKey& key) {
 void add_scene(const PixelCorners&, PointKey& key) { key.scene = "pixel-corners"; }
 void add_scene(const ClusteredScene& scene, PointKey& key) {
   key.scene = fmt::format("clusters:{}@seed{}", scene.ratio, scene.seed);
+}
+void add_scene(const ContactCells& scene, PointKey& key) {
+  key.scene = fmt::format("contacts:{}:{}:{}", scene.family, scene.side, scene.value);
 }
 
 void add_scene(const PointScene& scene, PointKey& key) {
@@ -96,7 +95,7 @@ PointKey key_of(const DistancePoint& point) {
 PointKey key_of(const LemmaPoint& point) {
   PointKey key;
   key.scene = LemmaScene{point.generator, point.points, point.depth}.name();
-  key.method = point.worst ? "lemma-worst" : "lemma";
+  key.method = point.worst ? "lemma-worst" : point.coarse ? "lemma-fixed16" : "lemma";
   key.offset = "obb";
   key.radius = point.radius;
   key.depth_format = point.depth_format;

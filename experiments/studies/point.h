@@ -27,12 +27,6 @@ struct MotionFrame {
   long frame = 0;
   long frames = 1;  // of the whole motion
 };
-/// A built-in scene with every vertex changed by the same number, a power of ten.
-struct ChangedScene {
-  std::string name;
-  enum class Change { offset, scale } change = Change::offset;  // offset: along (1, 1, 1)
-  int power = 0;                                                // the number is 10^power
-};
 /// A frame of the cloth of that name above its sphere, without self-collision tests.
 struct ClothApart {
   std::string name;
@@ -47,8 +41,16 @@ struct ClusteredScene {
   std::uint64_t seed = 1;
 };
 
+/// Contacts at corners of pixels, of a family in which one number goes to an extreme
+/// (contact_cells() in contact_cells.cpp).
+struct ContactCells {
+  std::string family;  // slivers, stack, mixed, gap, offset or scale
+  int side = 24;       // cells in a row; there are side * side of them
+  std::string value;   // the number, as in 1e6
+};
+
 using PointScene =
-    std::variant<NamedScene, MotionFrame, ChangedScene, ClothApart, PixelCorners, ClusteredScene>;
+    std::variant<NamedScene, MotionFrame, ClothApart, PixelCorners, ClusteredScene, ContactCells>;
 
 /// A method of `farcull run`. The method chooses the value of an empty field.
 struct RunPoint {
@@ -90,7 +92,8 @@ struct LemmaPoint {
   /// If given, and always with fixed depth, the samples are what a buffer of this format stores;
   /// empty: what the shader computes.
   std::optional<DepthFormat> depth_format = {};
-  int side = 0;  // px, of the window; 0: the generator's own
+  bool coarse = false;  // the samples are what a buffer of 16 bits of fixed point stores
+  int side = 0;         // px, of the window; 0: the generator's own
   std::uint64_t seed = 1;
 };
 
@@ -150,9 +153,9 @@ struct PointKey {
   std::string scene = {};   // as on the command line, or as key_of() writes it
   std::string method = {};  // as --method with the options of its form ("cullide --rounds
                             // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
-                            // "lemma", "lemma-worst"; of placements "far", "far-snapped-8";
-                            // a contestant, perhaps with what it is asked ("cgal-aabb
-                            // nearest"); of potential neighbours "boxes", "trees",
+                            // "lemma", "lemma-worst", "lemma-fixed16"; of placements "far",
+                            // "far-snapped-8"; a contestant, perhaps with what it is asked
+                            // ("cgal-aabb nearest"); of potential neighbours "boxes", "trees",
                             // "voronoi", "voronoi-reliable"
   std::string offset = {};  // obb or exact
   std::optional<RadiusRule> radius = {};

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
@@ -97,13 +98,6 @@ Scene clusters(const ClusteredScene& wanted) {
   return scene.finish();
 }
 
-Scene changed(const ChangedScene& scene) {
-  const double by = std::strtod(fmt::format("1e{}", scene.power).c_str(), nullptr);
-  const Scene plain = make_builtin_scene(scene.name);
-  return scene.change == ChangedScene::Change::offset ? transformed(plain, 1, Vec3::Constant(by))
-                                                      : transformed(plain, by, Vec3::Zero());
-}
-
 Scene cloth_apart(const ClothApart& wanted) {
   const SceneRequest request = parse_scene_name(wanted.name);
   ClothSettings settings;
@@ -154,6 +148,7 @@ PointResult result_of(const Scene& scene, const Truth& truth, const Record& reco
   counts.colliding_triangles = truth.triangles;
   counts.kept_triangles = record.found.triangle_count;
   counts.kept_objects = record.found.object_count;
+  std::tie(counts.left_by_boxes, counts.views_used) = mechanism_of(scene, record);
   counts.promises = promises(record.options);
   if (counts.promises && !record.promise.holds) counts.revoked = true;
   counts.scene_hash = record.scene_hash;
@@ -192,8 +187,8 @@ const Scene& open_scene(const PointScene& scene, Lab& lab) {
   if (const auto* of = std::get_if<MotionFrame>(&scene))
     return lab.scene(of->name, of->frame, of->frames);
   const PointKey key = key_of(RunPoint{.scene = scene});
-  if (const auto* of = std::get_if<ChangedScene>(&scene))
-    return lab.scene(key.scene, [&] { return changed(*of); });
+  if (const auto* of = std::get_if<ContactCells>(&scene))
+    return lab.scene(key.scene, [&] { return contact_cells(*of); });
   if (const auto* of = std::get_if<ClothApart>(&scene)) {
     return lab.scene(fmt::format("{} frame {}", key.scene, key.frame),
                      [&] { return cloth_apart(*of); });
@@ -254,6 +249,18 @@ std::string answered(const Record& record) {
   return used.gl ? used.gl->renderer : used.cpu && draws(record.options.method) ? "native" : "cpu";
 }
 
+std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const Record& record) {
+  std::uint64_t left = scene.triangles.size();
+  for (const Stage& stage : record.trace) {
+    if (stage.kind == StageKind::boxes && stage.ran && stage.unit == Unit::triangles)
+      left = stage.out;
+  }
+  const auto& drawn = record.found.views();
+  const auto& looked = record.found.pair_views();
+  return {left, std::ranges::count_if(drawn, &ViewReport::drawn) +
+                    std::ranges::count_if(looked, &PairView::looked)};
+}
+
 RunOptions options_of(const RunPoint& point, const Lab& lab) {
   RunOptions options;
   options.method = point.method;
@@ -299,6 +306,24 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
                .total = compared_ms(record),
                .setup = record.ms.setup};
   if (kept != nullptr) *kept = std::move(record);
+  return out;
+}
+
+std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point, Lab& lab) {
+  const auto missed_at = [&](double factor) {
+    RunPoint smaller = repeated(point, 1);
+    smaller.radius = RadiusRule{.factor = factor};
+    return std::get<RunCounts>(measure_run(smaller, lab).counts).missed;
+  };
+  const std::uint64_t smaller = missed_at(0.9);
+  return {smaller, missed_at(0)};
+}
+
+PointResult measure_with_risk(const RunPoint& point, Lab& lab, Record* record) {
+  PointResult out = measure_run(point, lab, record);
+  auto* counts = std::get_if<RunCounts>(&out.counts);
+  if (point.method == Method::far && counts != nullptr && counts->promises)
+    std::tie(counts->at_risk, counts->at_risk_bare) = pairs_at_risk(point, lab);
   return out;
 }
 

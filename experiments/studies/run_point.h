@@ -34,6 +34,17 @@ constexpr int kMostSizedResolution = 8192;
 /// The options of a run at the point, without the accounting: the run is compared with the truth.
 RunOptions options_of(const RunPoint& point, const Lab& lab);
 
+/// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
+/// and z at kCellsResolution. In half of the cells the triangles meet at a corner of a pixel, so
+/// that sampling loses them where the ball is too small; in the other half they are 3 px apart, so
+/// that there is something to cull. Throws std::logic_error for an unknown family.
+constexpr int kCellsResolution = 512;
+Scene contact_cells(const ContactCells& scene);
+
+/// The triangles that boxes left, and the views that were drawn: RunCounts::left_by_boxes and
+/// views_used.
+std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const Record& record);
+
 /// The name of the device that answered: PointResult::device.
 std::string answered(const Record& record);
 
@@ -48,6 +59,12 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* record = nullpt
 inline PointResult measure_run_point(const Point& point, Lab& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
 }
+
+/// The pairs that FAR misses at the point with 0.9 of its radius, and without a ball:
+/// RunCounts::at_risk and at_risk_bare. Runs it twice.
+std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point, Lab& lab);
+/// measure_run(), for FAR at a radius that promises with the pairs at risk.
+PointResult measure_with_risk(const RunPoint& point, Lab& lab, Record* record = nullptr);
 
 /// Opens the scene and runs the library on it once on `threads` threads. Pairs of neighbours count
 /// neither as missed nor as wrong, since libraries leave them out. Left out if this build lacks the

@@ -210,7 +210,7 @@ def long_table(rows):
 def add_forms(chapter, rows):
     """Adds what each form of a family misses and leaves."""
     for of in families(rows):
-        said = [f"{name} {rate_text(total(runs, 'missed'), total(runs, 'colliding'))}, leaving "
+        said = [f"{name} {missed_of(runs)}, leaving "
                 f"{grouped(total(runs, 'candidates'))} candidates" for name, runs in of.forms.items()]
         rival = f"; {of.rival} leaves {grouped(of.rival_candidates)} there" if of.rival else ""
         runs = next(iter(of.forms.values()))
@@ -243,7 +243,7 @@ def add_sizes(chapter, rows):
                  if name in ("CULLIDE, one round", "FAR (OBB)", "CULLIDE, one round, conservative")]
         if words:
             chapter.find(f"Where a triangle covers {rounded(size)} {'pixel' if size == 1 else 'pixels'} on average: "
-                         f"{'; '.join(words)}.")
+                         f"{'; '.join(words)}. The forms of CULLIDE draw the same pixels without a ball.")
 
 
 def add_sums(chapter, rows):
@@ -251,7 +251,8 @@ def add_sums(chapter, rows):
     others = rows[~rows.index.isin(promising(rows).index) & ~family(rows) & (rows.method != "exact")]
     for name, runs in others.groupby("contestant"):
         chapter.find(f"{name} promises nothing, and missed {missed_of(runs)} colliding pairs in "
-                     f"{counted(len(runs), 'run', 'runs')} here.")
+                     f"{counted(len(runs), 'run', 'runs')} here"
+                     f"{not_snapped(runs) if 'published radius' in name else ''}.")
 
 
 def pictures_of(rows):

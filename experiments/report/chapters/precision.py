@@ -3,6 +3,9 @@ experiment."""
 from frame import *  # noqa: F403
 
 OURS = "fragment, budget radius"
+BUFFERS = {"fixed24": "24 bits", "float32": "32-bit float"}
+# How far rounding takes a depth, in steps of 2^-24, for 16 bits (experiments/lemma/lemma.cpp, rounding_of).
+ROUNDING_16 = 0.5 + 1 + 2**24 / (2**16 - 1) + 1
 COUNTS = ("points", "no_sample", "not_bounding", "rounded")
 
 
@@ -10,9 +13,10 @@ def with_axes(rows):
     """Rows with the source of their depth, the buffer, the generator and the depth of the scene."""
     words = [scene.split(":") for scene in rows.scene]
     return rows.assign(
-        line=[("fixed-function" if mode == "fixed" else "fragment") + f", {radius} radius"
+        line=[("fixed-function, " if mode == "fixed" else "fragment, ") +
+              (f"{radius} radius" if radius in ("budget", "published") else f"{radius} of the radius")
               for mode, radius in zip(rows.depth_mode, rows.radius)],
-        bits=["24 bits" if f == "fixed24" else "32-bit float" for f in rows.depth_format],
+        bits=["16 bits" if m == "lemma-fixed16" else BUFFERS.get(f, f) for m, f in zip(rows.method, rows.depth_format)],
         generator=[w[1] for w in words], depth=[float(w[3]) for w in words])
 
 
@@ -61,6 +65,7 @@ def figure_of(rows, rounding):
                  "triangles. At 0 no sample is outside. Up to the mark a monotone rounding explains it, which the "
                  "theorem allows." + not_drawn(rows))
     for (bits, side), here in grouped_by(rows, ["bits", "resolution"]):
+        rounding = {**rounding, "16": ROUNDING_16}
         panel = Panel(f"{bits}, {side} px", log("depth of the scene (px)"), log("outside (depth steps)", zero=True),
                       marks=[Mark(rounding[bits[:2]], "rounding of the map", vertical=False)])
         for line, of in grouped_by(here, "line"):
@@ -110,6 +115,20 @@ def add_violations(chapter, rows):
     return broken
 
 
+def add_deep_windows(chapter, rows):
+    """Adds what holds where a step of the buffer is longer than the chord of the ball at the corner of a pixel: there
+    the depths of a whole contact are one number in the buffer."""
+    ours = rows[rows.line == OURS]
+    chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
+    step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # a step of 2^-16, not of 2^-24
+    deep = ours[step > chord]
+    if len(deep):
+        lost = total(deep, "no_sample") + total(deep, "not_bounding")
+        chapter.find(f"In {of_all(len(deep), len(ours))} runs of fragment depth at the budget radius a depth step, of up "
+                     f"to {rounded(step.max())} px, is longer than the chord of the ball at the corner of a pixel, "
+                     f"{rounded(chord.max())} px: {of_all(lost, total(deep, 'points'))} points are violated there.")
+
+
 def add_findings(chapter, rows):
     broken = add_violations(chapter, rows)
     for (line, bits), of in grouped_by(rows, ["line", "bits"]):
@@ -133,9 +152,12 @@ def fill(chapter, study):
     rows = with_axes(study.rows)
     add_promises(chapter, study)
     add_findings(chapter, rows)
+    add_deep_windows(chapter, rows)
     chapter.limits = [
         "A violation is decided on what the buffer holds against the exact depth of the point under the exact depth "
         "map. What a monotone rounding explains is counted apart, because asked and stored depths are rounded alike.",
+        "The buffer of 16 bits is that of the native canvas, whose depths are rounded to multiples of 1 / (2^16 - 1) "
+        "after drawing; no run of a whole scene has it.",
         "Fixed-function depth promises nothing: that its surface bounds every point here at the budget radius is this "
         "device's interpolation, for which GL gives no bound.",
         "The published radius grows with the depth step, so in deep scenes it is larger than the budget's."]

@@ -74,8 +74,8 @@ def broken_text(row):
         f"{of_all(pairs, number(row, 'nearest_pairs'))} nearest pairs of triangles")
 
 
-def add_kept_promises(chapter, rows):
-    rows = promising(rows)
+def add_kept_promises(chapter, all_rows):
+    rows = promising(all_rows)
     known = column(rows, "missed").where(rows.sets, column(rows, "wrong")).notna()
     broken = [(row, said) for row in rows[known].itertuples() if (said := broken_text(row))]
     for row, said in broken:
@@ -88,6 +88,11 @@ def add_kept_promises(chapter, rows):
         chapter.find(f"{listed(sorted(set(sets.name)))} lost {of_all(0, total(sets, 'with_nearest'))} nearest "
                      f"neighbours of objects, and {of_all(0, total(sets, 'nearest_pairs'))} nearest pairs of "
                      f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run.")
+        words = [f"{grouped(total(of, 'missed'))} of {grouped(total(of, 'with_nearest'))} in {name}" for name, of in
+                 by(all_rows[all_rows.name.isin([PUBLISHED, NARROW])], "name")]
+        if words:
+            chapter.find(f"At risk of a diagram, since they are lost on the same scenes: {listed(words)}. Boxes and trees "
+                         "have no cells that could lose a neighbour.")
     if len(distances) and not broken:
         chapter.find(f"Of the distances of farcull {of_all(0, total(distances, 'asked'))} were not the nearest "
                      "double.")

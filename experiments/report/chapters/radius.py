@@ -235,10 +235,16 @@ def add_headline(chapter, runs, placements):
         rest = ("" if constructed.empty else
                 f"; its failure end to end rests on the constructed pixel-corners, where it missed {of}"
                 if lost == 0 and total(constructed, "missed") else
-                f"; on the constructed pixel-corners it missed {of} here")
+                f"; on the constructed pixel-corners it missed {of} here{not_snapped(constructed)}")
         chapter.find("On scenes that were not constructed against it, the published radius missed "
                      f"{missed_of(natural)} colliding pairs in "
                      f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
+        # A radius that misses nothing where no smaller one misses anything says nothing.
+        smaller = runs[(runs.factor == 0.9) & (runs.depth_mode == "fragment")]
+        bare = runs[(runs.factor == 0) & (runs.depth_mode == "fragment")]
+        if len(smaller) and len(bare):
+            chapter.find(f"Pairs at risk in these scenes, views and pixels: {of_rows(smaller, 'missed', 'colliding')} are "
+                         f"missed with 0.9 of the budget radius, and {grouped(total(bare, 'missed'))} without a ball.")
     for bits, rows in groups(placements[placements.published], "bits"):
         longest = rounded(column(rows, "largest_miss_px").max())
         more = f"; the longest intersection that it missed is {longest} px long" if total(rows, "missed") else ""

@@ -10,7 +10,7 @@ from made_up import chapter_of, figure, findings, row, table
 def counts(missed, promises=False, **more):
     return {"colliding": 20, "missed": missed, "missed_penetrating": missed, "colliding_triangles": 10,
             "candidates": 40, "kept_triangles": 30, "triangles": 100, "promises": promises, "radius_px": 0.71,
-            "pixel_size": 0.5, **more}
+            "pixel_size": 0.5, "left_by_boxes": 80, "views_used": 3, **more}
 
 
 def far(scene="s", missed=0, promises=True, ms=2.0, more=(), **axes):
@@ -34,7 +34,7 @@ def series(chapter, figure_name, name, panel=0):
 # ---- every chapter
 
 PROMISING = {"accuracy": far(), "error-time": far(), "radius": far("degenerate"), "precision": lemma(
-    more={"promises": True}, depth_format="float32", resolution=508), "stability": far("slivers:200:1e2"),
+    more={"promises": True}, depth_format="float32", resolution=508), "stability": far("contacts:slivers:24:1e2"),
     "cloth": row("cloth:200:1e2", "far-pairs", counts(0, True, total=1.0, slack=0.0, converged=True, iterations=3),
                  frame=0)}
 
@@ -48,8 +48,9 @@ def test_promises_come_first(study, failed):
     chapter = chapter_of(study, [(point, {k: v for k, v in {**known, **broken}.items() if v is not None}, times, "")])
     said = findings(chapter)
     # Without a bound: neither pairs of a scene nor points of a triangle are independent.
-    kept = ("violated at 0 of 100 points in 1 run." if of_points else
-            "missed 0 of 20 colliding pairs in 1 run on 1 scene.")
+    kept = ("violated at 0 of 100 points in 1 run; a smaller radius was not tried." if of_points
+            else "missed 0 of 20 colliding pairs in 1 run on 1 scene in which views decided; how many pairs were at risk "
+            "was not counted.")
     assert said.startswith("BROKEN:") == (failed == 1) and said.count("BROKEN") == (failed == 1), "a row is said once"
     assert (kept in said) == (failed == 0)
     assert ("One row of methods that promise does not say" in said) == (failed is None)
@@ -64,6 +65,29 @@ def test_missing_rows_are_told(study):
     assert "Left out at 1 of 1 points: a mesh is not there." in chapter.limits
 
 
+# A sentence about misses says what decided, and how many pairs could have been missed.
+def said_of_misses(far_more=(), *others, far_pairs=()):
+    return findings(chapter_of("accuracy", [
+        far(more=far_more), row("s", "far-pairs", counts(0, True, **dict(far_pairs)), resolution=64, views="x,y,z"),
+        *others]))
+
+
+def test_what_decided_stands_beside_what_was_not_missed():
+    said = said_of_misses({"at_risk": 4, "at_risk_bare": 9})
+    assert ("missed 0 of 40 colliding pairs in 2 runs on 1 scene in which views decided; at risk there: 4 "
+            "pairs with 0.9 of the radius (counted in 1 of 2 runs) and 18 pairs without a ball.") in said
+    assert "Culled where views decided, of all triangles: FAR (OBB) 20 % by boxes and 50 % by views" in said
+    # The twins: a join of boxes tests no radius, and says so; and nothing at risk is said.
+    said = said_of_misses(far_pairs={"views_used": 0})
+    assert ("FAR pairs missed 0 of 20 colliding pairs in 1 run on 1 scene in which boxes alone decided; no "
+            "view was drawn, so these tested no radius, pixel or depth.") in said
+    assert "no pair was at risk, so this says nothing about the radius" in said_of_misses(
+        {"at_risk": 0, "at_risk_bare": 0})
+    assert "at risk there: 14 pairs without a ball." in said_of_misses((), row("s", "cullide", counts(7), resolution=64))
+    assert "was not counted" in said_of_misses((), row("s", "cullide", counts(7), resolution=128)), "other pixels"
+    assert "test that a ball is needed, not how large it has to be" in said_of_misses({"at_risk": 0, "at_risk_bare": 3})
+
+
 # ---- accuracy
 
 def accuracy_rows(first=20, last=3, far_misses=0):
@@ -76,7 +100,7 @@ def test_accuracy_shows_cullide_falling_and_far_at_zero(far_misses):
     chapter = chapter_of("accuracy", accuracy_rows(far_misses=far_misses))
     said = findings(chapter)
     assert said.startswith("BROKEN: s, far, obb, 64 px misses 1 of 20") == (far_misses == 1)
-    assert ("FAR (OBB) missed 0 of 40 colliding pairs in 2 runs on 1 scene." in said) == (far_misses == 0)
+    assert ("FAR (OBB) missed 0 of 40 colliding pairs in 2 runs on 1 scene in which" in said) == (far_misses == 0)
     assert "20 of 20 colliding pairs are missed at 64 px and 3 at 4096" in said
     assert figure(chapter, "accuracy").panels[0].y.zero
     assert series(chapter, "accuracy", "CULLIDE, one round").y == [20, 3]
@@ -94,7 +118,7 @@ def test_accuracy_leaves_no_form_of_cullide_out():
     chapter = chapter_of("accuracy", [row("s", m, {**counts(n), "candidates": 100 + n}, resolution=64)
                                       for m, n in forms.items()] +
                          [row("s", "exact", {**counts(0), "candidates": 200})] + [far(), far(radius="published")])
-    assert "CULLIDE, objects alone 0 of 20 (95 % bound: at most 0.14), leaving 100 candidates; CULLIDE, one round, all " \
+    assert "CULLIDE, objects alone 0 of 20 (on 0 of 1 scene), leaving 100 candidates; CULLIDE, one round, all " \
         "views, conservative 2 of 20" in findings(chapter)
     names = {f"CULLIDE, {form}": y for form, y in (
         ("as published", [45]), ("conservative", [15]), ("strict", [10]), ("other forms", [100, 0]))}
@@ -283,27 +307,41 @@ def test_precision_draws_no_zero_where_there_is_no_sample(no_sample, steps, y, s
 
 # ---- extreme scenes
 
-def test_stability_says_who_misses_and_what_is_kept():
+def stability_rows(risk=7, kept=30):
     rows = []
-    for scene, lost in (("slivers:200:1e2", 0), ("slivers:200:1e12", 4)):
-        rows += [row(scene, "cullide", counts(5 + 15 * (lost > 0))),
+    for scene, lost in (("contacts:slivers:24:1e2", 0), ("contacts:slivers:24:1e12", 4)):
+        rows += [row(scene, "cullide", counts(5 + 15 * (lost > 0)), resolution=64),
                  row(scene, "fcl-float", {"colliding": 20, "missed": lost, "wrong": lost and 6, "promises": False}),
-                 far(scene), row(scene, "exact", counts(0))]
-    rows += [far("gap:216:-1e3", more={"at_risk": 7}), far("gap:216:1e3"), far("crowd:60@offset-1e9"),
+                 far(scene, more={"at_risk": risk, "at_risk_bare": 9, "kept_triangles": kept}), row(scene, "exact", counts(
+                     0))]
+    rows += [far("contacts:gap:24:-1e3"), far("contacts:gap:24:1e3"), far("contacts:offset:24:1e9"),
              row("cloth:450:1e8", "far-pairs", counts(0, True), frame=40), far("cloth:450:1e8@apart", frame=40)]
-    chapter = chapter_of("stability", rows)
+    return rows
+
+
+def test_stability_says_who_misses_and_what_is_kept():
+    chapter = chapter_of("stability", stability_rows())
     said = findings(chapter)
-    for part in ("missed 0 of 140 colliding pairs in 7 runs on 7 scenes",
+    for part in ("missed 0 of 140 colliding pairs in 7 runs on 7 scenes in which views decided",
                  "CULLIDE missed pairs, at worst: slivers (aspect 1e12: 20 of 20).",
                  "fcl-float missed pairs, at worst: slivers (aspect 1e12: 4 of 20).",
                  "fcl-float reported pairs that do not collide, at worst: slivers (aspect 1e12: 6).",
+                 "slivers: of all triangles culling took away: FAR (OBB) 70 %; at risk of 40 that collide: 14 with 0.9 of "
+                 "the radius and 18 without a ball.",
                  "FAR (OBB) keeps for each triangle that collides: slivers 3"):
         assert part in said
+    assert "slivers: no pair is lost" not in said and "slivers: FAR (OBB) cannot" not in said
     assert [p.title for p in chapter.figures[0].panels] == [
         "slivers", "overlaps", "gaps", "far from the origin", "cloth against itself and a sphere", "cloth on a sphere"]
     assert series(chapter, "stability-missed", "CULLIDE").y == [25, 100]
-    risk = {r[0].split(",")[0]: r[5] for r in table(chapter, "stability") if r[1] == "FAR (OBB)"}
-    assert risk["overlaps"] == "7" and risk["gaps"] == "-", "not asked there"
+    risk = {r[0].split(",")[0]: r[5:7] for r in table(chapter, "stability") if r[1] == "FAR (OBB)"}
+    assert risk["slivers"] == ["14", "18"] and risk["gaps"] == ["-", "-"], "not asked there"
+
+
+def test_stability_says_where_too_little_is_tested():
+    said = findings(chapter_of("stability", stability_rows(0, 95)))
+    assert "slivers: FAR (OBB) cannot cull 30 % of the triangles here; 0 missed says little there." in said
+    assert "slivers: no pair is lost with 0.9 of the radius by FAR (OBB), so these scenes do not test" in said
 
 
 # ---- cloth

@@ -176,22 +176,45 @@ TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
   EXPECT_THROW(measure_run(repeated(moving, 2), lab), std::logic_error);
 }
 
-// Crossings at the corners of pixels: 0.9 of the radius loses some, the budget none. A method
-// without a radius has nothing at risk of it.
-TEST(RunPoint, OfScenesThatGoToAnExtremeSaysHowManyPairsAreAtRisk) {
+// Contacts of every family at its harmless end and at its extreme: FAR culls, misses none, and
+// would miss nearly all with a smaller ball, which is the twin. A method without a radius has
+// nothing at risk of it, and without a view nothing is drawn.
+TEST(ContactCells, AreFoundByTheBudgetAndLostBySmallerBalls) {
   Lab lab("native");
-  const auto counts_of = [&lab](RunPoint point) {
-    point.scene = PixelCorners{};
-    point.views = "z";
-    point.resolution = 96;
+  const auto counts_of = [&lab](const RunPoint& point) {
     return std::get<RunCounts>(stability_study().measure(point, lab).counts);
   };
-  const RunCounts far =
-      counts_of({.method = Method::far, .offset = "obb", .radius = kBudgetRadius});
-  EXPECT_EQ(far.missed, 0u);
-  ASSERT_TRUE(far.at_risk.has_value());
-  EXPECT_GT(*far.at_risk, 0u);
-  EXPECT_FALSE(counts_of({.method = Method::cullide}).at_risk.has_value());
+  constexpr int kSide = 18;
+  struct Family {
+    const char *name, *value;
+    std::uint64_t pairs = 1;  // that collide in every other cell
+  };
+  for (const Family& family :
+       {Family{"slivers", "1e2"}, Family{"slivers", "1e12"}, Family{"stack", "1e-1", 3},
+        Family{"stack", "1e-14", 3}, Family{"mixed", "1e0"}, Family{"mixed", "1e12"},
+        Family{"gap", "-1e13"}, Family{"gap", "0"}, Family{"gap", "1e0", 0},
+        Family{"offset", "1e12"}, Family{"scale", "1e-9"}, Family{"scale", "1e9"}}) {
+    SCOPED_TRACE(std::string(family.name) + ", " + family.value);
+    const ContactCells cells{family.name, kSide, family.value};
+    const RunCounts far = counts_of(far_point(cells, "obb", kBudgetRadius, kCellsResolution));
+    const std::uint64_t pairs = family.pairs * kSide * kSide / 2;
+    EXPECT_GE(far.colliding, pairs);
+    EXPECT_LE(far.colliding, pairs + 12) << "those at the corners of the box";
+    EXPECT_EQ(far.missed, 0u);
+    EXPECT_GT(far.views_used, 0u);
+    EXPECT_EQ(far.left_by_boxes, far.triangles) << "boxes of objects cull nothing here";
+    EXPECT_LE(10 * far.kept_triangles, 7 * far.triangles) << "at least 30 % are culled";
+    EXPECT_GE(far.at_risk.value_or(0), pairs);
+    EXPECT_GE(far.at_risk_bare.value_or(0), pairs);
+    RunPoint views = plain_point(cells, Method::far_pairs, kCellsResolution);
+    views.views = "x,y,z";
+    const RunCounts found = counts_of(views);
+    EXPECT_EQ(found.missed, 0u);
+    EXPECT_EQ(found.views_used, 3u);
+    EXPECT_LE(10 * found.kept_triangles, 7 * found.triangles);
+    EXPECT_FALSE(found.at_risk.has_value());
+    EXPECT_EQ(counts_of(plain_point(cells, Method::far_pairs)).views_used, 0u) << "a join of boxes";
+  }
 }
 
 TEST(RunPoint, GivesTheSameAnswerInEveryRun) {
