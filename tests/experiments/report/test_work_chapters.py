@@ -34,7 +34,8 @@ def test_promises(study, scene, axes, missed, first):
     assert (" missed 0 of 20 (95 %" in findings(chapter)) == (missed == 0)
 
 
-@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries"])
+@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
+                                   "model"])
 def test_missing_rows_are_told(study):
     empty = chapter_of(study, [], declared=3)
     assert empty.figures == [] and empty.tables == []
