@@ -84,15 +84,15 @@ def table_of(rows):
     out = Table(
         "model",
         f"By method: points with {FEWEST} missed pairs or more, those of them whose prediction is within a factor of "
-        f"{FACTOR}, the same where less than 90 % of the pairs are missed, the factor by which half of the predictions "
-        "are off, and runs at single positions that are outside the predicted interval",
+        f"{FACTOR}, the same where less than 90 % of the pairs are missed, the factor by which half of "
+        "these are off, and runs at single positions that are outside the predicted interval",
         columns(["method"], ["points", f"within {FACTOR}", "below 90 %", f"within {FACTOR}", "typical factor", "runs",
                              "outside"]))
     for way, of in by(rows, "way"):
         some = judged(of)
         part = some[some.share < 0.9]
         out.rows.append([way, grouped(len(some)), grouped(right(some)), grouped(len(part)), grouped(right(part)),
-                         rounded(typical_error(some)), grouped(total(of, "positions")), grouped(total(of, "outside"))])
+                         rounded(typical_error(part)), grouped(total(of, "positions")), grouped(total(of, "outside"))])
     return out
 
 
@@ -112,8 +112,8 @@ def add_share(chapter, rows, words):
     part = some[some.share < 0.9]
     chapter.find(f"{words}: the prediction is within a factor of {FACTOR} of the mean at "
                  f"{of_all(right(some), len(some))} points with {FEWEST} missed pairs or more"
-                 + (f" (at {of_all(right(part), len(part))} where less than 90 % are missed)" if len(part) else "")
-                 + f"; half of the predictions are off by a factor of {rounded(typical_error(some))} or less.")
+                 + (f"; at {of_all(right(part), len(part))} where less than 90 % are missed, and half of these are off by a "
+                    f"factor of {rounded(typical_error(part))} or less" if len(part) else "") + ".")
 
 
 def add_worst(chapter, rows):
