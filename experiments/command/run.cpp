@@ -12,6 +12,7 @@
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/frames.h"
+#include "experiments/method/misses.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
@@ -277,10 +278,21 @@ int RunCommand::plan(const RunOptions& options) const {
   RunOptions all = options;
   all.ignored = ignored_objects(scene, ignored());
   const Plan planned = farcull::plan(scene, all);
-  if (outputs.json) write_json(plan_json(scene, planned), *outputs.json);
+  const MissOutlook outlook = look_ahead(scene, planned);
+  if (outputs.json) {
+    auto json = plan_json(scene, planned);
+    json["misses"] = nullptr;
+    if (const auto& of = outlook.forecast) {
+      json["misses"] = {{"colliding", of->colliding},
+                        {"expected", of->missed},
+                        {"low", of->low()},
+                        {"high", of->high()}};
+    }
+    write_json(json, *outputs.json);
+  }
   if (!outputs.to_stdout()) {
-    write_output("-",
-                 plan_table(scene, planned) + nothing_note(nothing_to_test(scene), with_self()));
+    write_output("-", plan_table(scene, planned) + outlook_line(outlook) +
+                          nothing_note(nothing_to_test(scene), with_self()));
   }
   return kExitDone;
 }

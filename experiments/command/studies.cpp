@@ -123,7 +123,8 @@ void StudiesCommand::add_to(CLI::App& experiment) {
                                 name)));
   };
   for (const Study& study : studies()) declare(study.name, study.title);
-  declare("all", "all of these studies but cloth, libraries and\nproximity, one after the other");
+  declare("all",
+          "all of these studies but cloth, libraries, model\nand proximity, one after the other");
 }
 
 std::vector<std::string> StudiesCommand::devices() const {

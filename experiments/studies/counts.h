@@ -120,6 +120,21 @@ struct PlacementCounts {
                  largest_miss_px, radius_px, budget_px, promises)
 };
 
+/// Counts of a point of the study "model": a method that may miss, at several positions of the grid
+/// of pixels, beside what method/misses.h predicts.
+struct ForecastCounts {
+  std::uint64_t colliding = 0, positions = 0;
+  std::uint64_t missed_in_all = 0;                  // pairs, the sum over the positions
+  std::uint64_t missed_least = 0, missed_most = 0;  // at one position
+  double expected = 0, low = 0, high = 0;           // the prediction for one position
+  std::uint64_t outside = 0;                        // positions whose misses are not in low .. high
+  std::uint64_t triangles = 0;
+  bool promises = false;
+  std::string scene_hash;
+  FARCULL_FIELDS(colliding, positions, missed_in_all, missed_least, missed_most, expected, low,
+                 high, outside, triangles, promises, scene_hash)
+};
+
 /// Counts of a frame of the cloth with every pair of triangles accounted for (verify/accounting.h),
 /// and results of the step to this frame (scenes/cloth/cloth.h).
 struct ClothCounts {
@@ -218,7 +233,8 @@ struct DistanceCounts {
 
 /// std::monostate: nothing was measured.
 using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts,
-                            ClothCounts, SceneCounts, LibraryCounts, SetCounts, DistanceCounts>;
+                            ForecastCounts, ClothCounts, SceneCounts, LibraryCounts, SetCounts,
+                            DistanceCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

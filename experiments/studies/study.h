@@ -68,5 +68,6 @@ Study cloth_study();
 Study culling_study();
 Study libraries_study();
 Study proximity_study();
+Study model_study();
 
 }  // namespace farcull

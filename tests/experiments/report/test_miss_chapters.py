@@ -375,3 +375,34 @@ def test_cloth_says_that_the_energy_is_bounded_and_what_is_not_run():
     ({}, 4, "FAR and FAR pairs found different")])
 def test_cloth_shouts_what_is_not_as_it_has_to_be(last, far_colliding, said):
     assert "BROKEN: " + said in findings(chapter_of("cloth", cloth_rows(last, far_colliding)))
+
+
+# ---- model
+
+def model_rows(expected):
+    """Two scenes at two resolutions: 400 and 200 pairs are missed on average over four positions, of 1,000."""
+    def counts(missed, predicted):
+        return {"colliding": 1000, "positions": 4, "missed_in_all": 4 * missed, "missed_least": missed - 20,
+                "missed_most": missed + 20, "expected": predicted, "low": predicted * 0.7, "high": predicted * 1.3,
+                "outside": 0, "triangles": 50, "promises": False}
+
+    return [row(scene, method, counts(missed, predicted), resolution=resolution, **axes)
+            for scene in ("random-soup", "two-spheres")
+            for method, axes in (("cullide", {}), ("far", {"offset": "exact", "radius": "0.3"}))
+            for resolution, missed, predicted in ((64, 400, 390), (128, 200, expected))]
+
+
+def test_the_model_is_judged_by_the_share_of_right_predictions():
+    chapter = chapter_of("model", model_rows(210))
+    assert "within a factor of 1.5 of the mean at 4 of 4" in findings(chapter)
+    assert "No point with 20 missed pairs or more is off" in findings(chapter)
+    assert table(chapter, "model")[0][:3] == ["CULLIDE", "4", "4"]
+    assert table(chapter, "model")[1][0] == "FAR (exact offsets), 0.3 of the radius"
+    panel = figure(chapter, "model").panels[0]
+    assert panel.series[0].x == [390, 210, 390, 210] and panel.series[0].y == [400, 200, 400, 200]
+    lines = figure(chapter, "model-resolution").panels[0].series
+    assert lines[0].y_low == [38, 18] and lines[1].y == [39, 21]
+    # The twin: a model that is wrong at half of the points.
+    wrong = findings(chapter_of("model", model_rows(350)))
+    assert "at 2 of 4" in wrong and "off by more on 4 scenes with a method" in wrong
+    assert "CULLIDE on random-soup (128 px: 350 predicted, 200 missed)" in wrong

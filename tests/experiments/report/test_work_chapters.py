@@ -35,7 +35,8 @@ def test_promises(study, scene, axes, missed, first):
     assert "95 %" not in findings(chapter), "pairs of a scene are not independent"
 
 
-@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries"])
+@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
+                                   "model"])
 def test_missing_rows_are_told(study):
     empty = chapter_of(study, [], declared=3)
     assert empty.figures == [] and empty.tables == []

@@ -54,9 +54,11 @@ inline bool is_counted(const Point& point) {
       point);
 }
 
-/// The points of a study's quick grid.
+/// The points of a study's quick grid. The study "model" has none: its predictions are sums of
+/// powers and logarithms of the C library, whose last bits differ between processors.
 inline std::vector<StudyGridPoint> quick_points(const Study& study) {
   std::vector<StudyGridPoint> out;
+  if (study.name == "model") return out;
   for (Point& point : study.grid({.quick = true, .seed = 1})) {
     if (!is_counted(point)) continue;
     out.push_back({&study, std::move(point)});

@@ -1,0 +1,488 @@
+// In each view, the part of a triangle that another one hides is a polygon: the common part of both
+// images, on one side of the line in which the two planes have equal depths. A triangle is kept in
+// a view if a pixel centre lies in such a part. The probability of that follows from the area, the
+// width and the height of the part; a pair is missed unless both triangles are kept in each view.
+#include "experiments/method/misses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/native/canvas.h"
+#include "core/view/budget.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kMostParts = std::size_t{1} << 22;  // in a view; 72 bytes each
+constexpr int kMostRepeats = 12;  // of the equations of "until a round changes nothing"
+// A corner is snapped to a multiple of 2^-b px, which moves it by an error of variance 4^-b / 12
+// along each axis. The height of a triangle over its longest edge then changes by an error of
+// variance 5/3 of that, averaged over where the foot of the height lies.
+const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
+
+struct Point2 {
+  double x = 0, y = 0;
+};
+
+struct Range {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  void add(double x) {
+    lo = std::min(lo, x);
+    hi = std::max(hi, x);
+  }
+  void add(const Range& other) {
+    lo = std::min(lo, other.lo);
+    hi = std::max(hi, other.hi);
+  }
+  double size() const { return std::max(hi - lo, 0.0); }
+};
+
+struct Polygon {
+  std::vector<Point2> points;  // counterclockwise
+
+  double area() const {
+    double sum = 0;
+    for (std::size_t i = 2; i < points.size(); ++i) {
+      const Point2 &o = points[0], &p = points[i - 1], &q = points[i];
+      sum += (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x);
+    }
+    return 0.5 * sum;
+  }
+  Range along(double Point2::*axis) const {
+    Range out;
+    for (const Point2& p : points) out.add(p.*axis);
+    return out;
+  }
+  // Keeps the part where a x + b y + c >= 0.
+  void cut(double a, double b, double c) {
+    static thread_local std::vector<Point2> kept;
+    kept.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point2 &p = points[i], &q = points[i + 1 < points.size() ? i + 1 : 0];
+      const double at_p = a * p.x + b * p.y + c, at_q = a * q.x + b * q.y + c;
+      if (at_p >= 0) kept.push_back(p);
+      if ((at_p >= 0) != (at_q >= 0)) {
+        const double t = at_p / (at_p - at_q);
+        kept.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)});
+      }
+    }
+    points.swap(kept);
+  }
+};
+
+Polygon hull(std::vector<Point2> of) {
+  std::ranges::sort(
+      of, [](const Point2& p, const Point2& q) { return p.x < q.x || (p.x == q.x && p.y < q.y); });
+  std::vector<Point2> out;
+  const auto add_chain = [&](auto begin, auto end) {
+    const std::size_t first = out.size();
+    for (auto p = begin; p != end; ++p) {
+      while (out.size() >= first + 2) {
+        const Point2 &a = out[out.size() - 2], &b = out.back();
+        if ((b.x - a.x) * (p->y - a.y) - (b.y - a.y) * (p->x - a.x) > 0) break;
+        out.pop_back();
+      }
+      out.push_back(*p);
+    }
+    out.pop_back();
+  };
+  add_chain(of.begin(), of.end());
+  add_chain(of.rbegin(), of.rend());
+  return {std::move(out)};
+}
+
+// The image of a triangle as it is drawn: fattened by a disc of `radius`.
+struct Image {
+  Polygon polygon;  // empty: not drawn, or seen from its edge
+  double area = 0;
+  Range x, y, depth;
+  double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
+  double slant = 0;    // how many px of depth a ball of 1 px adds to the plane
+  double snapped = 1;  // by how much snapping changes the expected area of a thin image
+};
+
+// E|w + s N| / w for a standard normal N.
+double snapped_share(double width) {
+  const double z = width / kSnapped;
+  if (z > 10) return 1;
+  return std::sqrt(2 / std::numbers::pi) * std::exp(-0.5 * z * z) / z +
+         std::erf(z / std::numbers::sqrt2);
+}
+
+// The rectangle around a flat polygon along its longest edge: what an oriented box shows of it.
+std::vector<Vec3> rectangle(std::span<const Vec3> points, const Vec3& normal) {
+  Vec3 along = Vec3::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 edge = points[(i + 1) % points.size()] - points[i];
+    if (edge.squaredNorm() > along.squaredNorm()) along = edge;
+  }
+  along.normalize();
+  const Vec3 across = normal.cross(along).normalized();
+  Range u, v;
+  for (const Vec3& p : points) {
+    u.add(along.dot(p - points[0]));
+    v.add(across.dot(p - points[0]));
+  }
+  std::vector<Vec3> out;
+  for (const auto& [s, t] : {std::pair(u.lo, v.lo), {u.hi, v.lo}, {u.hi, v.hi}, {u.lo, v.hi}})
+    out.push_back(points[0] + s * along + t * across);
+  return out;
+}
+
+Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double radius, bool box) {
+  Image out;
+  const Patch patch = clip_to_region(window, corners);
+  if (!patch.drawable() || patch.count < 3) return out;
+  const Vec3 origin = to_pixel(window, corners[0]).p;
+  const Vec3 normal =
+      (to_pixel(window, corners[1]).p - origin).cross(to_pixel(window, corners[2]).p - origin);
+  if (normal.z() == 0) return out;
+  out.slope_x = -normal.x() / normal.z();
+  out.slope_y = -normal.y() / normal.z();
+  out.depth_0 = origin.z() - out.slope_x * origin.x() - out.slope_y * origin.y();
+  out.slant = std::sqrt(1 + out.slope_x * out.slope_x + out.slope_y * out.slope_y);
+  std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+  if (box) points = rectangle(points, normal);
+  std::vector<Point2> flat;
+  double longest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out.depth.add(points[i].z());
+    longest = std::max(longest, (points[(i + 1) % points.size()] - points[i]).head<2>().norm());
+    if (radius == 0) flat.push_back({points[i].x(), points[i].y()});
+    for (int k = 0; radius > 0 && k < 8; ++k) {  // an octagon with the area of the disc
+      const double angle = (k + 0.5) * std::numbers::pi / 4, reach = 1.0540 * radius;
+      flat.push_back(
+          {points[i].x() + reach * std::cos(angle), points[i].y() + reach * std::sin(angle)});
+    }
+  }
+  out.polygon = hull(std::move(flat));
+  out.area = out.polygon.area();
+  if (out.polygon.points.size() < 3 || !(out.area > 0)) return {};
+  out.x = out.polygon.along(&Point2::x);
+  out.y = out.polygon.along(&Point2::y);
+  if (radius == 0 && !box) out.snapped = snapped_share(2 * out.area / longest);
+  out.area *= out.snapped;
+  return out;
+}
+
+// The part of a triangle that another one hides.
+struct Part {
+  std::uint32_t of, by;
+  double share;  // of the area of the image
+  Range x, y;
+  double strip = 0, width = 0, height = 0;  // where both hide each other: area and sides
+};
+
+struct ViewOfParts {
+  std::vector<Image> images;         // per triangle; without polygons
+  std::vector<std::uint32_t> first;  // per triangle, into parts, and one more
+  std::vector<Part> parts;           // sorted
+  double radius = 0;                 // px, of the ball
+};
+
+// What `back` loses to `front`, if they hide each other also where their depths differ by `near`.
+void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
+              double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
+  if (back.depth.hi + near < front.depth.lo) return;
+  const double a = back.slope_x - front.slope_x, b = back.slope_y - front.slope_y,
+               c = back.depth_0 - front.depth_0;
+  Polygon hidden = common;
+  if (back.depth.lo + near < front.depth.hi) hidden.cut(a, b, c + near);
+  if (hidden.points.size() < 3) return;
+  const double area = hidden.area() * back.snapped * front.snapped;
+  if (!(area > 0)) return;
+  Part part{.of = of,
+            .by = by,
+            .share = std::min(area / back.area, 1 - 1e-6),
+            .x = hidden.along(&Point2::x),
+            .y = hidden.along(&Point2::y)};
+  if (thick > 0) {
+    hidden.cut(-a, -b, near - c);
+    part.strip = hidden.area();
+    part.width = hidden.along(&Point2::x).size();
+    part.height = hidden.along(&Point2::y).size();
+  }
+  out.push_back(part);
+}
+
+// All parts in a view. False: too many.
+bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, double radius,
+                bool box, ViewOfParts& out) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  out.radius = radius;
+  out.images.resize(scene.triangles.size());
+  std::vector<std::uint32_t> order;
+  for (const std::uint32_t t : work.regions.triangles) {
+    out.images[t] = image_of(window, scene.corners(t), radius, box);
+    if (out.images[t].area > 0) order.push_back(t);
+  }
+  const auto left = [&](std::uint32_t t) { return out.images[t].x.lo; };
+  std::ranges::sort(order, {}, left);
+  // Depths that round to one float are equal, and equal depths hide.
+  const double step = 0.5 * depth_step(window, 32);
+  Polygon common;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t s = order[i];
+    const Image& a = out.images[s];
+    for (std::size_t j = i + 1; j < order.size() && left(order[j]) <= a.x.hi; ++j) {
+      const std::uint32_t t = order[j];
+      const Image& b = out.images[t];
+      if (owner[s] == owner[t] || b.y.lo > a.y.hi || b.y.hi < a.y.lo) continue;
+      common = a.polygon;
+      const std::vector<Point2>& corners = b.polygon.points;
+      for (std::size_t k = 0; k < corners.size() && !common.points.empty(); ++k) {
+        const Point2 &p = corners[k], &q = corners[k + 1 < corners.size() ? k + 1 : 0];
+        common.cut(p.y - q.y, q.x - p.x, (q.y - p.y) * p.x - (q.x - p.x) * p.y);
+      }
+      if (common.points.size() < 3) continue;
+      const double thick = radius * (a.slant + b.slant);
+      add_part(common, a, b, thick, step + thick, s, t, out.parts);
+      add_part(common, b, a, thick, step + thick, t, s, out.parts);
+      if (out.parts.size() > kMostParts) return false;
+    }
+  }
+  std::ranges::sort(out.parts, [](const Part& p, const Part& q) {
+    return p.of != q.of ? p.of < q.of : p.by < q.by;
+  });
+  out.first.assign(scene.triangles.size() + 1, 0);
+  for (const Part& part : out.parts) ++out.first[part.of + 1];
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) out.first[t + 1] += out.first[t];
+  for (Image& image : out.images) image.polygon = {};
+  return true;
+}
+
+// The share of a pixel's square that a disc around its centre covers.
+double disc_share(double radius) {
+  if (radius >= std::numbers::sqrt2 / 2) return 1;
+  const double whole = std::numbers::pi * radius * radius;
+  if (radius <= 0.5) return whole;
+  return whole -
+         4 * (radius * radius * std::acos(0.5 / radius) - 0.5 * std::sqrt(radius * radius - 0.25));
+}
+
+// The probabilities, and how they follow from one another.
+class Equations {
+ public:
+  Equations(const Scene& scene, std::vector<ViewOfParts> views, const CullSettings& settings,
+            double sharpness)
+      : owner_(owners(scene)),
+        views_(std::move(views)),
+        settings_(settings),
+        sharpness_(sharpness) {
+    const std::size_t n = scene.triangles.size();
+    for (auto& keep : now_) keep.assign(n, 1);
+  }
+
+  void solve() {
+    const bool any = settings_.clear == ClearRule::any;
+    before_.assign(views_.size(), now_);
+    for (std::size_t v = 0; any && v < views_.size(); ++v) {  // the first round, view by view
+      before_[v] = now_;
+      State next = now_;
+      for_all([&](int side, std::uint32_t t) { next[side][t] *= seen(v, t, side); });
+      now_ = std::move(next);
+    }
+    if (settings_.rounds == 1) {
+      if (!any) now_ = after_round();
+      return;
+    }
+    const int repeats = settings_.rounds > 0 ? settings_.rounds - any : kMostRepeats;
+    for (int k = 0; k < repeats; ++k) {
+      const State next = after_round();
+      double change = 0;
+      for_all([&](int side, std::uint32_t t) {
+        change += std::max(now_[side][t] - next[side][t], 0.0);
+        now_[side][t] = std::min(now_[side][t], next[side][t]);
+      });
+      if (change < 1e-3) break;
+    }
+    before_.assign(views_.size(), now_);
+  }
+
+  // The probability that a pair is found.
+  double found(TrianglePair pair) {
+    if (owner_[pair.a] > owner_[pair.b]) std::swap(pair.a, pair.b);
+    const auto& [a, b] = pair;
+    const int second = sides() - 1, first = 0;
+    double each = 1, a_cleared = 1, b_cleared = 1;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      now_.swap(before_[v]);
+      const double at_a = seen(v, a, second, b), at_b = seen(v, b, first, a);
+      const double both = std::min({both_seen(v, a, b), at_a, at_b});
+      now_.swap(before_[v]);
+      each *= both < 1 ? both + (at_a - both) * (at_b - both) / (1 - both) : 1;
+      a_cleared *= 1 - at_a;
+      b_cleared *= 1 - at_b;
+    }
+    if (settings_.clear == ClearRule::all) each = (1 - a_cleared) * (1 - b_cleared);
+    if (!settings_.quick) return each;
+    return each + (1 - each) * now_[0][a] * now_[1][b];  // other owners may keep both
+  }
+
+ private:
+  // Per side and triangle: the probability that it is not cleared. Plain CULLIDE has one side,
+  // Quick-CULLIDE two: against earlier owners (the bit F) and against later ones (L).
+  using State = std::array<std::vector<double>, 2>;
+
+  int sides() const { return settings_.quick ? 2 : 1; }
+
+  template <class Visit>
+  void for_all(const Visit& visit) const {
+    for (int side = 0; side < sides(); ++side) {
+      for (std::uint32_t t = 0; t < owner_.size(); ++t) visit(side, t);
+    }
+  }
+
+  State after_round() const {
+    State next = now_;
+    for_all([&](int side, std::uint32_t t) {
+      double kept = 1, cleared = 1;
+      for (std::size_t v = 0; v < views_.size(); ++v) {
+        const double p = seen(v, t, side);
+        kept *= p;
+        cleared *= 1 - p;
+      }
+      next[side][t] = settings_.clear == ClearRule::any ? kept : 1 - cleared;
+    });
+    return next;
+  }
+
+  // The probability that the triangle that hides is still stored.
+  double stored(const Part& part, int side) const {
+    if (!settings_.quick) return now_[0][part.by];
+    return (owner_[part.by] < owner_[part.of]) == (side == 0) ? now_[1 - side][part.by] : 0;
+  }
+
+  // The probability that a view does not clear a triangle. surely: a triangle that is stored.
+  double seen(std::size_t v, std::uint32_t t, int side, std::uint32_t surely = UINT32_MAX) const {
+    const ViewOfParts& view = views_[v];
+    double open = 0;  // the logarithm of the share that nothing hides
+    Range x, y;
+    for (std::uint32_t i = view.first[t]; i < view.first[t + 1]; ++i) {
+      const Part& part = view.parts[i];
+      const double p = part.by == surely ? 1 : stored(part, side);
+      open += std::log1p(-p * part.share);
+      if (p < 0.05) continue;  // seldom there: its extent would count as much as its area
+      x.add(part.x);
+      y.add(part.y);
+    }
+    if (!(open < 0)) return 0;
+    return centre_probability(-view.images[t].area * std::expm1(open), x.size(), y.size(),
+                              view.radius, sharpness_);
+  }
+
+  // The probability that one centre keeps both, where fattened triangles hide each other.
+  double both_seen(std::size_t v, std::uint32_t a, std::uint32_t b) const {
+    const ViewOfParts& view = views_[v];
+    if (!(view.radius > 0)) return 0;
+    const auto end = view.parts.begin() + view.first[a + 1];
+    const auto part = std::lower_bound(view.parts.begin() + view.first[a], end, b,
+                                       [](const Part& p, std::uint32_t by) { return p.by < by; });
+    if (part == end || part->by != b || !(part->strip > 0)) return 0;
+    return centre_probability(part->strip, part->width, part->height, view.radius, sharpness_);
+  }
+
+  std::vector<std::uint32_t> owner_;
+  std::vector<ViewOfParts> views_;
+  const CullSettings& settings_;
+  const double sharpness_;
+  State now_;
+  std::vector<State> before_;  // per view: the state in which it decides
+};
+
+}  // namespace
+
+// The model is off by a factor of 1.2 in what is missed; where nearly all is missed, by one of 1.5
+// in what is found.
+double MissForecast::low() const {
+  const auto all = static_cast<double>(colliding);
+  return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
+}
+double MissForecast::high() const {
+  const auto all = static_cast<double>(colliding);
+  return std::min(std::min(missed * 1.2, all - (all - missed) / 1.5) + 2 * deviation, all);
+}
+
+double centre_probability(double area, double width, double height, double radius,
+                          double sharpness) {
+  // At most the area, the width and the height. The disc around a point of the region has its share
+  // of all positions; the rest of the region has at most its share of the others.
+  const double disc = disc_share(radius), rest = 1 - disc;
+  if (rest <= 0) return 1;
+  const auto term = [&](double size) { return std::pow(std::max(size / rest, 1e-12), -sharpness); };
+  const double sum = 1 + term(area - std::numbers::pi * radius * radius) +
+                     term(std::max(width, 2 * radius) - disc) +
+                     term(std::max(height, 2 * radius) - disc);
+  return disc + rest * std::pow(sum, -1 / sharpness);
+}
+
+std::string unforeseen(const RunOptions& options) {
+  if (!takes_boxes(options.method)) return "the method does not draw objects against each other";
+  if (promises(options)) return "the method misses nothing";
+  if (options.conservative) return "conservative rasterization";
+  if (options.objects_alone) return "objects are culled as a whole";
+  if (options.radius.published) return "the published radius";
+  if (fattens(options.method) && depth_of(options) == DepthMode::fixed)
+    return "boxes drawn as surfaces";
+  return "";
+}
+
+MissOutlook look_ahead(const Scene& scene, const Plan& plan) {
+  const auto* work = std::get_if<DrawPlan>(&plan.work);
+  if (work == nullptr || promises(plan.options)) return {};
+  std::string why_not =
+      has_self(scene) ? "objects are tested against themselves" : unforeseen(plan.options);
+  if (!why_not.empty()) return {.forecast = {}, .why_not = std::move(why_not)};
+  const ExactResult exact = all_colliding_pairs(scene, {}, plan.options.ignored);
+  auto forecast = forecast_misses(scene, *work, plan.options, exact.pairs);
+  if (!forecast) why_not = "the images of too many triangles overlap";
+  return {.forecast = forecast, .why_not = std::move(why_not)};
+}
+
+std::string outlook_line(const MissOutlook& outlook) {
+  constexpr const char* kName = "misses     ";
+  if (!outlook.why_not.empty()) return kName + ("not predicted: " + outlook.why_not) + "\n";
+  if (!outlook.forecast) return "";
+  const MissForecast& of = *outlook.forecast;
+  const auto whole = [](double x) { return std::to_string(std::llround(x)); };
+  return kName + whole(of.missed) + " of " + std::to_string(of.colliding) +
+         " colliding pairs expected, " + whole(of.low()) + " to " + whole(of.high()) + "\n";
+}
+
+std::optional<MissForecast> forecast_misses(const Scene& scene, const DrawPlan& work,
+                                            const RunOptions& options,
+                                            std::span<const TrianglePair> colliding,
+                                            double sharpness) {
+  const bool fat = fattens(options.method);
+  MissForecast out{.colliding = colliding.size()};
+  std::vector<ViewOfParts> views;
+  for (const View& view : work.settings.views) {
+    if (work.regions.places.empty()) break;
+    const auto window = fit_window(view, work.regions.places, work.settings.resolution);
+    if (!window && work.settings.clear == ClearRule::all) return out;  // then nothing is culled
+    if (!window) continue;                                             // clears nothing
+    const int side = viewport_side(std::max(window->width, window->height));
+    const double radius =
+        fat ? options.radius.factor * budget_for(native_limits(32), side).radius() : 0;
+    if (!find_parts(scene, work, *window, radius, fat && options.offset == "obb",
+                    views.emplace_back()))
+      return std::nullopt;
+  }
+  if (views.empty()) return out;
+  Equations equations(scene, std::move(views), work.settings, sharpness);
+  equations.solve();
+  double variance = 0;
+  for (const TrianglePair& pair : colliding) {
+    const double missed = 1 - equations.found(pair);
+    out.missed += missed;
+    variance += missed * (1 - missed);
+  }
+  // Pairs of one triangle are mostly missed together.
+  out.deviation = std::sqrt(2 * variance);
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,58 @@
+// Predicts how many colliding pairs a method that draws misses, before anything is drawn. The
+// formula is derived in docs/misses.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "experiments/method/plan.h"
+
+namespace farcull {
+
+/// Missed pairs, over all positions that the grid of pixels may have below the scene.
+struct MissForecast {
+  std::uint64_t colliding = 0;  // pairs
+  double missed = 0;            // on average
+  double deviation = 0;         // standard deviation of one position from that average
+
+  /// An interval for the misses of one run: two deviations, and the error of the model itself.
+  double low() const;
+  double high() const;
+};
+
+/// Why there is no prediction for a method with these options; empty if there is one. A method that
+/// promises misses nothing and needs none.
+std::string unforeseen(const RunOptions& options);
+
+/// Finds the colliding pairs by exact tests, and predicts the misses of the plan. A method that
+/// promises to miss nothing gets neither a prediction nor a reason.
+struct MissOutlook {
+  std::optional<MissForecast> forecast;
+  std::string why_not;  // empty if there is a forecast, or if the method promises
+};
+MissOutlook look_ahead(const Scene& scene, const Plan& plan);
+/// A line for people: "misses     46 of 203 colliding pairs expected, 30 to 70"; empty if nothing
+/// is to be said.
+std::string outlook_line(const MissOutlook& outlook);
+
+/// How sharply a region with an area, a width and a height above one pixel is sure to hold a pixel
+/// centre. Fitted to random triangles on random grids, not to any scene.
+constexpr double kMissSharpness = 3.5;
+/// The probability that a region holds a pixel centre, where all positions of the grid are equally
+/// likely. area, width and height in px; they are those of a region that was fattened by a disc of
+/// `radius` px.
+double centre_probability(double area, double width, double height, double radius = 0,
+                          double sharpness = kMissSharpness);
+
+/// The prediction for a plan; empty if too many images of triangles overlap to go through them.
+/// colliding: the colliding pairs of the scene, without ignored ones. Precondition:
+/// unforeseen(options) is empty and no object is tested against itself.
+std::optional<MissForecast> forecast_misses(const Scene& scene, const DrawPlan& work,
+                                            const RunOptions& options,
+                                            std::span<const TrianglePair> colliding,
+                                            double sharpness = kMissSharpness);
+
+}  // namespace farcull

@@ -1,0 +1,130 @@
+// The study "model" compares the misses that the model of docs/misses.md predicts with those of
+// runs. A run sees one position of the grid of pixels below the scene, and the model speaks of all.
+// So each point is run at several positions, drawn at random.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/view/regions.h"
+#include "experiments/measure/harness.h"
+#include "experiments/method/misses.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/studies/point.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
+
+namespace farcull {
+namespace {
+
+constexpr int kPositions = 4;
+constexpr int kMostFarResolution = 256;  // px; beyond, FAR takes minutes and misses little
+
+// Moves the grids of all views below the scene, each by up to a pixel along both axes: adds two
+// objects of one tiny triangle whose boxes overlap, a random distance of up to two pixels beyond
+// the lower corner of the places where objects may meet. Windows are centred on these places.
+Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution,
+                      shapes::Random& random) {
+  Box all = Box::empty();
+  for (const Box& place : regions.places) all.add(place);
+  const double pixel = (all.hi - all.lo).maxCoeff() / resolution;
+  const Vec3 corner = all.lo - pixel * (Vec3::Ones() + random.in_cube(1));
+  Scene out = scene;
+  for (const double by : {0.0, 1e-3}) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    const Vec3 at = corner - Vec3::Constant(by * pixel);
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(2, 0, 2), Vec3(0, 2, 2)})
+      out.vertices.emplace_back(at + 1e-3 * pixel * p);
+    const auto triangle = static_cast<std::uint32_t>(out.triangles.size());
+    out.triangles.push_back({first, first + 1, first + 2});
+    out.source_face.push_back(0);
+    out.objects.push_back({fmt::format("grid{}", by > 0), triangle, 1});
+  }
+  return out;
+}
+
+PointResult measure_model(const Point& point, Lab& lab) {
+  const auto& of = std::get<RunPoint>(point);
+  const Scene& scene = open_scene(of.scene, lab);
+  const RunOptions options = options_of(of, lab);
+  const Truth& truth = lab.truth();
+  const Plan planned = plan(scene, options);
+  const auto& work = std::get<DrawPlan>(planned.work);
+  PointResult out{.device = "none", .left_out = "the images of too many triangles overlap"};
+  const std::optional<MissForecast> forecast = forecast_misses(scene, work, options, truth.pairs);
+  if (!forecast) return out;
+  out.left_out = "";
+  ForecastCounts counts{.colliding = truth.pairs.size(),
+                        .positions = kPositions,
+                        .expected = forecast->missed,
+                        .low = forecast->low(),
+                        .high = forecast->high(),
+                        .triangles = scene.triangles.size(),
+                        .scene_hash = scene_hash(scene)};
+  shapes::Random random(1);
+  for (int i = 0; i < kPositions; ++i) {
+    const Scene moved = with_moved_grid(scene, work.regions, options.resolution, random);
+    const Record record = run(moved, options, lab.session(), lab.progress());
+    out.device = answered(record);
+    const std::uint64_t missed = lacking(truth.pairs, record.collisions.all());
+    counts.missed_in_all += missed;
+    counts.missed_least = i == 0 ? missed : std::min(counts.missed_least, missed);
+    counts.missed_most = std::max(counts.missed_most, missed);
+    const auto count = static_cast<double>(missed);
+    counts.outside += count < std::floor(counts.low) || count > std::ceil(counts.high);
+  }
+  out.counts = counts;
+  return out;
+}
+
+std::vector<std::string> scenes_of(bool quick) {
+  if (quick) return {"random-soup", "needles:60", "crowd:60", "two-spheres"};
+  std::vector<std::string> out = {
+      "slivers:100:30",  "slivers:200:1e3", "crowd:300:0.5", "field:8000",   "spheres:6000",
+      "shells:8",        "two-tori",        "two-spheres",   "torii:720",    "cylinders:30",
+      "tree-leaves:100", "fans:2000",       "cad-cut:2000",  "mixed:50:100", "stack:16:0.01"};
+  for (const char* drawn : {"random-soup", "needles:100", "crowd:200"}) {
+    for (const std::string& scene : drawn_scenes(drawn, 3)) out.push_back(scene);
+  }
+  return out;
+}
+
+std::vector<Point> model_grid(const GridChoice& choice) {
+  const std::vector<int> resolutions =
+      choice.quick ? std::vector{64, 256} : std::vector{64, 128, 256, 512, 1024};
+  std::vector<Point> out;
+  for (const std::string& name : scenes_of(choice.quick)) {
+    const NamedScene scene{name};
+    for (const int resolution : resolutions) {
+      const RunPoint plain = cullide_point(scene, Method::cullide, resolution);
+      out.emplace_back(plain);
+      out.emplace_back(in_form(plain, kPublishedForm));
+      out.emplace_back(in_form(plain, {.rounds = 1, .clear = ClearRule::all}));
+      out.emplace_back(cullide_point(scene, Method::quick_cullide, resolution));
+      if (resolution > kMostFarResolution) continue;
+      for (const char* offset : {"obb", "exact"}) {
+        for (const double factor : {0.0, 0.3, 0.6})
+          out.emplace_back(far_point(scene, offset, {.factor = factor}, resolution));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Study model_study() {
+  return {.name = "model",
+          .title = "A model that predicts what CULLIDE misses",
+          .question =
+              "How many colliding pairs do the forms of CULLIDE miss, and FAR below its radius, "
+              "beside what a model predicts from the triangles alone?",
+          .grid = model_grid,
+          .measure = measure_model,
+          .campaign = true};
+}
+
+}  // namespace farcull

@@ -1,0 +1,142 @@
+// The model of docs/misses.md: its probability on random grids, and its prediction beside runs at
+// several positions of the grid. The twins are other constants and another exponent of the
+// resolution.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/method/misses.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
+
+namespace farcull {
+namespace {
+
+struct Flat {
+  double x[3], y[3];
+  double area() const {
+    return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]));
+  }
+  bool holds(double px, double py) const {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      if ((x[j] - x[i]) * (py - y[i]) - (y[j] - y[i]) * (px - x[i]) < 0) return false;
+    }
+    return true;
+  }
+};
+
+// The mean error of the probability, over triangles of all sizes and shapes around a pixel.
+double mean_error(double sharpness) {
+  shapes::Random random(7);
+  double error = 0;
+  int count = 0;
+  while (count < 400) {
+    const double size = std::pow(10, random.in_cube(0.8).x() + 0.3);
+    const double thin = std::pow(10, random.in_cube(1).x() - 1);
+    const double turn = random.in_cube(3.14).x();
+    Flat t;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 p = size * random.in_cube(1);
+      t.x[i] = p.x() * std::cos(turn) - thin * p.y() * std::sin(turn);
+      t.y[i] = p.x() * std::sin(turn) + thin * p.y() * std::cos(turn);
+    }
+    if (t.area() < 0.02 || t.area() > 6) continue;
+    const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [low, high] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    constexpr int kSide = 12;  // positions of the grid along each axis
+    int held = 0;
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const double dx = (k % kSide + 0.5) / kSide, dy = (k / kSide + 0.5) / kSide;
+      bool found = false;
+      for (double y = std::floor(low) + dy - 1; y <= high && !found; ++y) {
+        for (double x = std::floor(left) + dx - 1; x <= right && !found; ++x) found = t.holds(x, y);
+      }
+      held += found;
+    }
+    error += centre_probability(t.area(), right - left, high - low, 0, sharpness) -
+             static_cast<double>(held) / (kSide * kSide);
+    ++count;
+  }
+  return error / count;
+}
+
+TEST(MissModel, ItsConstantIsThatOfRandomTrianglesOnRandomGrids) {
+  EXPECT_LT(std::abs(mean_error(kMissSharpness)), 0.015);
+  // The twins.
+  EXPECT_LT(mean_error(2), -0.03);
+  EXPECT_GT(mean_error(12), 0.02);
+}
+
+TEST(MissModel, ItsProbabilityHasTheRightLimits) {
+  EXPECT_NEAR(centre_probability(1e-4, 0.01, 0.01), 1e-4, 1e-6);
+  EXPECT_NEAR(centre_probability(400, 20, 20), 1, 1e-3);
+  EXPECT_NEAR(centre_probability(5, 100, 0.1), 0.1, 1e-3) << "between two rows of centres";
+  EXPECT_NEAR(centre_probability(0.09 * 3.14159265, 0.6, 0.6, 0.3), 0.09 * 3.14159265, 1e-6)
+      << "a fattened point";
+  EXPECT_EQ(centre_probability(2, 1.5, 1.5, 0.75), 1) << "no position misses such a disc";
+}
+
+double factor_between(double a, double b) { return std::max(a / b, b / a); }
+
+TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
+  const Study& study = study_named("model");
+  Lab lab("native");
+  int judged = 0, twins = 0;
+  for (const Point& point : study.grid({.quick = true})) {
+    const auto& of = std::get<RunPoint>(point);
+    const std::string scene = key_of(point).scene;
+    const bool far = of.method == Method::far;
+    const bool chosen = scene == "crowd:60"
+                            ? !far || (of.radius->factor == 0.3 && of.resolution == 64)
+                            : scene == "two-spheres" && of.method == Method::cullide;
+    if (!chosen) continue;
+    const PointResult result = study.measure(point, lab);
+    const auto& counts = std::get<ForecastCounts>(result.counts);
+    const double mean =
+        static_cast<double>(counts.missed_in_all) / static_cast<double>(counts.positions);
+    if (mean < 20) continue;
+    ++judged;
+    EXPECT_LT(factor_between(counts.expected, mean), 1.5) << describe(point);
+    EXPECT_LE(counts.low, counts.expected);
+    EXPECT_GE(counts.high, counts.expected);
+    if (mean > 0.7 * static_cast<double>(counts.colliding) || far) continue;
+    // The twins: pixels of another size, and a region that is sure to hold a centre too late.
+    const Scene& drawn = open_scene(of.scene, lab);
+    RunOptions options = options_of(of, lab);
+    const auto forecast = [&](double sharpness) {
+      const Plan planned = plan(drawn, options);
+      return forecast_misses(drawn, std::get<DrawPlan>(planned.work), options, lab.truth().pairs,
+                             sharpness)
+          ->missed;
+    };
+    EXPECT_GT(factor_between(forecast(1), mean), 1.25) << describe(point);
+    options.resolution *= 4;
+    EXPECT_GT(factor_between(forecast(kMissSharpness), mean), 1.5) << describe(point);
+    ++twins;
+  }
+  EXPECT_GE(judged, 10);
+  EXPECT_GE(twins, 3);
+}
+
+TEST(MissModel, SaysWhereItHasNoPrediction) {
+  RunOptions options{.method = Method::cullide};
+  EXPECT_EQ(unforeseen(options), "");
+  options.conservative = true;
+  EXPECT_EQ(unforeseen(options), "conservative rasterization");
+  EXPECT_EQ(unforeseen({.method = Method::far}), "the method misses nothing");
+  EXPECT_EQ(unforeseen({.method = Method::far, .radius = {.factor = 0.5}}), "");
+  const Scene scene = make_builtin_scene("needles:60");
+  const auto line = [&](const RunOptions& of) {
+    return outlook_line(look_ahead(scene, plan(scene, of)));
+  };
+  EXPECT_EQ(line({.method = Method::far_pairs}), "");
+  EXPECT_EQ(line(options), "misses     not predicted: conservative rasterization\n");
+  EXPECT_TRUE(line({.method = Method::cullide}).find(" colliding pairs expected, ") !=
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace farcull
