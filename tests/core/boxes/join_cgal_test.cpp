@@ -143,7 +143,7 @@ TEST(BoxJoins, OursAndThatOfCgalFindTheSamePairs) {
       for (const unsigned threads : {1u, 3u})
         ASSERT_EQ(of_triangles(boxes, owners, threads), expected) << at();
       // The twins: a join that is strict at one side loses pairs that touch.
-      if (kind == Kind::apart || kind == Kind::decades) continue;
+      if (kind == Kind::apart || kind == Kind::copies || kind == Kind::decades) continue;
       EXPECT_LT(by_cgal(boxes, owners, 10, true).size(), expected.size()) << at();
       EXPECT_LT(of_triangles(below(boxes), owners, 1).size(), expected.size()) << at();
     }
