@@ -26,14 +26,18 @@ experiments/picture: experiments/measure;
 experiments/command: experiments/studies experiments/picture experiments/library experiments/tiles;
 experiments/python: experiments/library experiments/picture;  tests: *'''.split(';')}
 # The verification shares no code with the culling that it checks: neither the boxes, with their joins and trees, nor the plan
-# nor the error budget, although the table lets it.
+# nor the error budget, although the table lets it. One file is no check, but the method `exact`.
 UNSHARED = ['core/boxes', 'core/view/budget', 'core/view/plan', 'core/view/regions']
+NO_CHECK = 'verify/all_pairs.cpp'
 # Library, a regular expression for its headers, and who may include them: folders of the table, or with a * all files whose
 # path begins so.
 LIBRARIES = [('EGL/OpenGL', r'^(epoxy|EGL|GL|GLES[0-9]*|KHR)/', 'core/gl tests/faults/*'),
              ('CGAL', '^CGAL/', 'verify experiments/peers/cgal* experiments/peers/contest_cgal* tests'),
              ('GMP/MPFR', r'^(gmp|gmpxx|mpfr)\.h$', 'verify verify/certificate tests'),
              ('zlib', r'^zlib\.h$', 'experiments/scenes/mesh tests')]
+# Who may include headers under the GPL (docs/LICENSE): with CGAL, the SPDX line of the installed header says whether it is one.
+GPL_USERS = ('experiments/peers/', 'tests/')
+INSTALLED = Path('/usr/include')
 MOST_FOLDERS = 20  # in experiments/
 OURS = ['core', 'offsets', 'verify', 'experiments', 'tests']
 OUR = re.compile(f"({'|'.join(OURS)})/")
@@ -80,16 +84,22 @@ def includes(files):
                 yield file, number, beside if beside in known else found[1]
 
 
+def is_under_gpl(header):
+    return (INSTALLED / header).is_file() and any('SPDX-License-Identifier: GPL' in line for _, line in lines_of(INSTALLED / header))
+
+
 def why_not(file, included):
     """Why the file must not include the other."""
     here, there = folder_of(file), folder_of(included)
     for name, _, users in (row for row in LIBRARIES if re.search(row[1], included)):
         may = any(file.startswith(user[:-1]) if user[-1] == '*' else user == here for user in users.split())
-        return '' if may else f'only {users} may use {name}'
+        return (f'only {users} may use {name}' if not may
+                else 'it is under the GPL, and the library is under the LGPL'
+                if not file.startswith(GPL_USERS) and is_under_gpl(included) else '')
     return ('' if not here or not OUR.match(included)
             else 'it lies in no folder of the table' if not there
             else 'the verification shares no code with the culling that it checks'
-            if here.startswith('verify') and {STEM.sub('', included), there} & set(UNSHARED)
+            if here.startswith('verify') and file != NO_CHECK and {STEM.sub('', included), there} & set(UNSHARED)
             else '' if there in ALLOWED[here] else f'the table does not let {here} include {there}')
 
 
@@ -253,7 +263,10 @@ experiments/peers:experiments/measure experiments/studies:= | experiments/genera
 experiments/suite:experiments/lemma:= | experiments/studies:experiments/command:= | experiments/picture:experiments/studies:=
 experiments/command:tests:=
 verify:core/boxes/join.h core/view/budget.h core/view/plan.h:shares no code
-verify/certificate:core/boxes/join.h:shares no code | core/scene:core/other/other.h:in no folder of the table
+verify/certificate:core/boxes/join.h:shares no code | verify/all_pairs.cpp:core/boxes/join.h:.
+verify:<CGAL/box_intersection_d.h> <CGAL/AABB_tree.h>:it is under the GPL
+experiments/peers/cgal.cpp tests/core/boxes:<CGAL/box_intersection_d.h>:.
+verify:<CGAL/Exact_predicates_inexact_constructions_kernel.h>:. | core/scene:core/other/other.h:in no folder of the table
 core/scene core/canvas:core/base/error.h:. | core/view:core/scene/scene.h core/boxes/join.h:. | offsets:core/view/budget.h:.
 core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:. | verify/certificate:<gmpxx.h>:.
 verify:core/canvas/canvas.h verify/certificate/json.h <gmpxx.h>:. | experiments/method:core/gl/canvas/canvas.h:.

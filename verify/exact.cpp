@@ -1,5 +1,5 @@
-// The predicates about two triangles by CGAL, and the method `exact` by CGAL's box join. Only this
-// and contact.cpp include CGAL, which compiles slowly.
+// The predicates about two triangles by CGAL. Only this and contact.cpp include CGAL, which
+// compiles slowly; both include its kernel alone, which is under the LGPL.
 //
 // Epick decides exactly here, for these reasons, read from the headers of CGAL 5.5.1 (the tests
 // compare it with integer arithmetic):
@@ -18,15 +18,12 @@
 #include "verify/exact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 #include <variant>
 
 #include "core/base/floating_point.h"
-#include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
 #include "verify/within.h"
 
@@ -123,75 +120,6 @@ bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s
   return (below(r) && below(s)) || (above(r) && above(s));
 }
 
-/// A box as box_intersection_d wants it.
-struct JoinBox {
-  using NT = double;
-  using ID = std::uint32_t;
-  Box box;
-  std::uint32_t triangle;
-  std::uint32_t owner;
-
-  static int dimension() { return 3; }
-  double min_coord(int axis) const { return box.lo[axis]; }
-  double max_coord(int axis) const { return box.hi[axis]; }
-  ID id() const { return triangle; }
-};
-
-// Below this number of boxes, CGAL's join scans.
-constexpr std::ptrdiff_t kCutoff = 2000;
-
-/// Calls visit(const JoinBox*, const JoinBox*) once for each two boxes that overlap and whose
-/// triangles make a pair that counts.
-template <typename Visit>
-void join(const Scene& scene, std::vector<JoinBox>& boxes, Visit visit) {
-  std::vector<const JoinBox*> all(boxes.size());
-  for (std::size_t t = 0; t < boxes.size(); ++t) all[t] = &boxes[t];
-  std::size_t with_triangles = 0;
-  bool self = false;
-  for (const Object& object : scene.objects) {
-    with_triangles += object.triangle_count > 0;
-    self = self || (object.self && object.triangle_count > 1);
-  }
-  if (with_triangles < 2 && !self) return;
-  if (with_triangles == 2 && !self) {
-    // Objects are contiguous: the second one starts where the owner changes.
-    const auto second = std::find_if(
-        all.begin(), all.end(), [&](const JoinBox* b) { return b->owner != boxes.front().owner; });
-    CGAL::box_intersection_d(all.begin(), second, second, all.end(), visit, kCutoff,
-                             CGAL::Box_intersection_d::CLOSED, CGAL::Box_intersection_d::BIPARTITE);
-    return;
-  }
-  CGAL::box_self_intersection_d(
-      all.begin(), all.end(),
-      [&](const JoinBox* a, const JoinBox* b) {
-        if (a->owner != b->owner || scene.objects[a->owner].self) visit(a, b);
-      },
-      kCutoff, CGAL::Box_intersection_d::CLOSED);
-}
-
-/// Grows a box so that two grown boxes overlap if along no axis the gap of the original boxes,
-/// computed in double, exceeds the clearance D. half is at least D/2 + ulp(D)/2. So if grown boxes
-/// are disjoint, the original boxes are apart by more than 2 half >= D + ulp(D), which rounding
-/// cannot bring down to D. Coordinates that leave the range of double are set to its ends; no
-/// coordinate lies beyond them.
-Box grown(Box box, double half) {
-  constexpr double kMax = std::numeric_limits<double>::max();
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::max(std::nextafter(box.lo[k] - half, -kInf), -kMax);
-    box.hi[k] = std::min(std::nextafter(box.hi[k] + half, kInf), kMax);
-  }
-  return box;
-}
-
-/// Rounding is monotone: if a rounded difference is above the clearance, so is the exact one.
-bool farther_along_an_axis(const Box& a, const Box& b, double clearance) {
-  for (int k = 0; k < 3; ++k) {
-    if (b.lo[k] - a.hi[k] > clearance || a.lo[k] - b.hi[k] > clearance) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Shape shape(const std::array<Vec3, 3>& corners) {
@@ -256,51 +184,6 @@ std::uint64_t degenerate_triangles(const Scene& scene) {
     if (shape(scene.corners(t)) != Shape::triangle) ++count;
   }
   return count;
-}
-
-ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question,
-                                std::span<const ObjectPair> ignored) {
-  const FloatingPointGuard guard;
-  require_clearance("all_colliding_pairs", question.clearance);
-  constexpr std::size_t kChunk =
-      1 << 18;  // pairs decided at a time: tens of millions of candidates are never stored
-  ExactResult result;
-  std::vector<TrianglePair> chunk;
-  const IgnoredObjects is_ignored(scene, ignored);
-  const auto decide_chunk = [&] {
-    const Stopwatch start;
-    result.append(decide(scene, chunk, question));
-    result.box_pairs += chunk.size();
-    chunk.clear();
-    result.predicates_ms += start.ms();
-  };
-  const Stopwatch start;
-  const std::vector<Box> boxes = triangle_boxes(scene);
-  const std::vector<std::uint32_t> owner = owners(scene);
-  const double half = std::nextafter(question.clearance / 2, std::numeric_limits<double>::max());
-  std::vector<JoinBox> join_boxes(boxes.size());
-  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
-    join_boxes[t] = {question.clearance > 0 ? grown(boxes[t], half) : boxes[t], t, owner[t]};
-  }
-  join(scene, join_boxes, [&](const JoinBox* a, const JoinBox* b) {
-    if (question.clearance > 0 &&
-        farther_along_an_axis(boxes[a->triangle], boxes[b->triangle], question.clearance)) {
-      return;
-    }
-    const TrianglePair pair = {std::min(a->triangle, b->triangle),
-                               std::max(a->triangle, b->triangle)};
-    if (is_ignored(pair)) {
-      ++result.ignored;
-      return;
-    }
-    chunk.push_back(pair);
-    if (chunk.size() == kChunk) decide_chunk();
-  });
-  decide_chunk();
-  result.join_ms = start.ms() - result.predicates_ms;
-  std::sort(result.pairs.begin(), result.pairs.end());
-  std::sort(result.neighbour_pairs.begin(), result.neighbour_pairs.end());
-  return result;
 }
 
 }  // namespace farcull

@@ -152,15 +152,15 @@ struct ExactResult : Collisions {  // both lists sorted, each pair once
   std::uint64_t box_pairs = 0;     // pairs that count whose closed boxes overlap; with a clearance,
                                    // are no farther apart along any axis, by differences in double
   std::uint64_t ignored = 0;  // pairs whose boxes overlap likewise, but whose objects are ignored
-  double join_ms = 0;         // boxes and box join, wall clock
-  double predicates_ms = 0;   // exact decisions on the overlapping pairs, wall clock
+  double join_ms = 0;         // boxes and box join, wall clock, without the decisions
+  double predicates_ms = 0;   // decisions, a thread's share of them, and the sort of the answers
 };
 
-/// The method `exact`: closed boxes by CGAL::box_intersection_d (Zomorodian, Edelsbrunner: Fast
-/// software for box intersections, 2002) with cutoff 2000, then decide(). If exactly two objects
-/// have triangles and neither is `self`, the boxes of one are joined with those of the other; else
-/// all boxes are joined with all and filtered by owner. Memory O(triangles + colliding pairs):
-/// candidates are not kept. ignored: pairs of objects that do not count, as in_order() gives them.
+/// The method `exact`: a tree of boxes in doubles finds the pairs whose boxes overlap, and decide()
+/// decides them in the threads that find them. Memory O(triangles + colliding pairs): candidates
+/// are not kept. The tree is core/boxes/join.h, which no view, no error budget and no float takes
+/// part in. A test compares its pairs with those of CGAL's join, which shares no code with it.
+/// ignored: pairs of objects that do not count, as in_order() gives them.
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});
 

@@ -208,12 +208,12 @@ OrderedPairs::OrderedPairs(const Scene& scene, double clearance,
       objects_(neighbours ? std::vector<std::uint32_t>() : owners(scene)),
       threads_(threads),
       owner_(join_owners(scene)),
-      items_(scene.triangles.size()),
-      boxes_(scene.triangles.size()) {
+      items_(scene.triangles.size()) {
   if (!ignored.empty()) ignored_ = IgnoredObjects(scene, ignored);
   std::iota(items_.begin(), items_.end(), 0u);
-  for (std::uint32_t t = 0; t < boxes_.size(); ++t) boxes_[t] = grown_box(scene, t, clearance);
-  plant();
+  std::vector<Box> boxes(items_.size());
+  for (std::uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = grown_box(scene, t, clearance);
+  plant(std::move(boxes));
 }
 
 OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
@@ -221,11 +221,12 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
     : threads_(threads), items_(items.begin(), items.end()) {
   std::erase_if(items_, [&](std::uint32_t item) { return boxes[item].is_empty(); });
   std::ranges::sort(items_);
+  std::vector<Box> own;
   for (const std::uint32_t item : items_) {
-    boxes_.push_back(boxes[item]);
+    own.push_back(boxes[item]);
     owner_.push_back(owners[item]);
   }
-  plant();
+  plant(std::move(own));
 }
 
 namespace {
@@ -243,14 +244,44 @@ bool are_few(std::span<const std::uint32_t> owners) {
 
 }  // namespace
 
-void OrderedPairs::plant() {
-  order_.resize(boxes_.size());
-  spatial_order(boxes_, order_);
+// Drops items whose boxes meet the box of no other owner: such an item has no pair, since that box
+// holds all boxes of the owner. Precondition: owners are few, and ascend with the items.
+void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
+  std::vector<Box> of_owner;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    if (k == 0 || owner_[k] != owner_[k - 1]) of_owner.push_back(Box::empty());
+    of_owner.back().add(boxes[k]);
+  }
+  std::size_t kept = 0, own = 0;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const bool last = k + 1 == boxes.size() || owner_[k + 1] != owner_[k];
+    bool meets = false;
+    for (std::size_t o = 0; o < of_owner.size(); ++o)
+      meets |= o != own && overlap(boxes[k], of_owner[o]);
+    own += last;
+    if (!meets) continue;
+    boxes[kept] = boxes[k];
+    items_[kept] = items_[k];
+    owner_[kept++] = owner_[k];
+  }
+  boxes.resize(kept);
+  items_.resize(kept);
+  owner_.resize(kept);
+}
+
+void OrderedPairs::plant(std::vector<Box> boxes) {
   by_owner_ = are_few(owner_);
-  if (by_owner_)
-    std::ranges::stable_sort(order_, {}, [&](std::uint32_t item) { return owner_[item]; });
-  std::vector<Box> leaves(boxes_.size());
-  for (std::size_t k = 0; k < leaves.size(); ++k) leaves[k] = boxes_[order_[k]];
+  if (by_owner_) drop_apart(boxes);
+  order_.resize(boxes.size());
+  for (std::size_t from = 0, to = 0; from < boxes.size(); from = to) {
+    to = by_owner_ ? first_of_later_owners(static_cast<std::uint32_t>(from)) : boxes.size();
+    const auto order = std::span(order_).subspan(from, to - from);
+    spatial_order(std::span(boxes).subspan(from, to - from), order);
+    for (std::uint32_t& item : order) item += static_cast<std::uint32_t>(from);
+  }
+  std::vector<Box> leaves(boxes.size());
+  for (std::size_t k = 0; k < leaves.size(); ++k) leaves[k] = boxes[order_[k]];
+  std::vector<Box>().swap(boxes);  // the leaves hold them from here on
   blocks_.resize(blocks_of_tree(leaves.size()));
   tree_ = make_tree<double>(leaves, blocks_, 0);
 }
@@ -274,19 +305,40 @@ void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>
 
 }  // namespace
 
-void OrderedPairs::append(std::uint32_t a, bool sorted, Part& part) const {
+// Replaces part.found by the items of the leaves from `least` on whose boxes overlap that of the
+// leaf.
+void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) const {
+  part.found.clear();
+  const Box box = blocks_[tree_.first[0] + leaf / kWide].get(leaf % kWide);
+  part.compared += find_leaves(tree_, blocks_.data(), box, least, part.found);
+  for (std::uint32_t& other : part.found) other = order_[other];
+}
+
+// Where leaves stand owner by owner. Items ascend with their owners then, so as many leaves as
+// items have this owner or one before.
+std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
+  const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
+  return static_cast<std::uint32_t>(behind - owner_.begin());
+}
+
+void OrderedPairs::append(std::uint32_t a, Part& part) const {
   std::vector<std::uint32_t>& found = part.found;
-  found.clear();
-  // Items ascend with their owners then, so as many leaves as items have this owner or one before.
-  const auto least = by_owner_ ? std::ranges::upper_bound(owner_, owner_[a]) - owner_.begin() : 0;
-  part.compared +=
-      find_leaves(tree_, blocks_.data(), boxes_[a], static_cast<std::uint32_t>(least), found);
-  for (std::uint32_t& leaf : found) leaf = order_[leaf];
+  find(leaf_[a], by_owner_ ? first_of_later_owners(a) : 0, part);
   if (!by_owner_)
     std::erase_if(found, [&](std::uint32_t b) { return b <= a || owner_[a] == owner_[b]; });
-  if (sorted) sort_marked(found, part.marks);
+  sort_marked(found, part.marks);
   for (const std::uint32_t b : found) {
     const TrianglePair pair{items_[a], items_[b]};
+    if (is_asked(pair)) part.pairs.push_back(pair);
+  }
+}
+
+void OrderedPairs::append_of_leaf(std::uint32_t leaf, Part& part) const {
+  const std::uint32_t a = order_[leaf];
+  find(leaf, by_owner_ ? first_of_later_owners(a) : leaf + 1, part);
+  for (const std::uint32_t b : part.found) {
+    if (owner_[a] == owner_[b]) continue;
+    const TrianglePair pair{items_[std::min(a, b)], items_[std::max(a, b)]};
     if (is_asked(pair)) part.pairs.push_back(pair);
   }
 }
@@ -345,18 +397,18 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
 }  // namespace
 
 std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kItems = 64;  // that a thread asks about at a time
+  constexpr std::uint32_t kLeaves = 64;  // that a thread asks about at a time
   std::atomic<std::uint64_t> compared = 0;
   const std::uint64_t given = give_portions<Part>(
-      boxes_.size(), kItems, chunks_for(boxes_.size(), kItems, threads_), take,
+      items_.size(), kLeaves, chunks_for(items_.size(), kLeaves, threads_), take,
       [&](std::uint64_t begin, std::uint64_t end, Part& part, const auto& flush) {
-        for (std::uint64_t a = begin; a < end; ++a) {
-          append(static_cast<std::uint32_t>(a), false, part);
+        for (std::uint64_t leaf = begin; leaf < end; ++leaf) {
+          append_of_leaf(static_cast<std::uint32_t>(leaf), part);
           flush();
         }
         compared += std::exchange(part.compared, 0);
       });
-  next_ = static_cast<std::uint32_t>(boxes_.size());
+  next_ = static_cast<std::uint32_t>(items_.size());
   compared_ += compared;
   return given;
 }
@@ -364,7 +416,11 @@ std::uint64_t OrderedPairs::give(const TakePairs& take) {
 void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   out.clear();
   if (at_end()) return;
-  const auto left = static_cast<std::uint32_t>(boxes_.size()) - next_;
+  if (leaf_.empty()) {
+    leaf_.resize(order_.size());
+    for (std::uint32_t k = 0; k < order_.size(); ++k) leaf_[order_[k]] = k;
+  }
+  const auto left = static_cast<std::uint32_t>(items_.size()) - next_;
   const std::uint32_t asked = std::min(asked_, left);
   const std::size_t chunks = chunks_for(asked, 16, items_.size() < kLeast ? 1 : threads_);
   if (parts_.size() < chunks) parts_.resize(chunks);
@@ -376,7 +432,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
     part.compared = 0;
     part.marks.resize(items_.size() / 64 + 1);
     for (std::size_t k = begin; k < end && part.pairs.size() < most_of_part; ++k, ++part.done)
-      append(next_ + static_cast<std::uint32_t>(k), true, part);
+      append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
   // A part that is not complete would leave a gap before the next one, which is asked again.

@@ -55,7 +55,7 @@ class OrderedPairs {
   /// Replaces `out` by the next pairs: about `most` of them, fewer at the end, and at most all of
   /// one item more for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
-  bool at_end() const { return next_ == boxes_.size(); }
+  bool at_end() const { return next_ == items_.size(); }
   /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. An
   /// exception of `take` is thrown again here, and some pairs are not given then.
   std::uint64_t give(const TakePairs& take);
@@ -63,10 +63,10 @@ class OrderedPairs {
   std::vector<TrianglePair> all(std::size_t most = SIZE_MAX);
   /// The share of the items whose pairs have been given, 0 .. 1.
   double share() const {
-    return boxes_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(boxes_.size());
+    return items_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(items_.size());
   }
   /// Blocks of sixteen boxes that the items asked about were compared with; the same whatever
-  /// the threads and `most`.
+  /// the threads and `most`, but fewer for give() than for next().
   std::uint64_t compared() const { return compared_; }
 
  private:
@@ -80,19 +80,23 @@ class OrderedPairs {
     std::vector<std::uint32_t> found;
     std::vector<std::uint64_t> marks;
   };
-  void append(std::uint32_t a, bool sorted, Part& part) const;
+  void append(std::uint32_t a, Part& part) const;             // pairs of item a, in order
+  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // those with the leaves behind it
+  void find(std::uint32_t leaf, std::uint32_t least, Part& part) const;
+  std::uint32_t first_of_later_owners(std::uint32_t item) const;
   bool is_asked(const TrianglePair& pair) const;  // not ignored, and no neighbours left out
 
-  void plant();  // the tree
+  void plant(std::vector<Box> boxes);  // the tree over the boxes of the items
+  void drop_apart(std::vector<Box>& boxes);
 
   const Scene* scene_ = nullptr;        // if neighbours are left out
-  std::vector<std::uint32_t> objects_;  // per item; likewise
+  std::vector<std::uint32_t> objects_;  // per triangle; likewise
   std::optional<IgnoredObjects> ignored_;
   unsigned threads_;
   std::vector<std::uint32_t> owner_;  // per item
   std::vector<std::uint32_t> items_;  // ascending
-  std::vector<Box> boxes_;            // per item, grown
   std::vector<std::uint32_t> order_;  // the item of each leaf of the tree, by its place in items_
+  std::vector<std::uint32_t> leaf_;   // per item
   bool by_owner_ = false;             // leaves of one owner follow those of the one before
   std::vector<WideBoxes<double>> blocks_;
   BoxTree<double> tree_;

@@ -220,18 +220,71 @@ class Searcher {
     const std::uint32_t columns = near_boxes(b.boxes, box_of(a_, 0, at.a), square_limit_, squares);
     count_boxes(2 + static_cast<std::size_t>(std::popcount(rows)));
     const bool same = self_ && at.a == at.b;
-    while (rows != 0) {
-      const std::size_t i = next_bit(rows);
-      std::uint32_t bits =
-          columns & near_boxes(b.boxes, OneBox(a.boxes, i), square_limit_, squares);
-      if (same) bits &= ~((2u << i) - 1);
-      if (directed) bits &= before(b.extreme, a.extreme[i], gap_limit);
-      while (bits != 0) {
+    std::array<std::uint32_t, kWide> near{};  // per row, bits of the columns
+    for (; rows != 0; rows &= rows - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rows));
+      near[i] = columns & near_boxes(b.boxes, OneBox(a.boxes, i), square_limit_, squares);
+      if (same) near[i] &= ~((2u << i) - 1);
+      if (directed) near[i] &= before(b.extreme, a.extreme[i], gap_limit);
+    }
+    drop_apart_along_normals(a, b, near);
+    for (std::size_t i = 0; i < kWide; ++i) {
+      for (std::uint32_t bits = near[i]; bits != 0;) {
         const std::size_t j = next_bit(bits);
         const auto pair = std::minmax(a.triangle[i], b.triangle[j]);
         if (!is_no_nearer(at, i, j, {pair.first, pair.second})) add(a, i, b, j);
       }
     }
+  }
+
+  // Drops pairs that are farther apart along the normal of one of their triangles than the bound.
+  // Boxes along the axes tell little of slivers and large triangles, and one normal is tried for
+  // all pairs of its triangle at once, which takes less time than to bound two of them.
+  HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
+                                           std::array<std::uint32_t, kWide>& near) const {
+    std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two
+    for (std::size_t i = 0; i < kWide; ++i) {
+      if (std::popcount(near[i]) > 1) near[i] &= near_plane(a, i, b);
+      twice |= once & near[i];
+      once |= near[i];
+    }
+    while (twice != 0) {
+      const std::size_t j = next_bit(twice);
+      const std::uint32_t rows = near_plane(b, j, a);
+      for (std::size_t i = 0; i < kWide; ++i) near[i] &= ~((~rows >> i & 1u) << j);
+    }
+  }
+
+  // Bits of the triangles of a leaf that are not farther from triangle i of another one than the
+  // bound, by their gap along the normal of that one. The computed normal is a direction like any
+  // other, however far it is off (core/proximity/scene_trees.h); it is scaled to at most 16.
+  HWY_INLINE std::uint32_t near_plane(const BlockCorners& own, std::size_t i,
+                                      const BlockCorners& leaf) const {
+    const auto corner = [&](std::size_t k) {
+      return Vec3(own.corner[3 * k][i], own.corner[3 * k + 1][i], own.corner[3 * k + 2][i]);
+    };
+    const Vec3 p = corner(0), q = corner(1), r = corner(2);
+    const Vec3 d = 0.125 * (q - p).cross(r - p);
+    const double squared = d.squaredNorm();
+    if (!(squared >= near::kLeastSquare)) return 0xffff;
+    const double limit =
+        near::gap_limit(search_.bound(), squared, near::kGap * d.cwiseAbs().dot(extent_));
+    const double at_p = d.dot(p - origin_), at_q = d.dot(q - origin_), at_r = d.dot(r - origin_);
+    const Number least = number(std::min({at_p, at_q, at_r})),
+                 most = number(std::max({at_p, at_q, at_r}));
+    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
+    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
+    std::uint32_t out = 0;
+    for (std::size_t from = 0; from < kWide; from += kLanes) {
+      const auto place = [&](std::size_t k) {
+        return dot(LaneTriangle::load(leaf.corner, k, from) - origin, direction);
+      };
+      const Number x = place(0), y = place(1), z = place(2);
+      const Number gap = hn::Max(hn::Sub(hn::Min(hn::Min(x, y), z), most),
+                                 hn::Sub(least, hn::Max(hn::Max(x, y), z)));
+      out |= boxes::bits_of(Numbers(), hn::Le(gap, number(limit))) << from;
+    }
+    return out;
   }
 
   // Bits of the triangles that begin at most gap_limit behind `place` along the direction.

@@ -139,6 +139,16 @@ std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&&
   return sorted_of(parts, threads, [&] { parts.clear(); });
 }
 
+void GatheredPairs::add(std::span<const TrianglePair> some) {
+  while (!some.empty()) {
+    if (parts_.empty() || parts_.back().size() == kPart) parts_.emplace_back().reserve(kPart);
+    const std::size_t count = std::min(kPart - parts_.back().size(), some.size());
+    parts_.back().insert(parts_.back().end(), some.begin(),
+                         some.begin() + static_cast<std::ptrdiff_t>(count));
+    some = some.subspan(count);
+  }
+}
+
 PairPool::PairPool(std::size_t lists, std::size_t buffer, Narrow narrow)
     : buffer_(buffer),
       narrow_(std::move(narrow)),

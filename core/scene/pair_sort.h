@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -22,6 +23,21 @@ std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair
 /// As above; empties the parts as soon as it has read them, to make room.
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
+
+/// Pairs that arrive some at a time, in no order, each once or more. They are kept in parts of one
+/// length, since a list that doubles would be copied each time.
+class GatheredPairs {
+ public:
+  void add(std::span<const TrianglePair> some);
+  /// As sorted_unique(); ends the parts.
+  std::vector<TrianglePair> sorted(unsigned threads) && {
+    return sorted_unique(std::move(parts_), threads);
+  }
+
+ private:
+  static constexpr std::size_t kPart = std::size_t{1} << 14;
+  std::vector<std::vector<TrianglePair>> parts_;
+};
 
 /// Collects pairs from several threads, each pair as often as it is found. A thread adds to a list
 /// of its own. A list that reaches its share of the larger of `buffer` and the number of distinct

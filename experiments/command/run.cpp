@@ -309,7 +309,10 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   Session session(options.device);
   const Record record = farcull::run(scene, all, session, progress);
   terminal.clear();
-  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record, columns()));
+  if (outputs.pairs) {
+    write_output(*outputs.pairs,
+                 [&](const TextSink& sink) { give_pairs_csv(scene, record, columns(), sink); });
+  }
   if (outputs.certificate) {
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
   }

@@ -24,27 +24,6 @@ void count_kept(const Scene& scene, Candidates& found) {
   found.object_count = count_objects(scene, found.triangles);
 }
 
-// Pairs that arrive some at a time, in no order. A list that doubles would be copied each time.
-class PairParts {
- public:
-  void add(const std::vector<TrianglePair>& some) {
-    for (std::size_t done = 0; done < some.size();) {
-      if (parts_.empty() || parts_.back().size() == kPart) parts_.emplace_back().reserve(kPart);
-      const std::size_t count = std::min(kPart - parts_.back().size(), some.size() - done);
-      const auto from = some.begin() + static_cast<std::ptrdiff_t>(done);
-      parts_.back().insert(parts_.back().end(), from, from + static_cast<std::ptrdiff_t>(count));
-      done += count;
-    }
-  }
-  std::vector<TrianglePair> sorted(unsigned threads) && {
-    return sorted_unique(std::move(parts_), threads);
-  }
-
- private:
-  static constexpr std::size_t kPart = std::size_t{1} << 14;
-  std::vector<std::vector<TrianglePair>> parts_;
-};
-
 // Decides candidates as they are found, in the threads that find them. marks: marks their
 // triangles.
 class Deciding {
@@ -104,7 +83,7 @@ class Deciding {
   const unsigned all_threads_;
   std::vector<std::uint8_t> kept_;  // per triangle; empty: none is marked
   std::mutex mutex_;                // of all below
-  PairParts pairs_, neighbour_pairs_;
+  GatheredPairs pairs_, neighbour_pairs_;
   Collisions counts_;  // without pairs until the end
   std::uint64_t ignored_ = 0;
   std::set<std::thread::id> threads_;

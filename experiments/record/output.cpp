@@ -11,6 +11,7 @@
 
 #include "commit.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/gl/base/context.h"
 #include "experiments/record/tables.h"
@@ -277,51 +278,118 @@ std::string pairs_header(const Scene& scene, const PairColumns& columns) {
 
 namespace {
 
-void append_rows(const Scene& scene, const Record& record, const std::string& before,
-                 const PairColumns& columns, std::string& out) {
-  const PairListRows rows(scene, columns.numbers);
-  const auto add = [&](const std::vector<TrianglePair>& pairs,
-                       const std::vector<ContactShape>& contacts, std::size_t k) {
+// Appends the rows of some pairs and of the colliding neighbours between them, in order.
+struct RowRange {
+  std::size_t pairs = 0, pairs_end = 0;  // of Collisions::pairs
+  std::size_t neighbours = 0, neighbours_end = 0;
+};
+
+class Rows {
+ public:
+  Rows(const Scene& scene, const Record& record, const std::string& before,
+       const PairColumns& columns)
+      : scene_(scene),
+        record_(record),
+        before_(before),
+        columns_(columns),
+        rows_(scene, columns.numbers) {}
+
+  void append(const RowRange& range, std::string& out) const {
+    const Collisions& all = record_.collisions;
+    std::size_t next = range.neighbours;
+    const auto neighbours_before = [&](const TrianglePair* pair) {
+      for (; next < range.neighbours_end && (!pair || all.neighbour_pairs[next] < *pair); ++next)
+        append(all.neighbour_pairs, record_.neighbour_contacts, next, out);
+    };
+    for (std::size_t k = range.pairs; k < range.pairs_end; ++k) {
+      neighbours_before(&all.pairs[k]);
+      append(all.pairs, record_.contacts, k, out);
+    }
+    neighbours_before(nullptr);
+  }
+
+ private:
+  void append(const std::vector<TrianglePair>& pairs, const std::vector<ContactShape>& contacts,
+              std::size_t k, std::string& out) const {
     const TrianglePair& pair = pairs[k];
-    if (!columns.kinds.empty() &&
-        std::ranges::find(columns.kinds, contacts.at(k).kind) == columns.kinds.end()) {
+    if (!columns_.kinds.empty() &&
+        std::ranges::find(columns_.kinds, contacts.at(k).kind) == columns_.kinds.end()) {
       return;
     }
-    out += before;
-    rows.append(pair, out);
+    out += before_;
+    rows_.append(pair, out);
     out.pop_back();
-    if (columns.contacts) out.append(",").append(name_of(contacts.at(k).kind));
-    if (columns.segments) append_ends(contacts.at(k), out);
-    if (columns.faces) {
-      fmt::format_to(std::back_inserter(out), ",{},{}", scene.source_face[pair.a],
-                     scene.source_face[pair.b]);
+    if (columns_.contacts) out.append(",").append(name_of(contacts.at(k).kind));
+    if (columns_.segments) append_ends(contacts.at(k), out);
+    if (columns_.faces) {
+      fmt::format_to(std::back_inserter(out), ",{},{}", scene_.source_face[pair.a],
+                     scene_.source_face[pair.b]);
     }
     out += '\n';
-  };
-  const Collisions& all = record.collisions;
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < all.pairs.size(); ++k) {
-    for (; next < all.neighbour_pairs.size() && all.neighbour_pairs[next] < all.pairs[k]; ++next)
-      add(all.neighbour_pairs, record.neighbour_contacts, next);
-    add(all.pairs, record.contacts, k);
   }
-  for (; next < all.neighbour_pairs.size(); ++next)
-    add(all.neighbour_pairs, record.neighbour_contacts, next);
+
+  const Scene& scene_;
+  const Record& record_;
+  const std::string& before_;
+  const PairColumns& columns_;
+  const PairListRows rows_;
+};
+
+// Divides the sorted pairs and neighbours into ranges of at most kRows of each, in order.
+std::vector<RowRange> ranges_of(const Collisions& all) {
+  constexpr std::size_t kRows = std::size_t{1} << 15;
+  const std::vector<TrianglePair>&pairs = all.pairs, &neighbours = all.neighbour_pairs;
+  const auto before = [](const std::vector<TrianglePair>& some, const TrianglePair& pair) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(some, pair) - some.begin());
+  };
+  std::vector<RowRange> out;
+  for (RowRange at; at.pairs < pairs.size() || at.neighbours < neighbours.size();) {
+    at.pairs_end = std::min(at.pairs + kRows, pairs.size());
+    at.neighbours_end =
+        at.pairs_end < pairs.size() ? before(neighbours, pairs[at.pairs_end]) : neighbours.size();
+    if (at.neighbours_end - at.neighbours > kRows) {
+      at.neighbours_end = at.neighbours + kRows;
+      at.pairs_end = before(pairs, neighbours[at.neighbours_end]);
+    }
+    out.push_back(at);
+    at = {.pairs = at.pairs_end, .neighbours = at.neighbours_end};
+  }
+  return out;
 }
 
 }  // namespace
 
+void give_pairs_rows(const Scene& scene, const Record& record, const std::string& before,
+                     const PairColumns& columns, const TextSink& sink) {
+  const Rows rows(scene, record, before, columns);
+  const std::vector<RowRange> ranges = ranges_of(record.collisions);
+  // Each thread keeps a text, so that its memory is used again.
+  std::vector<std::string> texts(chunks_for(ranges.size(), 1));
+  for (std::size_t from = 0; from < ranges.size(); from += texts.size()) {
+    const std::size_t count = std::min(texts.size(), ranges.size() - from);
+    for_chunks(count, count, [&](std::size_t k, std::size_t, std::size_t) {
+      texts[k].clear();
+      rows.append(ranges[from + k], texts[k]);
+    });
+    for (std::size_t k = 0; k < count; ++k) sink(texts[k]);
+  }
+}
+
+void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
+                    const TextSink& sink) {
+  sink(pairs_header(scene, columns));
+  give_pairs_rows(scene, record, "", columns, sink);
+}
+
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns) {
   std::string out;
-  append_rows(scene, record, before, columns, out);
+  give_pairs_rows(scene, record, before, columns, [&](std::string_view text) { out += text; });
   return out;
 }
 
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns) {
-  std::string out = pairs_header(scene, columns);
-  append_rows(scene, record, "", columns, out);
-  return out;
+  return pairs_header(scene, columns) + pairs_rows(scene, record, "", columns);
 }
 
 Certificate certificate_of(const Scene& scene, const Record& record) {

@@ -15,6 +15,7 @@
 #include "experiments/method/distances.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
+#include "experiments/system/output_file.h"
 #include "verify/certificate/certificate.h"
 #include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
@@ -132,6 +133,10 @@ struct PairColumns {
 /// colliding neighbours if an object of the scene is tested against itself. More columns come at
 /// the end: contact, the segment, the faces.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
+/// The same, given to `sink` part by part in order, so that the whole text is never in memory. All
+/// cores make the parts.
+void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
+                    const TextSink& sink);
 /// The header and the rows of pairs_csv(); `before` comes at the start of each row.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,

@@ -473,8 +473,7 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   if (reference) {
     out +=
         "x exact: cull + exact ms over those of the method exact in this run\n"
-        "(CGAL's box join with cutoff 2000, exact predicates); the graphics context is set up "
-        "once\n"
+        "(a join of all boxes, exact predicates); the graphics context is set up once\n"
         "and not counted.\n";
   }
   return out;

@@ -157,7 +157,7 @@ SuiteKind decide(const SuitePair& pair, const std::string& where);
 /// Every pair of corners at equal positions, ascending.
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// All colliding pairs of a mesh, ascending: CGAL's join of boxes and predicates find them, and the
+/// All colliding pairs of a mesh, ascending: a box join and CGAL's predicates find them, and the
 /// checker of certificates proves the list with integers alone. Throws Error naming `where` if the
 /// checker does not prove it. Also throws Error if an object that is tested against itself has two
 /// vertices at one position: their triangles would be neighbours by position, but not by index.

@@ -281,6 +281,26 @@ void StreamedOutput::put() {
   if (failure != 0) refuse(path_, failure);
 }
 
+void write_output(const std::string& path, const std::function<void(const TextSink&)>& write) {
+  check_output(path);
+  if (path != "-" && !target_of(path).direct) {
+    StreamedOutput file(path);
+    write([&](std::string_view text) { file.add(text); });
+    file.put();
+    return;
+  }
+  const auto close = [](std::FILE* file) {
+    return file == stdout ? std::fflush(file) : std::fclose(file);
+  };
+  std::unique_ptr<std::FILE, decltype(close)> file(
+      path == "-" ? stdout : std::fopen(path.c_str(), "wb"), close);
+  if (!file) refuse(path, errno);
+  write([&](std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) refuse(path, errno);
+  });
+  if (close(file.release()) != 0) refuse(path, errno);
+}
+
 void write_help(const std::string& text) {
   check_output("-");
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,6 +25,12 @@ void check_output(const std::string& path);
 /// even if SIGINT, SIGTERM or SIGHUP ends the program meanwhile. SIGPIPE and SIGXFSZ have to be
 /// ignored for that (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
+
+/// Takes a text part by part.
+using TextSink = std::function<void(std::string_view)>;
+/// write_output() of a long text, which write(sink) gives to the sink. An exception of `write` is
+/// thrown again here, and a file stays as it was.
+void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 
 /// Writes help, or another text that a reader may end early (help run | head), to standard output:
 /// a closed pipe is no error. Throws Error as write_output() if the disk refuses.

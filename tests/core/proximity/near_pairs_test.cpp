@@ -322,6 +322,39 @@ TEST(NearPairs, AreTheSameForAnyThreadsAndInstructionSet) {
   }
 }
 
+// Two sheets that lie close to each other, each steep in some places, so that boxes overlap. Bounds
+// of boxes leave most of them; the normals of their triangles tell all but a few apart.
+TEST(NearPairs, SteepSheetsAreToldApartAlongTheirNormals) {
+  const auto sheet = [](int lift) {
+    std::vector<near_lab::Corners<near_lab::Integer>> out;
+    const auto at = [&](int x, int y) {
+      return near_lab::Triple<near_lab::Integer>{x, 4 * y, (x * x - 9 * y * y) / 3 + lift};
+    };
+    for (int x = -12; x < 12; ++x) {
+      for (int y = -4; y < 4; ++y) {
+        out.push_back({at(x, y), at(x + 1, y), at(x, y + 1)});
+        out.push_back({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
+      }
+    }
+    return out;
+  };
+  GridScene grid;
+  add_object(grid, sheet(0));
+  add_object(grid, sheet(1));
+  finish(grid, 1, 0, [] { return false; });
+  const ProximityTrees trees(grid.scene, 1);
+  const ObjectPair question = {0, 1};
+  const NearPairs answer = trees.near_pairs({&question, 1}, kInfinite, {}).front();
+  EXPECT_EQ(fault_of(grid, truth_of(grid, 0, 1), answer, kInfinite), "");
+  const std::vector<Box> boxes = triangle_boxes(grid.scene);
+  std::size_t overlapping = 0;
+  for (std::size_t a = 0; a < boxes.size() / 2; ++a) {
+    for (std::size_t b = boxes.size() / 2; b < boxes.size(); ++b)
+      overlapping += overlap(boxes[a], boxes[b]);
+  }
+  EXPECT_GT(overlapping, 5 * trees.counts().triangle_pairs);
+}
+
 // A hint changes what is looked at, not what is found; nonsense is no hint.
 TEST(NearPairs, HintsSaveWork) {
   Random random(6);

@@ -34,6 +34,7 @@ for file in man/man1/farcull.1 bash-completion/completions/farcull zsh/site-func
   fish/vendor_completions.d/farcull.fish; do
   grep -q farcull "$share/$file" || fail "share/$file is not installed, or empty"
 done
+grep -q LGPL-3.0-or-later "$share/doc/farcull/LICENSE" || fail 'the licence is not installed'
 "$work/prefix/bin/farcull" man | cmp -s - "$share/man/man1/farcull.1" ||
   fail 'the manual is not that of the program'
 
