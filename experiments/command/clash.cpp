@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "experiments/command/command.h"
 #include "experiments/method/clash.h"
+#include "experiments/picture/clash_page.h"
 #include "experiments/record/clash.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
@@ -74,7 +75,8 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
            {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
            {"--csv", &outputs_.csv, "FILE",
             "write the pairs as CSV to this file; - for standard\noutput, without the table"},
-           {"--json", &outputs_.json, "FILE", kJsonHelp}},
+           {"--json", &outputs_.json, "FILE", kJsonHelp},
+           {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
       kExamples);
 }
 
@@ -145,11 +147,13 @@ int ClashCommand::run() const {
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
   options.ignored = in_order(std::move(options.ignored));
   scene.ignored.clear();
+  if (outputs.page) require_clash_page(scene);
   const ClashRecord record = clashes(scene, options, progress);
   terminal.clear();
   const std::string unit = unit_.value_or("");
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));
   if (outputs.json) write_json(clash_json(scene, record, unit), *outputs.json);
+  if (outputs.page) write_output(*outputs.page, clash_page(scene, record, unit));
   if (!outputs.to_stdout())
     write_output("-", clash_text(scene, record, {.touches = touches, .unit = unit}));
   const bool fails =

@@ -31,20 +31,6 @@ std::string kinds_text(const ClashRow& row) {
   return out;
 }
 
-/// What the row says beyond its verdict.
-std::string what_text(const Scene& scene, const ClashRow& row) {
-  switch (row.verdict) {
-    case ClashVerdict::contained:
-      return name_of(scene, *row.inner) + " inside";
-    case ClashVerdict::unknown:
-      return "the one around " + name_of(scene, *row.inner) + " is not closed";
-    case ClashVerdict::clash:
-      return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
-    default:
-      return kinds_text(row);
-  }
-}
-
 std::string depth_text(const ClashRow& row) {
   if (!row.depth) return "";
   const auto& [lo, hi, translation, direction] = *row.depth;
@@ -73,7 +59,7 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
     if (++all > kRowsShown) continue;
     out.add({to_string(row.verdict), name_of(scene, row.objects.a), name_of(scene, row.objects.b),
              depth_text(row), row.curve > 0 ? short_number(row.curve) : "", distance_text(row),
-             place_text(row), what_text(scene, row)});
+             place_text(row), clash_words(scene, row)});
   }
   if (all == 0) return "";
   const std::string more =
@@ -133,6 +119,19 @@ std::string cell(const std::string& text) {
 }
 
 }  // namespace
+
+std::string clash_words(const Scene& scene, const ClashRow& row) {
+  switch (row.verdict) {
+    case ClashVerdict::contained:
+      return name_of(scene, *row.inner) + " inside";
+    case ClashVerdict::unknown:
+      return "the one around " + name_of(scene, *row.inner) + " is not closed";
+    case ClashVerdict::clash:
+      return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
+    default:
+      return kinds_text(row);
+  }
+}
 
 bool is_clean(const ClashRecord& record) {
   return record.examined == record.asked && record.count(ClashVerdict::clash) == 0 &&

@@ -17,6 +17,9 @@ struct ClashTable {
 /// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
+/// What a row says beyond its verdict, such as the kinds of contact.
+std::string clash_words(const Scene& scene, const ClashRow& row);
+
 /// Whether no pair is a clash, contained or unknown, and every pair that was asked for was
 /// examined.
 bool is_clean(const ClashRecord& record);
