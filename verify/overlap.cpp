@@ -26,7 +26,9 @@ using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
 constexpr std::size_t kMostPlanes = 64;    // that are tried as dividing planes
-constexpr std::size_t kMostPieces = 4096;  // of the triangles of two objects together
+constexpr std::size_t kMostPieces = 2048;  // of a triangle
+// Tests of a piece with a triangle of the objects, about two seconds.
+constexpr std::size_t kMostTests = std::size_t{1} << 31;
 
 Q3 cross(const Q3& a, const Q3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -141,7 +143,8 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
 /// Whether the places just below and just above a point of a plane, along an axis, are inside an
 /// object.
 struct Sides {
-  std::array<bool, 2> inside{};
+  std::array<bool, 2> perhaps{};  // one of the two rules says so
+  std::array<bool, 2> inside{};   // both do
 };
 
 /// Empty if the ray meets an edge, or if a triangle that is not in the plane has the point.
@@ -185,14 +188,21 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
     winding[to] += side[0];
   }
   Sides out;
-  for (std::size_t to = 0; to < 2; ++to)
-    out.inside[to] = crossings[to] % 2 != 0 || winding[to] != 0;
+  for (std::size_t to = 0; to < 2; ++to) {
+    const bool odd = crossings[to] % 2 != 0, wound = winding[to] != 0;
+    out.perhaps[to] = odd || wound;
+    out.inside[to] = odd && wound;
+  }
   return out;
 }
 
 class PieceTest {
  public:
-  PieceTest(const Scene& scene, ObjectPair objects) : scene_(scene), objects_(objects) {}
+  PieceTest(const Scene& scene, ObjectPair objects)
+      : scene_(scene),
+        objects_(objects),
+        triangles_(scene.objects[objects.a].triangle_count +
+                   std::size_t{scene.objects[objects.b].triangle_count}) {}
 
   /// Whether pieces of triangle t of object `own` show an overlap with the other object; `others`
   /// are the triangles of the other object that meet t.
@@ -203,17 +213,17 @@ class PieceTest {
     std::vector<Polygon> pieces = {{exact(corners[0]), exact(corners[1]), exact(corners[2])}};
     for (const std::uint32_t other : others) {
       cut_by(pieces, plane, scene_.corners(other));
-      if (pieces_ + pieces.size() > kMostPieces) return Overlap::unknown;
+      if (pieces.size() > kMostPieces) return Overlap::unknown;
     }
     // Where the object meets itself, its own inside changes within the triangle.
     const Box box = box_of(corners);
     for_triangles(scene_, own, [&](const Corners& other) {
-      if (pieces_ + pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
+      if (pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
       if (other != corners && intersects_beyond_shared(corners, other))
         cut_by(pieces, plane, other);
     });
-    pieces_ += pieces.size();
-    if (pieces_ > kMostPieces) return Overlap::unknown;
+    tests_ += pieces.size() * triangles_;
+    if (pieces.size() > kMostPieces || tests_ > kMostTests) return Overlap::unknown;
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
       if (abs(plane.normal[k]) > abs(plane.normal[axis])) axis = k;
@@ -234,10 +244,12 @@ class PieceTest {
       if (!a) continue;
       const std::optional<Sides> b = sides_of(scene_, objects_.b, plane, p, axis);
       if (!b) continue;
+      Overlap out = Overlap::no;
       for (std::size_t side = 0; side < 2; ++side) {
         if (a->inside[side] && b->inside[side]) return Overlap::yes;
+        if (a->perhaps[side] && b->perhaps[side]) out = Overlap::unknown;
       }
-      return Overlap::no;
+      return out;
     }
     return Overlap::unknown;
   }
@@ -245,7 +257,8 @@ class PieceTest {
   const Scene& scene_;
   ObjectPair objects_;
   RandomNumbers random_{1};
-  std::size_t pieces_ = 0;
+  std::size_t triangles_;  // of both
+  std::size_t tests_ = 0;
 };
 
 /// Whether one of the points is inside; a point of the surface is left to the pieces.

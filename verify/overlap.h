@@ -16,9 +16,9 @@
 //   other object, and so is all that hangs together with it up to the next contact, where a piece
 //   of a triangle is inside; without any contact one vertex of the part of the object shows it.
 //
-// Here a point is inside a mesh if a ray from it crosses the mesh an odd number of times, or more
-// often in one sense than in the other: what either rule calls inside counts, so that overlapping
-// shells and faces of either orientation hide nothing.
+// Here a point may be inside a mesh if a ray from it crosses the mesh an odd number of times, or
+// more often in one sense than in the other, so that overlapping shells hide nothing; it is inside
+// for certain if both hold. Where only one of them tells of an overlap, the answer is unknown.
 //
 // Everything is decided in rational numbers. Preconditions of verify/exact.h.
 #pragma once
@@ -30,7 +30,8 @@
 
 namespace farcull {
 
-/// unknown: an object is not closed, or the proof would take too long.
+/// unknown: an object is not closed, its shells overlap, its faces do not all face outward, or the
+/// proof would take too long.
 enum class Overlap : std::uint8_t { no, yes, unknown };
 
 /// Preconditions: `contacts` are all pairs of a triangle of object a and a triangle of object b

@@ -61,7 +61,7 @@ function showLegend() {
     return item;
   };
   const css = (c) => `rgb(${c.join(", ")})`;
-  const items = row === undefined ? [] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
+  const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
   if (row && row.curve > 0) items.push(line("#dc005a", "the surfaces cross"));
   byId("legend").replaceChildren(...items);
   byId("legend").hidden = items.length === 0;
@@ -69,17 +69,19 @@ function showLegend() {
 
 // ---- the scene ----------------------------------------------------------------------------------
 
-// The parts of the pair are solid. The outer one of two is a ghost, so that the inner one is seen.
+const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object].getSize(new THREE.Vector3()).length());
+
+// Without a chosen pair the parts that clash with another one, or lie in one, have the first colour.
+// The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
   const inside = row && (row.verdict === "contained" || row.verdict === "unknown");
+  const bad = new Set(about.rows.filter((r) => !r.ignored && r.verdict !== "touch" && r.verdict !== "near").flatMap((r) => [r.a, r.b]));
   frame.objects.forEach(([, first, count], o) => {
     const solid = row === undefined || o === row.a || o === row.b;
-    if (row && o === row.a) states.fill(IDLE, first, first + count);
-    const size = view.boxes[o].isEmpty() ? 0 : view.boxes[o].getSize(new THREE.Vector3()).length();
-    const other = row && view.boxes[o === row.a ? row.b : row.a];
-    const outer = inside && solid && size > other.getSize(new THREE.Vector3()).length();
+    if (row ? o === row.a : bad.has(o)) states.fill(IDLE, first, first + count);
+    const outer = inside && solid && sizeOf(o) > sizeOf(o === row.a ? row.b : row.a);
     view.ghost(o, !solid || outer, !state.ghosts && !solid);
   });
   view.setStates(states);
@@ -110,7 +112,7 @@ function showCurve(row) {
 // Moves and zooms the view to the place of a row; the direction of sight stays.
 function flyTo(row) {
   const lo = pointOf(row.box, 0), hi = pointOf(row.box, 1), middle = lo.clone().add(hi).multiplyScalar(0.5);
-  const size = Math.max(0.01, 1.6 * hi.sub(lo).length());
+  const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * Math.min(sizeOf(row.a), sizeOf(row.b)));
   const from = view.controls.target.clone(), zoom = view.camera.zoom, to = Math.min(2 / size, 200);
   const offset = view.camera.position.clone().sub(from), begin = performance.now();
   const step = () => {
@@ -134,7 +136,8 @@ function chooseRow(k) {
   for (const button of byId("rows").querySelectorAll("button")) {
     const chosen = Number(button.dataset.row) === k;
     button.setAttribute("aria-current", String(chosen));
-    if (chosen) button.scrollIntoView({ block: "nearest" });
+    // The list alone is scrolled: on a narrow screen the page would leave the scene.
+    if (chosen) byId("rows").scrollTop = button.offsetTop - 40;
   }
   showParts();
   showLegend();

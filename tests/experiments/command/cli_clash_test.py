@@ -15,7 +15,7 @@ box('parts/b.obj', (1, 0.5, 0.5), (3, 1.5, 1.5))
 box('parts/c.obj', (5, 0, 0), (6, 1, 1))
 box('parts/d.obj', (6, 0, 0), (7, 1, 1))
 box('inner.obj', (0.5, 0.5, 0.5), (1, 1, 1))
-write('empty.obj', 'v 0 0 0\n')
+write('empty.off', 'OFF\n1 0 0\n0 0 0\n')
 
 # ---- bad input
 
@@ -42,10 +42,13 @@ rows(r"""
 0 beyond the clearance | clash parts --fail-on near --clearance 1.9999 | ! ^near
 0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
 1 contained | clash parts/a.obj inner.obj | ^contained +a +inner .* inner inside$ | ! clean
+1 a part without triangles | clash parts/a.obj parts/c.obj empty.off | ^examined   1 of 3 pairs of parts$ | ^not examined: empty has no triangles$
 0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^ignored pairs that meet| ^examined   5 of 5 .*: clean$
 list.txt << # allowed; a:b
 0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
 1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
+1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
+bad a page of nothing | no triangles | clash empty.off empty.off --html page.html
 1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "at_least": 0.99999
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["at_least"] <= 1 <= d["at_most"] < 1.0001, d'
 """)
