@@ -27,6 +27,7 @@ bad clearance '{clearance}' | --clearance: | clash parts --clearance {clearance}
 bad touching | --touching: 'never' is no choice; give allow or report | clash parts --touching never
 bad fail on {word} | --fail-on: '{word}' is no verdict; give none, or some of | clash parts --fail-on {word}
 bad ignored | --ignore: | clash parts --ignore a:none
+bad a part without triangles | empty.off: the mesh has no triangles | clash parts/a.obj empty.off
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 """, clearance=['-1', 'nan', 'inf', 'x', ''], word=['clear', 'clashes'])
 
@@ -42,13 +43,11 @@ rows(r"""
 0 beyond the clearance | clash parts --fail-on near --clearance 1.9999 | ! ^near
 0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
 1 contained | clash parts/a.obj inner.obj | ^contained +a +inner .* inner inside$ | ! clean
-1 a part without triangles | clash parts/a.obj parts/c.obj empty.off | ^examined   1 of 3 pairs of parts$ | ^not examined: empty has no triangles$
 0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^ignored pairs that meet| ^examined   5 of 5 .*: clean$
 list.txt << # allowed; a:b
 0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
 1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
-bad a page of nothing | no triangles | clash empty.off empty.off --html page.html
 1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "at_least": 0.99999
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["at_least"] <= 1 <= d["at_most"] < 1.0001, d'
 """)
