@@ -155,7 +155,7 @@ TEST(Clash, AgreesWithFclOnWhatFclCanDo) {
 TEST(Clash, OfSolidsOfCubesIsKnown) {
   RandomNumbers random(seed_of_day(6));
   std::map<ClashVerdict, int> seen;
-  for (int k = 0; k < trials(200); ++k) {
+  for (int k = 0; k < trials(80); ++k) {
     std::array<std::set<std::array<int, 3>>, 2> cubes;
     const int first = 1 + random.below(8), second = 1 + random.below(8);
     if (random.below(4) == 0) {  // all of a block but its middle, or the block
