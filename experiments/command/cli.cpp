@@ -323,9 +323,9 @@ int dispatch(int argc, char** argv) {
 
   std::vector<Command> commands;  // in the order of the help
   for (Command (*const add)(CLI::App&) :
-       {add_run, add_verify, add_plan, add_compare, add_distance, add_bench, add_doctor, add_check,
-        add_experiment, add_merge, add_picture, add_report, add_scenes, add_suite, add_help,
-        add_completion, add_manual})
+       {add_run, add_verify, add_plan, add_compare, add_distance, add_clash, add_bench, add_doctor,
+        add_check, add_experiment, add_merge, add_picture, add_report, add_scenes, add_suite,
+        add_help, add_completion, add_manual})
     commands.push_back(add(app));
 
   try {

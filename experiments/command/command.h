@@ -121,14 +121,16 @@ Command declare(CLI::App& parent, const Arguments&... arguments) {
 }
 
 // The commands of the program. Exit status 1 means, by command: run, verify, compare: a guarantee
-// is broken. bench: two contestants disagree. distance: the accounting found a nearer pair or a
-// wrong answer, or the reliable diagram lost a nearest object. doctor: an assumption does not hold
-// on the device. check: refuted, or not proved. picture, report: a guarantee is broken.
+// is broken. bench: two contestants disagree. clash: a pair of parts has a verdict of --fail-on, or
+// was not examined. distance: the accounting found a nearer pair or a wrong answer, or the reliable
+// diagram lost a nearest object. doctor: an assumption does not hold on the device. check: refuted,
+// or not proved. picture, report: a guarantee is broken.
 Command add_run(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_plan(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_distance(CLI::App& app);
+Command add_clash(CLI::App& app);
 Command add_bench(CLI::App& app);
 Command add_doctor(CLI::App& app);
 Command add_check(CLI::App& app);

@@ -39,7 +39,8 @@ bool lies_within(const Box& inner, const Box& outer) {
          (inner.hi.array() <= outer.hi.array()).all();
 }
 
-// For each part of the object, the first corner of its first triangle.
+}  // namespace
+
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   struct Corner {
     std::array<double, 3> place;
@@ -70,8 +71,6 @@ std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   }
   return out;
 }
-
-}  // namespace
 
 struct Insides::OfObject {
   Box box;
@@ -250,14 +249,18 @@ SettledPair settled(const Scene& scene, std::span<const TrianglePair> pairs) {
   return out;
 }
 
+ProximityTrees trees_of(const Scene& scene, unsigned threads) {
+  return ProximityTrees(scene, threads, [&scene](std::span<const TrianglePair> pairs) {
+    return settled(scene, pairs);
+  });
+}
+
 void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
   if (progress) progress("boxes");
-  const ProximityTrees trees(scene, options.threads, [&scene](std::span<const TrianglePair> pairs) {
-    return settled(scene, pairs);
-  });
+  const ProximityTrees trees = trees_of(scene, options.threads);
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
     near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
@@ -400,6 +403,14 @@ void verify(const Scene& scene, const Progress& progress, DistanceRecord& record
 }
 
 }  // namespace
+
+std::vector<Distance> nearest_triangles(const Scene& scene, std::span<const ObjectPair> objects,
+                                        double within, unsigned threads, const Progress& progress) {
+  const FloatingPointGuard guard;
+  const std::vector<NearPairs> near =
+      trees_of(scene, threads).near_pairs(objects, within, {}, progress);
+  return nearest_of(scene, near, {.within = within, .threads = threads});
+}
 
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options) {
   std::size_t with_triangles = 0;

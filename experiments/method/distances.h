@@ -51,6 +51,10 @@ class Insides {
   std::unique_ptr<OfObject[]> objects_;
 };
 
+/// For each *part* of the object, its triangles that hang together by vertex positions, the first
+/// corner of its first triangle.
+std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object);
+
 struct DistanceOptions {
   DistancePairs pairs = DistancePairs::objects;
   std::size_t k = 1;                                        // with `nearest`
@@ -101,6 +105,12 @@ struct NearestOfObject {
 /// The nearest objects of each object with triangles, in order.
 std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
                                                 std::span<const Distance> distances, std::size_t k);
+
+/// The nearest triangles of each of these pairs of objects, unless they are farther apart than
+/// `within`. threads: 0 for as many as there are cores. Insides are left unknown.
+std::vector<Distance> nearest_triangles(const Scene& scene, std::span<const ObjectPair> objects,
+                                        double within, unsigned threads,
+                                        const Progress& progress = {});
 
 /// Why the question is about no two triangles of the scene; empty if it is about some.
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options);

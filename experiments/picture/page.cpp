@@ -18,6 +18,7 @@
 #include "embedded/page_html.h"
 #include "embedded/page_js.h"
 #include "embedded/page_view_js.h"
+#include "experiments/picture/page_parts.h"
 #include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/text.h"
@@ -76,26 +77,23 @@ namespace {
 
 using nlohmann::json;
 
-// Blocks of the page, each a script element that browsers do not run.
-class Blocks {
- public:
-  std::string add(const std::string& text) {
-    const std::string name = fmt::format("block-{}", count_++);
-    text_ += fmt::format("<script type=\"text/plain\" id=\"{}\">", name);
-    text_ += text;
-    text_ += "</script>\n";
-    return name;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-  int count_ = 0;
-};
-
 json colour(const Rgba& c) { return {c.r, c.g, c.b}; }
 
 json vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most) {
+  return Error("--html",
+               fmt::format("the scene has {} {}, and a page holds at most {}", grouped(count), what,
+                           grouped(most)),
+               "leave objects or frames out, or draw the flat picture alone, with -o");
+}
+
+json objects_of(const Scene& scene) {
+  json out = json::array();
+  for (const Object& object : scene.objects)
+    out.push_back({object.name, object.first_triangle, object.triangle_count});
+  return out;
+}
 
 // JSON inside a script element: its text must not look like the element's end.
 std::string for_script(const json& data) {
@@ -105,21 +103,23 @@ std::string for_script(const json& data) {
   return out;
 }
 
-// Replaces the only occurrence of `mark` in the page.
-void put(std::string& page, const std::string& mark, std::string_view text) {
-  const std::size_t at = page.find(mark);
-  if (at == std::string::npos) throw std::logic_error("page without " + mark);
-  page.replace(at, mark.size(), text);
+}  // namespace
+
+std::string PageBlocks::add(const std::string& text) {
+  const std::string name = fmt::format("block-{}", count_++);
+  text_ += fmt::format("<script type=\"text/plain\" id=\"{}\">", name);
+  text_ += text;
+  text_ += "</script>\n";
+  return name;
 }
 
-Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most) {
-  return Error("--html",
-               fmt::format("the scene has {} {}, and a page holds at most {}", grouped(count), what,
-                           grouped(most)),
-               "leave objects or frames out, or draw the flat picture alone, with -o");
+Box box_of(const Scene& scene) {
+  Box out = Box::empty();
+  for (const Box& box : triangle_boxes(scene)) out.add(box);
+  return out;
 }
 
-void require_size(const Scene& scene, std::uint64_t triangles_of_all) {
+void require_page_size(const Scene& scene, std::uint64_t triangles_of_all) {
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
   if (scene.triangles.size() > kMostPageTriangles)
@@ -130,11 +130,48 @@ void require_size(const Scene& scene, std::uint64_t triangles_of_all) {
     throw too_large("objects", scene.objects.size(), kMostPageObjects);
 }
 
-Box box_of(const Scene& scene) {
-  Box out = Box::empty();
-  for (const Box& box : triangle_boxes(scene)) out.add(box);
-  return out;
+json page_box(const Box& box) {
+  const Vec3 extent = 0.5 * box.hi - 0.5 * box.lo;
+  const double largest = extent.maxCoeff();
+  return {{"lo", vector(box.lo)},
+          {"hi", vector(box.hi)},
+          {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))}};
 }
+
+json page_vertices(const Scene& scene, const Box& box, PageBlocks& blocks) {
+  return {{"vertices", scene.vertices.size()},
+          {"positions", blocks.add(packed_numbers(quantized(scene.vertices, box)))}};
+}
+
+void add_page_triangles(const Scene& scene, PageBlocks& blocks, json& frame) {
+  std::vector<std::uint32_t> flat;
+  for (const auto& triangle : scene.triangles)
+    flat.insert(flat.end(), triangle.begin(), triangle.end());
+  frame["objects"] = objects_of(scene);
+  frame["triangles"] = scene.triangles.size();
+  frame["corners"] = blocks.add(packed_numbers(flat));
+}
+
+void put(std::string& page, const std::string& mark, std::string_view text) {
+  const std::size_t at = page.find(mark);
+  if (at == std::string::npos) throw std::logic_error("page without " + mark);
+  page.replace(at, mark.size(), text);
+}
+
+void put_parts(std::string& page, const PageBlocks& blocks, const json& about,
+               std::string_view script) {
+  const ThreeJs three = three_js();
+  put(page, "/*STYLE*/", embedded::page_css);
+  put(page, "<!--BLOCKS-->", blocks.text());
+  put(page, "<!--LICENCE-->", three.licence);
+  put(page, "/*THREE*/", three.library);
+  put(page, "/*CONTROLS*/", three.controls);
+  put(page, "/*VIEW*/", embedded::page_view_js);
+  put(page, "/*PAGE*/", script);
+  put(page, "{/*ABOUT*/}", for_script(about));
+}
+
+namespace {
 
 // Makes the page frame by frame.
 class PageMaker {
@@ -148,7 +185,7 @@ class PageMaker {
   void add(std::optional<long> frame) {
     const Scene& scene = open(frame);
     triangles_ += scene.triangles.size();
-    require_size(scene, triangles_);
+    require_page_size(scene, triangles_);
     const std::vector<TrianglePair>& pairs = lab_.truth().pairs;
     if (pairs.size() > kMostPagePairs)
       throw too_large("colliding pairs", pairs.size(), kMostPagePairs);
@@ -175,47 +212,34 @@ class PageMaker {
 
   PageResult finish(const PictureResult& flat) {
     const View view = camera(arguments_.picture);
-    const Vec3 extent = 0.5 * box_.hi - 0.5 * box_.lo;
-    const double largest = extent.maxCoeff();
     json objects = json::array();
     for (const Rgba& c : kObjectColours) objects.push_back(colour(c));
     json contacts = json::array();
     for (const ContactKind kind : kContactKinds) contacts.push_back(name_of(kind));
-    const json about = {{"title", flat.scene},
-                        {"hash", flat.scene_hash},
-                        {"commit", FARCULL_COMMIT},
-                        {"command", command_of(arguments_.picture)},
-                        {"notAsked", flat.not_asked},
-                        {"lo", vector(box_.lo)},
-                        {"hi", vector(box_.hi)},
-                        {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))},
-                        {"forward", vector(view.rows.row(2))},
-                        {"worldUp", vector(world_up())},
-                        {"zoom", arguments_.picture.zoom},
-                        {"contacts", contacts},
-                        {"colours",
-                         {{"missed", colour(kMissedColour)},
-                          {"found", colour(kFoundColour)},
-                          {"idle", colour(kIdleColour)},
-                          {"idlePart", kIdlePart},
-                          {"through", kThrough},
-                          {"objects", objects}}},
-                        {"frames", frames_},
-                        {"steps", steps_}};
-    const ThreeJs three = three_js();
+    json about = {{"title", flat.scene},
+                  {"hash", flat.scene_hash},
+                  {"commit", FARCULL_COMMIT},
+                  {"command", command_of(arguments_.picture)},
+                  {"notAsked", flat.not_asked},
+                  {"forward", vector(view.rows.row(2))},
+                  {"worldUp", vector(world_up())},
+                  {"zoom", arguments_.picture.zoom},
+                  {"contacts", contacts},
+                  {"colours",
+                   {{"missed", colour(kMissedColour)},
+                    {"found", colour(kFoundColour)},
+                    {"idle", colour(kIdleColour)},
+                    {"idlePart", kIdlePart},
+                    {"through", kThrough},
+                    {"objects", objects}}},
+                  {"frames", frames_},
+                  {"steps", steps_}};
+    about.update(page_box(box_));
     PageResult out;
     out.steps = results_;
-    std::string& page = out.html;
-    page = embedded::page_html;
-    put(page, "/*STYLE*/", embedded::page_css);
-    put(page, "FLAT", "data:image/png;base64," + base64_of(to_png(flat.image, flat.texts)));
-    put(page, "<!--BLOCKS-->", blocks_.text());
-    put(page, "<!--LICENCE-->", three.licence);
-    put(page, "/*THREE*/", three.library);
-    put(page, "/*CONTROLS*/", three.controls);
-    put(page, "/*VIEW*/", embedded::page_view_js);
-    put(page, "/*PAGE*/", embedded::page_js);
-    put(page, "{/*ABOUT*/}", for_script(about));
+    out.html = embedded::page_html;
+    put(out.html, "FLAT", "data:image/png;base64," + base64_of(to_png(flat.image, flat.texts)));
+    put_parts(out.html, blocks_, about, embedded::page_js);
     return out;
   }
 
@@ -249,20 +273,12 @@ class PageMaker {
 
   // The vertices; also objects and triangles if they differ from those of the previous frame.
   json geometry(const Scene& scene) {
-    json out = {{"vertices", scene.vertices.size()},
-                {"positions", blocks_.add(packed_numbers(quantized(scene.vertices, box_)))}};
-    json objects = json::array();
-    for (const Object& object : scene.objects)
-      objects.push_back({object.name, object.first_triangle, object.triangle_count});
+    json out = page_vertices(scene, box_, blocks_);
+    const json objects = objects_of(scene);
     if (objects != objects_ || scene.triangles != corners_) {
       objects_ = objects;
       corners_ = scene.triangles;
-      std::vector<std::uint32_t> flat;
-      for (const auto& triangle : scene.triangles)
-        flat.insert(flat.end(), triangle.begin(), triangle.end());
-      out["objects"] = objects;
-      out["triangles"] = scene.triangles.size();
-      out["corners"] = blocks_.add(packed_numbers(flat));
+      add_page_triangles(scene, blocks_, out);
     }
     return out;
   }
@@ -299,7 +315,7 @@ class PageMaker {
   Lab& lab_;
   std::optional<FrameSource> source_;
   Box box_ = Box::empty();
-  Blocks blocks_;
+  PageBlocks blocks_;
   json frames_ = json::array(), steps_ = json::array(), objects_;
   std::vector<std::array<std::uint32_t, 3>> corners_;
   std::vector<PageStep> results_;
@@ -333,7 +349,7 @@ void require_three() {
 
 void require_page_size(const PageArguments& arguments, Lab& lab) {
   const Scene& scene = open_scene(arguments.picture, lab);
-  require_size(scene, scene.triangles.size());
+  require_page_size(scene, scene.triangles.size());
 }
 
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab) {

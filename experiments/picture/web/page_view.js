@@ -22,6 +22,7 @@ out vec3 placed, seen;
 flat out vec4 paint;
 flat out int shaded;
 flat out int number;
+flat out int ghost;  // drawn in every fourth pixel, so that what lies behind is seen
 void main() {
   int object = int(position.w * 65535.0 + 0.5);
   number = gl_VertexID / 3;
@@ -33,7 +34,8 @@ void main() {
   if (part == 0 && (state & 2) != 0) at.z += lift;
   gl_Position = place.w > 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * at;
   gl_PointSize = pointSize;
-  vec3 plain = palette[object % 8];
+  ghost = place.w > 0.1 ? 1 : 0;
+  vec3 plain = ghost == 1 ? vec3(0.6) : palette[object % 8];
   vec3 colour = (state & 2) != 0 ? found : (state & 1) != 0 ? mix(plain, idle, idlePart) : plain;
   if (part == 2) colour = missed;
   if (part == 3) colour = (state & 8) != 0 ? chosen : partner;
@@ -50,11 +52,13 @@ in vec3 placed, seen;
 flat in vec4 paint;
 flat in int shaded;
 flat in int number;
+flat in int ghost;
 out vec4 colour;
 // Over the left shoulder of who looks, as in the flat picture.
 const vec3 kLight = vec3(-0.45, 0.60, 0.66);
 void main() {
   if (dot(cut.xyz, placed) > cut.w) discard;
+  if (ghost == 1 && (picking != 0 || ((int(gl_FragCoord.x) & 1) | (int(gl_FragCoord.y) & 1)) != 0)) discard;
   if (picking != 0) {
     int id = number + 1;
     colour = vec4(float(id & 255), float(id >> 8 & 255), float(id >> 16 & 255), 255.0) / 255.0;
@@ -190,6 +194,12 @@ class SceneView {
     this.places.image.data[4 * object + 3] = hidden ? 1 : 0;
     this.places.needsUpdate = true;
     this.ask();
+  }
+
+  // A ghost is seen through, and cannot be picked.
+  ghost(object, ghost, hidden) {
+    this.places.image.data[4 * object + 3] = hidden ? 1 : ghost ? 0.25 : 0;
+    this.places.needsUpdate = true;
   }
 
   // Sets the state of every triangle, and with it the triangles that are drawn a second time.

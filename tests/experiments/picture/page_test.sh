@@ -61,3 +61,17 @@ printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4
 "$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
 PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv moving.html said-of-frames \
   kinds.html kinds.csv flat.png || exit 1
+
+# The page of `farcull clash`.
+box() {
+  python3 -c "
+import sys
+lo, hi = [float(x) for x in sys.argv[1].split()], [float(x) for x in sys.argv[2].split()]
+print('\n'.join('v {} {} {}'.format(*[(hi if k >> i & 1 else lo)[i] for i in range(3)]) for k in range(8)))
+print('f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6')" "$1" "$2"
+}
+box '0 0 0' '4 4 4' >first.obj
+box '3 1 1' '6 2 2' >second.obj
+box '1 1 1' '2 2 2' >third.obj
+"$farcull" clash first.obj second.obj third.obj --html clash.html --fail-on none >/dev/null || exit 1
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/clash_page_test.py" clash.html || exit 1

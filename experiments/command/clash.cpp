@@ -1,0 +1,169 @@
+// `farcull clash`: which parts of an assembly clash. Reads the options, and prints the record of
+// clashes().
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/command/command.h"
+#include "experiments/method/clash.h"
+#include "experiments/picture/clash_page.h"
+#include "experiments/record/clash.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  farcull clash parts/\n"
+    "  farcull clash parts/*.stl --clearance 0.5 --unit mm --csv clashes.csv\n"
+    "  farcull clash robot.json --ignore 'link*:base,hand:cup' --touching report\n"
+    "  farcull clash a.obj b.obj --json - | jq '.pairs[0].depth'\n\n"
+    "Each pair of parts has a verdict, the most serious first:\n"
+    "  clash      the surfaces cross, or the insides overlap\n"
+    "  contained  one part, or a piece of it, is inside the other\n"
+    "  unknown    would be contained, but the outer part is not closed\n"
+    "  touch      they meet, and it is proved that they do not overlap\n"
+    "  near       they are at most the clearance apart\n"
+    "  clear      none of these\n"
+    "depth: bounds of the shortest way by which one part has to move so that closed parts no\n"
+    "longer overlap. curve: length of the curve in which the surfaces cross. All verdicts and\n"
+    "bounds are exact. docs/clash.md has the columns and the proofs.\n\n"
+    "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
+    "not examined, since a part has no triangles. 2: the input or an option is wrong.";
+
+class ClashCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  std::vector<std::string> parts() const;
+  std::vector<IgnoredNames> ignored() const;
+  std::vector<ClashVerdict> failing(bool touches) const;
+
+  std::vector<std::string> scene_;
+  Text clearance_, touching_, ignore_, ignore_file_, unit_, fail_on_;
+  Outputs outputs_;
+};
+
+CLI::App* ClashCommand::add_to(CLI::App& app) {
+  return add_command(
+      app, "clash", "which parts clash, touch or are too near, one row for each pair",
+      Rows{{"PARTS", &scene_, "", "a folder of mesh files; or " + std::string(kSceneHelp),
+            Need::must},
+           {"--clearance", &clearance_, "D",
+            "parts at this distance or less are near, in world\nunits; default 0"},
+           {"--touching", &touching_, "allow|report",
+            "report: list pairs that touch, and fail for them;\ndefault allow"},
+           {"--ignore", &ignore_, "LIST",
+            "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
+            "listed\napart where they meet"},
+           {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
+           {"--fail-on", &fail_on_, "LIST",
+            "verdicts for which the exit status is 1, or none;\ndefault clash,contained,unknown"},
+           {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
+           {"--csv", &outputs_.csv, "FILE",
+            "write the pairs as CSV to this file; - for standard\noutput, without the table"},
+           {"--json", &outputs_.json, "FILE", kJsonHelp},
+           {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
+      kExamples);
+}
+
+// The arguments, with the mesh files of a folder in place of the folder.
+std::vector<std::string> ClashCommand::parts() const {
+  std::vector<std::string> out;
+  for (const std::string& part : scene_) {
+    if (!fs::is_directory(part)) {
+      out.push_back(part);
+      continue;
+    }
+    std::vector<std::string> files;
+    for (const auto& entry : fs::directory_iterator(part)) {
+      if (has_mesh_extension(entry.path().string())) files.push_back(entry.path().string());
+    }
+    if (files.empty())
+      throw Error(part, "the folder has no mesh files", "name a folder with meshes, or the files");
+    std::ranges::sort(files);
+    out.insert(out.end(), files.begin(), files.end());
+  }
+  return out;
+}
+
+std::vector<IgnoredNames> ClashCommand::ignored() const {
+  std::vector<IgnoredNames> out;
+  if (ignore_) out = parse_ignored(*ignore_);
+  if (ignore_file_) {
+    for (IgnoredNames& names : read_ignored(*ignore_file_)) out.push_back(std::move(names));
+  }
+  return out;
+}
+
+std::vector<ClashVerdict> ClashCommand::failing(bool touches) const {
+  std::vector<ClashVerdict> out = {ClashVerdict::clash, ClashVerdict::contained,
+                                   ClashVerdict::unknown};
+  if (touches) out.push_back(ClashVerdict::touch);
+  if (!fail_on_) return out;
+  out.clear();
+  if (*fail_on_ == "none") return out;
+  for (const std::string& word : split_list(*fail_on_)) {
+    const auto at =
+        std::ranges::find_if(kClashVerdicts, [&](ClashVerdict v) { return to_string(v) == word; });
+    if (at == kClashVerdicts.end() || *at == ClashVerdict::clear)
+      throw Error("--fail-on", "'" + word + "' is no verdict",
+                  "give none, or some of clash, contained, unknown, touch, near");
+    out.push_back(*at);
+  }
+  return out;
+}
+
+int ClashCommand::run() const {
+  ClashOptions options;
+  if (clearance_) options.clearance = parse_clearance(*clearance_);
+  const bool touches = word_of("--touching", touching_, {"allow", "report"}, "no choice",
+                               "give allow or report") == 1;
+  const std::vector<ClashVerdict> failing = this->failing(touches);
+  check_scene(scene_);
+  const std::vector<std::string> files = parts();
+  std::vector<NamedFile> inputs = scene_files(files);
+  if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
+  const Outputs outputs = checked(outputs_, inputs);
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(files);
+  for (Object& object : scene.objects) object.self = false;
+  options.ignored = ignored_objects(scene, ignored());
+  options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
+  options.ignored = in_order(std::move(options.ignored));
+  scene.ignored.clear();
+  if (outputs.page) require_clash_page(scene);
+  const ClashRecord record = clashes(scene, options, progress);
+  terminal.clear();
+  const std::string unit = unit_.value_or("");
+  if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));
+  if (outputs.json) write_json(clash_json(scene, record, unit), *outputs.json);
+  if (outputs.page) write_output(*outputs.page, clash_page(scene, record, unit));
+  if (!outputs.to_stdout())
+    write_output("-", clash_text(scene, record, {.touches = touches, .unit = unit}));
+  const bool fails =
+      std::ranges::any_of(failing, [&](ClashVerdict v) { return record.count(v) > 0; }) ||
+      (record.examined < record.asked && fail_on_ != "none");
+  return fails ? kExitBroken : kExitDone;
+}
+
+}  // namespace
+
+Command add_clash(CLI::App& app) { return declare<ClashCommand>(app); }
+
+}  // namespace farcull

@@ -1,0 +1,314 @@
+// Pairs of triangles that meet, grouped by their objects, decide which objects meet. Boxes of
+// objects find the others that may lie inside one another or be near.
+#include "experiments/method/clash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "core/boxes/join.h"
+#include "experiments/method/distances.h"
+#include "verify/inside.h"
+#include "verify/overlap.h"
+
+namespace farcull {
+namespace {
+
+/// Facts about objects that are found when they are first needed.
+class Objects {
+ public:
+  explicit Objects(const Scene& scene)
+      : scene_(scene), facts_(new Facts[scene.objects.size()]), boxes_(scene.objects.size()) {
+    for_each_shared(boxes_.size(), 0, [&](std::size_t o) {
+      boxes_[o] = Box::empty();
+      for (std::uint32_t k = 0; k < scene.objects[o].triangle_count; ++k)
+        boxes_[o].add(triangle_box(scene.objects[o].first_triangle + k));
+    });
+  }
+
+  const std::vector<Box>& boxes() const { return boxes_; }
+  bool closed(std::uint32_t object) const {
+    Facts& facts = facts_[object];
+    std::call_once(facts.closed_found, [&] { facts.closed = is_closed(scene_, object); });
+    return facts.closed;
+  }
+  const std::vector<Vec3>& parts(std::uint32_t object) const {
+    Facts& facts = facts_[object];
+    std::call_once(facts.parts_found,
+                   [&] { facts.parts = point_of_each_part(scene_, scene_.objects[object]); });
+    return facts.parts;
+  }
+
+  /// Whether a part of `inner` is inside `outer`: ClashVerdict::contained or clear, or unknown if
+  /// `outer` is not closed. Precondition: their surfaces do not meet, so one point decides about
+  /// each part (experiments/method/distances.cpp). A part lies in the box of what it is inside, so
+  /// boxes settle most pairs. Sets a point inside.
+  ClashVerdict containment(std::uint32_t outer, std::uint32_t inner, Vec3& point) const {
+    const Object& object = scene_.objects[inner];
+    bool any = false;
+    for (std::uint32_t k = 0; k < object.triangle_count && !any; ++k)
+      any = lies_within(triangle_box(object.first_triangle + k), boxes_[outer]);
+    if (!any) return ClashVerdict::clear;
+    for (const Vec3& p : parts(inner)) {
+      if (!lies_within({p, p}, boxes_[outer])) continue;
+      point = p;
+      if (!closed(outer)) return ClashVerdict::unknown;
+      if (inside(scene_, outer, p, true) == Inside::yes) return ClashVerdict::contained;
+    }
+    return ClashVerdict::clear;
+  }
+
+  Box triangle_box(std::uint32_t triangle) const {
+    const auto [p, q, r] = scene_.corners(triangle);
+    return {p.cwiseMin(q).cwiseMin(r), p.cwiseMax(q).cwiseMax(r)};
+  }
+
+ private:
+  struct Facts {
+    std::once_flag closed_found, parts_found;
+    bool closed = false;
+    std::vector<Vec3> parts;
+  };
+  static bool lies_within(const Box& inner, const Box& outer) {
+    return (inner.lo.array() >= outer.lo.array()).all() &&
+           (inner.hi.array() <= outer.hi.array()).all();
+  }
+
+  const Scene& scene_;
+  std::unique_ptr<Facts[]> facts_;
+  std::vector<Box> boxes_;
+};
+
+/// Pairs of triangles in the order of their objects, and one row for each pair of objects.
+struct Meetings {
+  std::vector<TrianglePair> pairs;
+  std::vector<ClashRow> rows;
+  std::vector<std::size_t> first;  // of each row, the first of its pairs; one more at the end
+};
+
+Meetings meetings_of(const Scene& scene, std::vector<TrianglePair> pairs) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto objects = [&](const TrianglePair& pair) {
+    return ObjectPair{owner[pair.a], owner[pair.b]};
+  };
+  std::ranges::sort(pairs, {}, [&](const TrianglePair& p) { return std::tuple(objects(p), p); });
+  Meetings out{.pairs = std::move(pairs), .rows = {}, .first = {}};
+  for (std::size_t k = 0; k < out.pairs.size(); ++k) {
+    if (!out.rows.empty() && out.rows.back().objects == objects(out.pairs[k])) continue;
+    out.rows.push_back({.objects = objects(out.pairs[k])});
+    out.first.push_back(k);
+  }
+  out.first.push_back(out.pairs.size());
+  return out;
+}
+
+/// Sets what the contacts of a row say.
+void describe(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
+              std::span<const ContactShape> contacts, ClashRow& row) {
+  row.pairs = pairs.size();
+  std::vector<std::array<std::array<double, 3>, 2>> ends;
+  std::size_t best = 0;  // of the witness: crossing rather than others
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const ContactShape& contact = contacts[k];
+    ++row.kinds[static_cast<std::size_t>(contact.kind)];
+    if (contact.kind == ContactKind::crossing && contacts[best].kind != ContactKind::crossing)
+      best = k;
+    if (contact.dimension == 0 || contact.dimension == 1) {
+      for (const Vec3& p : contact.ends) row.box.add(p);
+    } else {
+      row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
+    }
+    if (contact.dimension != 1) continue;
+    const auto& [p, q] = contact.ends;
+    ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
+  }
+  const Closest common = closest_points(scene.corners(pairs[best].a), scene.corners(pairs[best].b));
+  row.witness = {common.points[0], common.points[0]};
+  const std::uint64_t crossing = row.kinds[static_cast<std::size_t>(ContactKind::crossing)];
+  if (crossing > 0) row.verdict = ClashVerdict::clash;
+  // Two triangles with a common edge give the part of the curve on that edge twice.
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (const auto& [p, q] : ends) {
+    row.segments.push_back({Vec3(p[0], p[1], p[2]), Vec3(q[0], q[1], q[2])});
+    row.curve += (row.segments.back()[1] - row.segments.back()[0]).norm();
+  }
+}
+
+/// Decides whether objects of which no triangles cross overlap or touch.
+void decide_touch(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
+                  ClashRow& row) {
+  const auto [a, b] = row.objects;
+  if (plane_divides(scene, row.objects, pairs)) {
+    row.verdict = ClashVerdict::touch;
+    return;
+  }
+  const bool closed = objects.closed(a) && objects.closed(b);
+  const Overlap overlap = closed ? overlap_of_touching(scene, row.objects, pairs, objects.parts(a),
+                                                       objects.parts(b), true)
+                                 : Overlap::unknown;
+  row.verdict = overlap == Overlap::no ? ClashVerdict::touch : ClashVerdict::clash;
+  row.proved = overlap != Overlap::unknown;
+}
+
+void bound_depth(const Scene& scene, const Objects& objects, ClashRow& row) {
+  const auto [a, b] = row.objects;
+  const bool deep =
+      (row.verdict == ClashVerdict::clash && row.proved) || row.verdict == ClashVerdict::contained;
+  if (!deep || !objects.closed(a) || !objects.closed(b)) return;
+  constexpr std::size_t kStarts = 16;
+  std::vector<Vec3> starts = {row.witness[0]};
+  if (!row.box.is_empty()) starts.push_back(0.5 * row.box.lo + 0.5 * row.box.hi);
+  const std::size_t stride = row.segments.size() / kStarts + 1;
+  for (std::size_t k = 0; k < row.segments.size(); k += stride)
+    starts.push_back(0.5 * row.segments[k][0] + 0.5 * row.segments[k][1]);
+  row.depth = penetration(scene, row.objects, starts);
+}
+
+/// Rows of objects that do not meet: those that may lie in one another, and those that are near.
+std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
+                                 const ClashOptions& options, std::span<const ClashRow> meeting,
+                                 const Progress& progress) {
+  std::vector<Box> boxes = objects.boxes();
+  for (Box& box : boxes) box = grow(box, half_of(options.clearance));
+  std::vector<std::uint32_t> every(boxes.size());
+  std::iota(every.begin(), every.end(), 0u);
+  std::vector<ObjectPair> pairs;
+  for (const TrianglePair& pair : box_join(boxes, every, every, SIZE_MAX, options.threads)) {
+    const ObjectPair one{pair.a, pair.b};
+    const auto at = std::ranges::lower_bound(meeting, one, {}, &ClashRow::objects);
+    if (at == meeting.end() || at->objects != one) pairs.push_back(one);
+  }
+  std::vector<ClashRow> rows(pairs.size());
+  if (progress) progress("objects inside others");
+  for_each_shared(pairs.size(), options.threads, [&](std::size_t k) {
+    ClashRow& row = rows[k];
+    row.objects = pairs[k];
+    for (const auto& [outer, inner] :
+         {std::pair(pairs[k].a, pairs[k].b), std::pair(pairs[k].b, pairs[k].a)}) {
+      Vec3 point = Vec3::Zero();
+      const ClashVerdict verdict = objects.containment(outer, inner, point);
+      if (verdict >= row.verdict) continue;
+      row.verdict = verdict;
+      row.inner = inner;
+      row.box = objects.boxes()[inner];
+      row.witness = {point, point};
+    }
+  });
+  if (options.clearance > 0) {
+    for (Distance& d :
+         nearest_triangles(scene, pairs, options.clearance, options.threads, progress)) {
+      ClashRow& row = *std::ranges::lower_bound(rows, d.objects, {}, &ClashRow::objects);
+      row.squared = d.closest.squared;
+      row.distance = d.closest.distance;
+      if (row.verdict != ClashVerdict::clear) continue;
+      row.verdict = ClashVerdict::near;
+      row.witness = d.closest.points;
+      for (const Vec3& p : d.closest.points) row.box.add(p);
+    }
+  }
+  std::erase_if(rows, [](const ClashRow& row) { return row.verdict == ClashVerdict::clear; });
+  return rows;
+}
+
+/// The most serious first: by verdict, then deep before shallow, long before short curves, near
+/// before far.
+bool more_serious(const ClashRow& x, const ClashRow& y) {
+  if (x.ignored != y.ignored) return y.ignored;
+  if (x.verdict != y.verdict) return x.verdict < y.verdict;
+  if (x.verdict == ClashVerdict::near && x.squared != y.squared) return *x.squared < *y.squared;
+  const auto depth = [](const ClashRow& row) { return row.depth ? row.depth->hi : 0; };
+  return std::tuple(-depth(x), -x.curve, x.objects) < std::tuple(-depth(y), -y.curve, y.objects);
+}
+
+}  // namespace
+
+std::string to_string(ClashVerdict verdict) {
+  constexpr std::array kNames = {"clash", "contained", "unknown", "touch", "near", "clear"};
+  return kNames.at(static_cast<std::size_t>(verdict));
+}
+
+ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progress& progress) {
+  if (!(options.clearance >= 0 && std::isfinite(options.clearance)))
+    throw Error("clearance", "is no distance", "give a finite number of world units, 0 or more");
+  const std::uint64_t count = scene.objects.size();
+  if (count < 2) throw Error("scene", "has fewer than two objects", "name two parts or more");
+  const FloatingPointGuard guard;
+  const Stopwatch watch;
+  ClashRecord out;
+  out.options = options;
+  for (std::uint32_t o = 0; o < count; ++o) {
+    if (scene.objects[o].triangle_count == 0) out.empty.push_back(o);
+  }
+  const std::uint64_t full = count - out.empty.size();
+  const auto has_empty = [&](const ObjectPair& pair) {
+    return scene.objects[pair.a].triangle_count == 0 || scene.objects[pair.b].triangle_count == 0;
+  };
+  out.ignored = options.ignored.size();
+  out.asked = count * (count - 1) / 2 - out.ignored;
+  out.examined =
+      full * (full - (full > 0)) / 2 -
+      (out.ignored - static_cast<std::uint64_t>(std::ranges::count_if(options.ignored, has_empty)));
+  const Objects objects(scene);
+  Meetings meetings;
+  if (full >= 2) {
+    Session session("cpu", options.threads);
+    RunOptions run_options{.device = "cpu", .verify = false};
+    run_options.neighbours = false;
+    Record record = run(scene, run_options, session, progress, {.answer_only = true});
+    out.trace = std::move(record.trace);
+    meetings = meetings_of(scene, std::move(record.collisions.pairs));
+  }
+  out.triangle_pairs = meetings.pairs.size();
+  const std::vector<ClashRow>& rows = meetings.rows;
+  if (progress) progress("kinds of contact");
+  const unsigned threads =
+      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const std::vector<ContactShape> contacts = contact_shapes(scene, meetings.pairs, threads);
+  std::vector<ClashRow> apart = apart_rows(scene, objects, options, rows, progress);
+  if (progress) progress("touching or clashing");
+  for_each_shared(rows.size(), options.threads, [&](std::size_t k) {
+    const std::size_t from = meetings.first[k], size = meetings.first[k + 1] - from;
+    const auto pairs = std::span(meetings.pairs).subspan(from, size);
+    ClashRow& row = meetings.rows[k];
+    describe(scene, objects, pairs, std::span(contacts).subspan(from, size), row);
+    if (row.verdict != ClashVerdict::clash) decide_touch(scene, objects, pairs, row);
+    if (row.verdict != ClashVerdict::clash) row.curve = 0, row.segments.clear();
+  });
+  out.rows = std::move(meetings.rows);
+  out.rows.insert(out.rows.end(), std::make_move_iterator(apart.begin()),
+                  std::make_move_iterator(apart.end()));
+  if (options.penetration) {
+    if (progress) progress("bounds of penetration");
+    for_each_shared(out.rows.size(), options.threads,
+                    [&](std::size_t k) { bound_depth(scene, objects, out.rows[k]); });
+  }
+  for (ClashRow& row : out.rows) {
+    row.ignored = std::ranges::binary_search(options.ignored, row.objects);
+    if (row.ignored) {
+      out.ignored_meet += row.verdict != ClashVerdict::near;
+    } else {
+      ++out.verdicts[static_cast<std::size_t>(row.verdict)];
+    }
+  }
+  std::erase_if(out.rows, [](const ClashRow& row) {
+    return row.ignored && row.verdict == ClashVerdict::near;
+  });
+  const std::uint64_t listed =
+      std::accumulate(out.verdicts.begin(), out.verdicts.end(), std::uint64_t{0});
+  out.verdicts[static_cast<std::size_t>(ClashVerdict::clear)] = out.examined - listed;
+  std::ranges::sort(out.rows, more_serious);
+  out.ms = watch.ms();
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,42 @@
+// What all pages share: blocks of data, the triangles of a scene, and the scripts at the end.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Blocks of a page, each a script element that browsers do not run.
+class PageBlocks {
+ public:
+  /// Returns the name of the new block.
+  std::string add(const std::string& text);
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  int count_ = 0;
+};
+
+Box box_of(const Scene& scene);
+
+/// Throws Error naming --html if a page cannot hold the scene. triangles_of_all: in all frames.
+void require_page_size(const Scene& scene, std::uint64_t triangles_of_all);
+
+/// The size of the box for the reader: its corners, and its extents relative to the largest.
+nlohmann::json page_box(const Box& box);
+/// The vertices, rounded in the box.
+nlohmann::json page_vertices(const Scene& scene, const Box& box, PageBlocks& blocks);
+/// Adds the objects and the triangles to page_vertices().
+void add_page_triangles(const Scene& scene, PageBlocks& blocks, nlohmann::json& frame);
+
+/// Replaces the only occurrence of `mark` in the page.
+void put(std::string& page, const std::string& mark, std::string_view text);
+/// Puts the style, the blocks, three.js, page_view.js, the page's own script and its data in place.
+void put_parts(std::string& page, const PageBlocks& blocks, const nlohmann::json& about,
+               std::string_view script);
+
+}  // namespace farcull

@@ -1,0 +1,256 @@
+// The list of pairs, and what is shown of the chosen one: its two parts in two colours, the curve
+// in which they cross, and the other parts as ghosts. The address holds the chosen pair.
+
+const byId = (id) => document.getElementById(id);
+const about = JSON.parse(byId("data").textContent);
+const digits = new Intl.NumberFormat("en");
+const MOST_LISTED = 1000;
+const state = { row: -1, search: "", ghosts: true, theme: "" };
+let view = null, curves = null, ends = null;
+
+const nameOf = (object) => about.frames[0].objects[object][0];
+const length = (x) => `${Number(x.toPrecision(6))}${about.unit ? " " + about.unit : ""}`;
+
+function element(tag, text, properties) {
+  const out = Object.assign(document.createElement(tag), properties);
+  if (text !== undefined) out.textContent = text;
+  return out;
+}
+
+// ---- the list -----------------------------------------------------------------------------------
+
+function factsOf(row) {
+  const out = [];
+  if (row.ignored) out.push("ignored");
+  if (row.depth) {
+    const [lo, hi] = row.depth.map(length);
+    out.push(lo === hi ? `depth ${lo}` : `depth ${lo} to ${hi}`);
+  }
+  if (row.curve > 0) out.push(`curve ${length(row.curve)}`);
+  if (row.distance !== null) out.push(`distance ${length(row.distance)}`);
+  if (row.what) out.push(row.what);
+  return out.join("; ");
+}
+
+const textOf = (row) => `${row.verdict} ${nameOf(row.a)} ${nameOf(row.b)}`.toLowerCase();
+const listed = () => about.rows.map((row, k) => k).filter((k) => textOf(about.rows[k]).includes(state.search));
+
+function showRows() {
+  const numbers = listed();
+  const items = numbers.slice(0, MOST_LISTED).map((k) => {
+    const row = about.rows[k], item = element("li");
+    const button = element("button", undefined, { type: "button" });
+    button.dataset.row = k;
+    button.append(element("b", row.verdict), ` ${nameOf(row.a)} and ${nameOf(row.b)}`, element("span", factsOf(row)));
+    button.setAttribute("aria-current", String(k === state.row));
+    button.addEventListener("click", () => chooseRow(k));
+    item.append(button);
+    return item;
+  });
+  if (numbers.length > MOST_LISTED) items.push(element("li", `and ${digits.format(numbers.length - MOST_LISTED)} others`));
+  if (numbers.length === 0) items.push(element("li", about.rows.length === 0 ? "All pairs are clear." : "None."));
+  byId("rows").replaceChildren(...items);
+}
+
+function showLegend() {
+  const row = about.rows[state.row];
+  const line = (colour, text) => {
+    const item = element("li"), box = element("i");
+    box.style.background = colour;
+    item.append(box, text);
+    return item;
+  };
+  const css = (c) => `rgb(${c.join(", ")})`;
+  const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
+  if (row && row.curve > 0) items.push(line("#dc005a", "the surfaces cross"));
+  byId("legend").replaceChildren(...items);
+  byId("legend").hidden = items.length === 0;
+}
+
+// ---- the scene ----------------------------------------------------------------------------------
+
+const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object].getSize(new THREE.Vector3()).length());
+
+// Without a chosen pair the parts that clash with another one, or lie in one, have the first colour.
+// The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen.
+function showParts() {
+  if (!view) return;
+  const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
+  const inside = row && (row.verdict === "contained" || row.verdict === "unknown");
+  const bad = new Set(about.rows.filter((r) => !r.ignored && r.verdict !== "touch" && r.verdict !== "near").flatMap((r) => [r.a, r.b]));
+  frame.objects.forEach(([, first, count], o) => {
+    const solid = row === undefined || o === row.a || o === row.b;
+    if (row ? o === row.a : bad.has(o)) states.fill(IDLE, first, first + count);
+    const outer = inside && solid && sizeOf(o) > sizeOf(o === row.a ? row.b : row.a);
+    view.ghost(o, !solid || outer, !state.ghosts && !solid);
+  });
+  view.setStates(states);
+  showCurve(row);
+}
+
+function pointOf(list, k) {
+  const n = list.length / 3, ratio = view.uniforms.ratio.value;
+  return new THREE.Vector3(list[k], list[n + k], list[2 * n + k]).multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
+}
+
+function showCurve(row) {
+  if (curves) {
+    view.scene.remove(curves);
+    curves.geometry.dispose();
+    curves = null;
+  }
+  if (!row || row.segments[1] === 0 || view.uniforms.explode.value > 0) return;
+  const [first, count] = row.segments, points = [];
+  for (let k = 2 * first; k < 2 * (first + count); ++k) points.push(pointOf(ends, k));
+  const material = new THREE.LineBasicMaterial({ color: 0xdc005a, depthTest: false, depthWrite: false });
+  curves = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points), material);
+  curves.renderOrder = 9;
+  curves.frustumCulled = false;
+  view.scene.add(curves);
+}
+
+// Moves and zooms the view to the place of a row; the direction of sight stays.
+function flyTo(row) {
+  const lo = pointOf(row.box, 0), hi = pointOf(row.box, 1), middle = lo.clone().add(hi).multiplyScalar(0.5);
+  const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * Math.min(sizeOf(row.a), sizeOf(row.b)));
+  const from = view.controls.target.clone(), zoom = view.camera.zoom, to = Math.min(2 / size, 200);
+  const offset = view.camera.position.clone().sub(from), begin = performance.now();
+  const step = () => {
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const part = calm ? 1 : Math.min(1, (performance.now() - begin) / 350), s = part * part * (3 - 2 * part);
+    view.controls.target.lerpVectors(from, middle, s);
+    view.camera.position.copy(view.controls.target).add(offset);
+    view.camera.zoom = zoom * (to / zoom) ** s;
+    view.camera.updateProjectionMatrix();
+    view.controls.update();
+    view.ask();
+    if (part < 1) requestAnimationFrame(step);
+  };
+  step();
+}
+
+// ---- actions of the reader ----------------------------------------------------------------------
+
+function chooseRow(k) {
+  state.row = k;
+  for (const button of byId("rows").querySelectorAll("button")) {
+    const chosen = Number(button.dataset.row) === k;
+    button.setAttribute("aria-current", String(chosen));
+    // The list alone is scrolled: on a narrow screen the page would leave the scene.
+    if (chosen) byId("rows").scrollTop = button.offsetTop - 40;
+  }
+  showParts();
+  showLegend();
+  if (view && k >= 0) flyTo(about.rows[k]);
+  writeAddress();
+}
+
+function go(by) {
+  const numbers = listed();
+  if (numbers.length === 0) return;
+  const at = numbers.indexOf(state.row);
+  chooseRow(numbers[at < 0 ? (by > 0 ? 0 : numbers.length - 1) : (at + by + numbers.length) % numbers.length]);
+}
+
+// A click on a part chooses its first pair.
+function choose(triangle) {
+  if (triangle < 0) return;
+  const o = frame.owner[triangle], numbers = listed().filter((k) => about.rows[k].a === o || about.rows[k].b === o);
+  if (numbers.length > 0) chooseRow(numbers[(numbers.indexOf(state.row) + 1) % numbers.length]);
+}
+
+function setTheme(theme) {
+  state.theme = theme;
+  if (theme) document.documentElement.dataset.theme = theme;
+  if (!view) return;
+  view.paper = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim());
+  view.ask();
+}
+
+function isDark() {
+  return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+function writeAddress() {
+  history.replaceState(null, "", state.row < 0 ? "#" : `#row=${state.row}`);
+}
+
+function readAddress() {
+  const row = Number(new URLSearchParams(location.hash.slice(1)).get("row") ?? NaN);
+  if (Number.isInteger(row) && row >= 0 && row < about.rows.length) chooseRow(row);
+}
+
+function standIn(why) {
+  byId("trouble").hidden = false;
+  byId("trouble").textContent = why + " The list has all answers.";
+  view = null;
+}
+
+const KEYS = {
+  n: () => go(1), p: () => go(-1), Escape: () => chooseRow(-1), 0: () => resetView(),
+  t: () => setTheme(isDark() ? "light" : "dark"),
+  ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
+  ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
+  ArrowUp: (shift) => (shift ? view.move(0, 0.05) : view.turn(0, 0.1)),
+  ArrowDown: (shift) => (shift ? view.move(0, -0.05) : view.turn(0, -0.1)),
+  "+": () => view.zoom(1.2), "=": () => view.zoom(1.2), "-": () => view.zoom(1 / 1.2)
+};
+
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "INPUT") return;
+  if (!view || !Object.hasOwn(KEYS, event.key)) return;
+  KEYS[event.key](event.shiftKey);
+  event.preventDefault();
+}
+
+function connect() {
+  const on = (id, event, act) => byId(id).addEventListener(event, act);
+  on("search", "input", (e) => { state.search = e.target.value.trim().toLowerCase(); showRows(); });
+  on("ghosts", "change", (e) => { state.ghosts = e.target.checked; showParts(); });
+  on("explode", "input", (e) => {
+    byId("explode-value").textContent = `${e.target.value} %`;
+    if (!view) return;
+    view.uniforms.explode.value = e.target.value / 100;
+    showParts();
+  });
+  on("reset", "click", () => { chooseRow(-1); if (view) resetView(); });
+  on("theme", "click", () => setTheme(isDark() ? "light" : "dark"));
+  on("licence-button", "click", () => byId("licence").showModal());
+  on("controls", "submit", (e) => e.preventDefault());
+  document.addEventListener("keydown", onKey);
+  window.addEventListener("hashchange", readAddress);
+}
+
+async function start() {
+  document.title = `${about.title}: clashes by farcull`;
+  byId("title").textContent = about.title;
+  byId("headline").textContent = `${digits.format(about.examined)} of ${digits.format(about.asked)} pairs of parts examined; ` +
+    (about.clean ? "clean" : `${digits.format(about.rows.length)} not clear`);
+  byId("about").textContent = `farcull ${about.commit.slice(0, 10)}.`;
+  byId("licence-text").textContent = byId("three-licence").textContent.trim();
+  showRows();
+  showLegend();
+  connect();
+  try {
+    view = new SceneView(byId("canvas"), about);
+    frame = await loadFrame(0);
+    ends = await numbersOf(about.segments);
+    view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
+    connectCanvas();
+    resetView();
+    showParts();
+    setTheme("");
+    readAddress();
+    view.onDraw = () => {
+      view.onDraw = () => {};
+      document.documentElement.dataset.ready = String(Math.round(performance.now()));
+    };
+  } catch (error) {
+    standIn(`${error.message}`);
+    document.documentElement.dataset.ready = "0";
+  }
+}
+
+// For tests and the console.
+window.farcull = { about, state, get view() { return view; } };
+start();

@@ -1,0 +1,203 @@
+#include "experiments/record/clash.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "core/base/text.h"
+#include "experiments/record/output.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kRowsShown = 40;
+
+std::string short_number(double x) { return fmt::format("{:.6g}", x); }
+
+const std::string& name_of(const Scene& scene, std::uint32_t object) {
+  return scene.objects[object].name;
+}
+
+std::string kinds_text(const ClashRow& row) {
+  std::string out;
+  for (const ContactKind kind : kContactKinds) {
+    if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
+      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", grouped(n), farcull::name_of(kind));
+  }
+  return out;
+}
+
+std::string depth_text(const ClashRow& row) {
+  if (!row.depth) return "";
+  const auto& [lo, hi, translation, direction] = *row.depth;
+  const std::string low = short_number(lo), high = short_number(hi);
+  return low == high ? high : low + " to " + high;
+}
+
+std::string distance_text(const ClashRow& row) {
+  return row.squared ? short_number(row.distance) : "";
+}
+
+std::string place_text(const ClashRow& row) {
+  const Vec3& p = row.witness[0];
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table,
+                      bool ignored) {
+  const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
+  Table out("lllrrrll");
+  out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
+  std::size_t all = 0;
+  for (const ClashRow& row : record.rows) {
+    if (row.ignored != ignored) continue;
+    if (row.verdict == ClashVerdict::touch && !table.touches && !ignored) continue;
+    if (++all > kRowsShown) continue;
+    out.add({to_string(row.verdict), name_of(scene, row.objects.a), name_of(scene, row.objects.b),
+             depth_text(row), row.curve > 0 ? short_number(row.curve) : "", distance_text(row),
+             place_text(row), clash_words(scene, row)});
+  }
+  if (all == 0) return "";
+  const std::string more =
+      all > kRowsShown
+          ? fmt::format("and {} more (--json and --csv have all)\n", grouped(all - kRowsShown))
+          : "";
+  return "\n" + std::string(ignored ? "ignored pairs that meet:\n" : "") + out.text() + more;
+}
+
+std::string counts_text(const ClashRecord& record) {
+  std::string out;
+  for (const ClashVerdict verdict : kClashVerdicts)
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", grouped(record.count(verdict)),
+                       to_string(verdict));
+  return out;
+}
+
+Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json row_json(const Scene& scene, const ClashRow& row) {
+  Json kinds = Json::object();
+  for (const ContactKind kind : kContactKinds) {
+    if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
+      kinds[std::string(farcull::name_of(kind))] = n;
+  }
+  Json out = {{"a", row.objects.a},
+              {"b", row.objects.b},
+              {"name_a", name_of(scene, row.objects.a)},
+              {"name_b", name_of(scene, row.objects.b)},
+              {"verdict", to_string(row.verdict)},
+              {"ignored", row.ignored},
+              {"proved", row.proved},
+              {"pairs", row.pairs},
+              {"kinds", kinds},
+              {"inner", json_of(row.inner)},
+              {"distance", json_if(row.squared.has_value(), row.distance)},
+              {"squared", row.squared ? Json(row.squared->text()) : Json(nullptr)},
+              {"box", {point_json(row.box.lo), point_json(row.box.hi)}},
+              {"witness", {point_json(row.witness[0]), point_json(row.witness[1])}},
+              {"curve", row.curve},
+              {"depth", nullptr}};
+  if (const auto& depth = row.depth) {
+    out["depth"] = {{"at_least", depth->lo},
+                    {"at_most", depth->hi},
+                    {"translation_of_a", point_json(depth->translation)},
+                    {"direction", point_json(depth->direction)}};
+  }
+  return out;
+}
+
+/// A name as a cell of a CSV.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string clash_words(const Scene& scene, const ClashRow& row) {
+  switch (row.verdict) {
+    case ClashVerdict::contained:
+      return name_of(scene, *row.inner) + " inside";
+    case ClashVerdict::unknown:
+      return "the one around " + name_of(scene, *row.inner) + " is not closed";
+    case ClashVerdict::clash:
+      return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
+    default:
+      return kinds_text(row);
+  }
+}
+
+bool is_clean(const ClashRecord& record) {
+  return record.examined == record.asked && record.count(ClashVerdict::clash) == 0 &&
+         record.count(ClashVerdict::contained) == 0 && record.count(ClashVerdict::unknown) == 0;
+}
+
+std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
+  std::string out =
+      fmt::format("{}: {}, {}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
+                     counted(record.asked, "pair", "pairs"), is_clean(record) ? ": clean" : "");
+  out += "verdicts   " + counts_text(record) + "\n";
+  if (record.ignored > 0) {
+    out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),
+                       counted(record.ignored_meet, "meets", "meet"));
+  }
+  for (const std::uint32_t object : record.empty)
+    out += "not examined: " + name_of(scene, object) + " has no triangles\n";
+  out += rows_text(scene, record, table, false) + rows_text(scene, record, table, true);
+  return out + fmt::format("\ntime       {:.1f} ms\n", record.ms);
+}
+
+std::string clash_csv(const Scene& scene, const ClashRecord& record) {
+  std::string out =
+      "object_a,object_b,name_a,name_b,verdict,ignored,proved,pairs,inner,distance,squared,"
+      "depth_least,depth_most,curve,x_lo,y_lo,z_lo,x_hi,y_hi,z_hi,x_a,y_a,z_a,x_b,y_b,z_b";
+  for (const ContactKind kind : kContactKinds) out += fmt::format(",{}", farcull::name_of(kind));
+  out += "\n";
+  for (const ClashRow& row : record.rows) {
+    out += fmt::format("{},{},{},{},{},{},{},{},{},", row.objects.a, row.objects.b,
+                       cell(name_of(scene, row.objects.a)), cell(name_of(scene, row.objects.b)),
+                       to_string(row.verdict), int{row.ignored}, int{row.proved}, row.pairs,
+                       row.inner ? std::to_string(*row.inner) : "");
+    out += row.squared ? fmt::format("{},{},", row.distance, row.squared->text()) : ",,";
+    out += row.depth ? fmt::format("{},{},", row.depth->lo, row.depth->hi) : ",,";
+    out += fmt::format("{}", row.curve);
+    for (const Vec3& p : {row.box.lo, row.box.hi, row.witness[0], row.witness[1]})
+      out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
+    for (const std::uint64_t n : row.kinds) out += fmt::format(",{}", n);
+    out += "\n";
+  }
+  return out;
+}
+
+Json clash_json(const Scene& scene, const ClashRecord& record, const std::string& unit) {
+  Json verdicts = Json::object();
+  for (const ClashVerdict verdict : kClashVerdicts)
+    verdicts[to_string(verdict)] = record.count(verdict);
+  return {{"scene", scene.name},
+          {"objects", json_list(scene.objects, [](const Object& object) { return object.name; })},
+          {"triangles", scene.triangles.size()},
+          {"unit", text_json(unit)},
+          {"clearance", record.options.clearance},
+          {"asked", record.asked},
+          {"examined", record.examined},
+          {"clean", is_clean(record)},
+          {"verdicts", verdicts},
+          {"ignored", record.ignored},
+          {"ignored_meet", record.ignored_meet},
+          {"without_triangles", record.empty},
+          {"pairs", json_list(record.rows, [&](const ClashRow& r) { return row_json(scene, r); })},
+          {"triangle_pairs", record.triangle_pairs},
+          {"stages", stages_json(record.trace)},
+          {"time_ms", {{"total", record.ms}}},
+          {"commit", FARCULL_COMMIT}};
+}
+
+}  // namespace farcull

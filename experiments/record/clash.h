@@ -1,0 +1,33 @@
+// The record of `farcull clash` as a table, CSV and JSON (docs/clash.md).
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "experiments/method/clash.h"
+
+namespace farcull {
+
+struct ClashTable {
+  bool touches = false;   // list pairs that touch, too
+  std::string unit = {};  // of the lengths, such as "mm"; empty: not said
+};
+
+/// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
+/// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
+std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
+
+/// What a row says beyond its verdict, such as the kinds of contact.
+std::string clash_words(const Scene& scene, const ClashRow& row);
+
+/// Whether no pair is a clash, contained or unknown, and every pair that was asked for was
+/// examined.
+bool is_clean(const ClashRecord& record);
+
+/// A row for each pair that is not clear; numbers with all digits.
+std::string clash_csv(const Scene& scene, const ClashRecord& record);
+
+nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
+                                  const std::string& unit);
+
+}  // namespace farcull

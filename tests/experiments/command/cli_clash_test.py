@@ -1,0 +1,53 @@
+"""farcull clash: options, the answer in each form, and the exit status."""
+from cli_lab import rows, write
+
+
+def box(name, lo, hi):
+    """A closed box as OBJ, 12 triangles."""
+    corners = [(hi if k >> axis & 1 else lo)[axis] for k in range(8) for axis in range(3)]
+    quads = ['1 3 4 2', '5 6 8 7', '1 2 6 5', '3 7 8 4', '1 5 7 3', '2 4 8 6']
+    write(name, ''.join('v {} {} {}\n'.format(*corners[3 * k:3 * k + 3]) for k in range(8)) + ''.join(f'f {q}\n' for q in quads))
+
+
+rows('$ mkdir parts nothing')
+box('parts/a.obj', (0, 0, 0), (2, 2, 2))
+box('parts/b.obj', (1, 0.5, 0.5), (3, 1.5, 1.5))
+box('parts/c.obj', (5, 0, 0), (6, 1, 1))
+box('parts/d.obj', (6, 0, 0), (7, 1, 1))
+box('inner.obj', (0.5, 0.5, 0.5), (1, 1, 1))
+write('empty.off', 'OFF\n1 0 0\n0 0 0\n')
+
+# ---- bad input
+
+rows(r"""
+bad no part | SCENE: none is named | clash
+bad one part | scene: has fewer than two objects; name two parts | clash inner.obj
+bad a folder without meshes | nothing: the folder has no mesh files | clash nothing
+bad clearance '{clearance}' | --clearance: | clash parts --clearance {clearance}
+bad touching | --touching: 'never' is no choice; give allow or report | clash parts --touching never
+bad fail on {word} | --fail-on: '{word}' is no verdict; give none, or some of | clash parts --fail-on {word}
+bad ignored | --ignore: | clash parts --ignore a:none
+bad a part without triangles | empty.off: the mesh has no triangles | clash parts/a.obj empty.off
+bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
+""", clearance=['-1', 'nan', 'inf', 'x', ''], word=['clear', 'clashes'])
+
+# ---- good cases
+
+rows(r"""
+1 a folder | clash parts | ^examined   6 of 6 pairs of parts$ | ^verdicts   1 clash, 0 contained, 0 unknown, 1 touch, 0 near, 4 clear$
+  | ^clash +a +b +1 +.* crossing | ! ^touch
+1 touching | clash parts --touching report --fail-on touch | ^touch +c +d
+0 fail on none | clash parts --fail-on none | ^clash
+0 fail on near | clash parts --fail-on near | ^clash
+1 near | clash parts --fail-on near --clearance 2 --unit mm | ^near +b +c .* 2 | depth .mm.
+0 beyond the clearance | clash parts --fail-on near --clearance 1.9999 | ! ^near
+0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
+1 contained | clash parts/a.obj inner.obj | ^contained +a +inner .* inner inside$ | ! clean
+0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^ignored pairs that meet| ^examined   5 of 5 .*: clean$
+list.txt << # allowed; a:b
+0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
+1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
+1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
+1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "at_least": 0.99999
+  | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["at_least"] <= 1 <= d["at_most"] < 1.0001, d'
+""")

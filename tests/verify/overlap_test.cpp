@@ -1,0 +1,129 @@
+// Solids that touch, and solids that overlap although no two of their triangles cross.
+#include "verify/overlap.h"
+
+#include "experiments/method/distances.h"
+#include "tests/lab/parts.h"
+#include "verify/contact.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using lab::Parts;
+
+struct Case {
+  std::vector<TrianglePair> contacts;
+  bool crossing = false;
+};
+
+Case case_of(const Scene& scene) {
+  Case out;
+  out.contacts = all_colliding_pairs(scene).pairs;
+  for (const ContactKind kind : contact_kinds(scene, out.contacts))
+    out.crossing = out.crossing || kind == ContactKind::crossing;
+  return out;
+}
+
+/// The answer about the first two objects, whose triangles meet but do not cross.
+Overlap answer(const Scene& scene) {
+  validate(scene, "test");
+  const Case of = case_of(scene);
+  EXPECT_FALSE(of.contacts.empty());
+  EXPECT_FALSE(of.crossing);
+  return overlap_of_touching(scene, {0, 1}, of.contacts,
+                             point_of_each_part(scene, scene.objects[0]),
+                             point_of_each_part(scene, scene.objects[1]), true);
+}
+
+TEST(Overlap, BoxesSideBySideTouch) {
+  Parts parts;
+  parts.add_box("a", {0, 0, 0}, {1, 1, 1});
+  parts.add_box("b", {1, 0.25, 0}, {2, 1.25, 1});
+  EXPECT_EQ(answer(parts.scene), Overlap::no);
+}
+
+TEST(Overlap, APegThatFillsAHoleTouchesWithoutADividingPlane) {
+  Parts parts;
+  parts.add_ring("plate", {0, 0, 0}, {4, 4, 1}, {1, 1, 0}, {3, 3, 1});
+  parts.add_box("peg", {1, 1, -1}, {3, 3, 2});
+  EXPECT_FALSE(plane_divides(parts.scene, {0, 1}, case_of(parts.scene).contacts));
+  EXPECT_EQ(answer(parts.scene), Overlap::no);
+}
+
+TEST(Overlap, ABoxThatFillsAHollowTouches) {
+  Parts parts;
+  parts.box({0, 0, 0}, {3, 3, 3});
+  parts.box({1, 1, 1}, {2, 2, 2}, true);
+  parts.end("shell");
+  parts.add_box("filling", {1, 1, 1}, {2, 2, 2});
+  EXPECT_EQ(answer(parts.scene), Overlap::no);
+}
+
+// Each of these has only kinds of contact that boxes side by side have, too: a rule by kinds says
+// that they touch, which is what the proof must not say.
+TEST(Overlap, IsFoundWhereNoTrianglesCross) {
+  Parts flush;
+  flush.add_box("a", {0, 0, 0}, {2, 1, 1});
+  flush.add_box("b", {1, 0, 0}, {3, 1, 1});
+  EXPECT_EQ(answer(flush.scene), Overlap::yes);
+  Parts equal;
+  equal.add_box("a", {0, 0, 0}, {1, 1, 1});
+  equal.add_box("b", {0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(answer(equal.scene), Overlap::yes);
+  Parts within;  // they share one face, on its outer side
+  within.add_box("a", {0, 0, 0}, {4, 4, 4});
+  within.add_box("b", {1, 1, 2}, {3, 3, 4});
+  EXPECT_EQ(answer(within.scene), Overlap::yes);
+  Parts hung;  // a part that touches, and a part inside that has no contact
+  hung.add_box("a", {0, 0, 0}, {4, 4, 4});
+  hung.box({4, 0, 0}, {5, 4, 4});
+  hung.box({1, 1, 1}, {2, 2, 2});
+  hung.end("b");
+  EXPECT_EQ(answer(hung.scene), Overlap::yes);
+  // A rod of two cubes on one another, whose common edges lie in the face of a slab: its surface
+  // passes through the slab's along these edges.
+  RandomNumbers random(1);
+  Parts rod;
+  rod.add_cubes("rod", {{0, 0, -1}, {0, 0, 0}}, random);
+  rod.add_box("slab", {-2, -2, -5}, {3, 3, 0});
+  EXPECT_EQ(answer(rod.scene), Overlap::yes);
+}
+
+TEST(Overlap, OverlappingShellsHideNothing) {
+  // The first object's boxes overlap; by parity its inside ends where they do.
+  Parts parts;
+  parts.box({0, 0, 0}, {3, 3, 3});
+  parts.box({0, 0, 0}, {3, 3, 3});
+  parts.end("twice");
+  parts.add_box("b", {1, 0, 0}, {2, 3, 3});
+  EXPECT_EQ(answer(parts.scene), Overlap::unknown);
+}
+
+// Solids of unit cubes: they overlap iff they have a cube in common.
+TEST(Overlap, OfSolidsOfCubesIsKnown) {
+  RandomNumbers random(seed_of_day(5));
+  int touching = 0, overlapping = 0;
+  for (int k = 0; k < trials(60); ++k) {
+    std::array<std::set<std::array<int, 3>>, 2> cubes;
+    for (auto& solid : cubes) {
+      const int count = 1 + random.below(6);
+      for (int i = 0; i < count; ++i)
+        solid.insert({random.below(3), random.below(3), random.below(2)});
+    }
+    bool common = false;
+    for (const auto& cube : cubes[0]) common = common || cubes[1].contains(cube);
+    Parts parts;
+    parts.add_cubes("a", cubes[0], random);
+    parts.add_cubes("b", cubes[1], random);
+    const Case of = case_of(parts.scene);
+    if (of.contacts.empty() || of.crossing) continue;
+    const Overlap found = answer(parts.scene);
+    ASSERT_EQ(found, common ? Overlap::yes : Overlap::no) << k;
+    (common ? overlapping : touching) += 1;
+  }
+  EXPECT_GT(touching, trials(5));
+  EXPECT_GT(overlapping, trials(5));
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,326 @@
+// First looks for a dividing plane, then cuts each triangle with a contact into convex pieces, and
+// casts a ray through a point of each piece along an axis, to both sides of the triangle.
+#include "verify/overlap.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/base/floating_point.h"
+#include "core/base/random.h"
+#include "verify/exact.h"
+#include "verify/filter_scalars.h"
+#include "verify/inside.h"
+#include "verify/rational.h"
+
+namespace farcull {
+namespace {
+
+using rational::dot;
+using rational::exact;
+using rational::minus;
+using rational::Q;
+using rational::Q3;
+using Corners = std::array<Vec3, 3>;
+
+constexpr std::size_t kMostPlanes = 64;    // that are tried as dividing planes
+constexpr std::size_t kMostPieces = 2048;  // of a triangle
+// Tests of a piece with a triangle of the objects, about two seconds.
+constexpr std::size_t kMostTests = std::size_t{1} << 31;
+
+Q3 cross(const Q3& a, const Q3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The points p with normal . p = offset.
+struct Plane {
+  Q3 normal;
+  Q offset;
+  Plane(const Q3& n, const Q3& at) : normal(n), offset(dot(n, at)) {}
+  int side(const Q3& p) const { return cmp(dot(normal, p), offset); }
+};
+
+Plane plane_of(const Corners& t) {
+  const Q3 at = exact(t[0]);
+  return {cross(minus(exact(t[1]), at), minus(exact(t[2]), at)), at};
+}
+
+/// The side of the plane of t that p is on: -1, 0 or 1.
+int side_of(const Corners& t, const Vec3& p) {
+  const auto w = filters::difference(p, t[0]);
+  const filters::Normal n =
+      filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
+  const int sign = filters::sign(filters::dot(n.n, w),
+                                 filters::side_bound<FilterBounds>(n, filters::magnitudes(w)));
+  return sign != 0 ? sign : plane_of(t).side(exact(p));
+}
+
+template <class Visit>
+void for_triangles(const Scene& scene, std::uint32_t object, const Visit& visit) {
+  const Object& o = scene.objects[object];
+  for (std::uint32_t k = 0; k < o.triangle_count; ++k) visit(scene.corners(o.first_triangle + k));
+}
+
+Box box_of(const Corners& t) {
+  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
+}
+
+/// The sides of the plane of t on which the object has corners: bit 0 below, bit 1 above.
+unsigned sides_of(const Scene& scene, std::uint32_t object, const Corners& t) {
+  const Object& o = scene.objects[object];
+  unsigned sides = 0;
+  for (std::uint32_t k = 0; k < o.triangle_count && sides != 3; ++k) {
+    for (const Vec3& p : scene.corners(o.first_triangle + k)) {
+      const int side = side_of(t, p);
+      if (side != 0) sides |= side < 0 ? 1u : 2u;
+    }
+  }
+  return sides;
+}
+
+// ---- pieces ----
+
+using Polygon = std::vector<Q3>;  // convex
+
+/// Divides each polygon that has corners on both sides of the plane.
+void cut(std::vector<Polygon>& pieces, const Plane& plane) {
+  const std::size_t count = pieces.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Polygon whole = pieces[i];
+    std::vector<Q> height;
+    bool above = false, below = false;
+    for (const Q3& p : whole) {
+      height.push_back(dot(plane.normal, p) - plane.offset);
+      above = above || height.back() > 0;
+      below = below || height.back() < 0;
+    }
+    if (!above || !below) continue;
+    Polygon upper, lower;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      const std::size_t next = (k + 1) % whole.size();
+      if (height[k] >= 0) upper.push_back(whole[k]);
+      if (height[k] <= 0) lower.push_back(whole[k]);
+      if (sgn(height[k]) * sgn(height[next]) >= 0) continue;
+      const Q3 at =
+          rational::between(whole[k], whole[next], height[k] / (height[k] - height[next]));
+      upper.push_back(at);
+      lower.push_back(at);
+    }
+    pieces[i] = std::move(upper);
+    pieces.push_back(std::move(lower));
+  }
+}
+
+/// Cuts pieces of t along a triangle that meets it: along its plane, or along the lines of its
+/// edges where it lies in the plane of t.
+void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& other) {
+  if (shape(other) != Shape::triangle) return;  // it has no side
+  const bool flat =
+      std::ranges::all_of(other, [&](const Vec3& p) { return of_t.side(exact(p)) == 0; });
+  if (!flat) return cut(pieces, plane_of(other));
+  for (int i = 0; i < 3; ++i) {
+    const Q3 p = exact(other[i]);
+    cut(pieces, Plane(cross(of_t.normal, minus(exact(other[(i + 1) % 3]), p)), p));
+  }
+}
+
+/// A point inside the polygon, with random weights: it lies on no line that is not that of the
+/// polygon's plane, but by a rare chance.
+Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
+  Q3 sum = {0, 0, 0};
+  Q total = 0;
+  for (const Q3& p : polygon) {
+    const Q weight = static_cast<unsigned long>(1 + random.below(1000003));
+    total += weight;
+    for (int k = 0; k < 3; ++k) sum[k] += weight * p[k];
+  }
+  for (Q& x : sum) x /= total;
+  return sum;
+}
+
+/// Whether the places just below and just above a point of a plane, along an axis, are inside an
+/// object.
+struct Sides {
+  std::array<bool, 2> perhaps{};  // one of the two rules says so
+  std::array<bool, 2> inside{};   // both do
+};
+
+/// Empty if the ray meets an edge, or if a triangle that is not in the plane has the point.
+std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
+                              const Q3& p, int axis) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double pu = p[u].get_d(), pv = p[v].get_d();  // cut off, so the next doubles enclose them
+  const auto below = [](double x) { return std::nextafter(x, -HUGE_VAL); };
+  const auto above = [](double x) { return std::nextafter(x, HUGE_VAL); };
+  const double u_lo = below(pu), u_hi = above(pu), v_lo = below(pv), v_hi = above(pv);
+  std::array<long, 2> crossings = {0, 0}, winding = {0, 0};
+  const Object& o = scene.objects[object];
+  for (std::uint32_t k = 0; k < o.triangle_count; ++k) {
+    const Corners t = scene.corners(o.first_triangle + k);
+    const auto [u0, u1] = std::minmax({t[0][u], t[1][u], t[2][u]});
+    const auto [v0, v1] = std::minmax({t[0][v], t[1][v], t[2][v]});
+    if (u1 < u_lo || u0 > u_hi || v1 < v_lo || v0 > v_hi) continue;
+    std::array<Q3, 3> corner;
+    for (int i = 0; i < 3; ++i) corner[i] = exact(t[i]);
+    std::array<int, 3> side{};
+    for (int i = 0; i < 3; ++i) {
+      const Q3 &a = corner[i], &b = corner[(i + 1) % 3];
+      side[i] = sgn(Q((b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u])));
+    }
+    const auto [least, most] = std::minmax({side[0], side[1], side[2]});
+    if (least < 0 && most > 0) continue;  // passes by
+    if (least == 0 || most == 0) {
+      if (shape(t) != Shape::triangle) continue;  // no ray in general position crosses it
+      return std::nullopt;
+    }
+    const Plane of_t = plane_of(t);
+    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // of p over the triangle
+    if (height == 0) {
+      for (const Q3& c : corner) {
+        if (plane.side(c) != 0) return std::nullopt;
+      }
+      continue;  // a ray that leaves the plane does not meet it again
+    }
+    const std::size_t to = height < 0 ? 1 : 0;
+    ++crossings[to];
+    winding[to] += side[0];
+  }
+  Sides out;
+  for (std::size_t to = 0; to < 2; ++to) {
+    const bool odd = crossings[to] % 2 != 0, wound = winding[to] != 0;
+    out.perhaps[to] = odd || wound;
+    out.inside[to] = odd && wound;
+  }
+  return out;
+}
+
+class PieceTest {
+ public:
+  PieceTest(const Scene& scene, ObjectPair objects)
+      : scene_(scene),
+        objects_(objects),
+        triangles_(scene.objects[objects.a].triangle_count +
+                   std::size_t{scene.objects[objects.b].triangle_count}) {}
+
+  /// Whether pieces of triangle t of object `own` show an overlap with the other object; `others`
+  /// are the triangles of the other object that meet t.
+  Overlap test(std::uint32_t own, std::uint32_t t, std::span<const std::uint32_t> others) {
+    const Corners corners = scene_.corners(t);
+    if (shape(corners) != Shape::triangle) return Overlap::unknown;
+    const Plane plane = plane_of(corners);
+    std::vector<Polygon> pieces = {{exact(corners[0]), exact(corners[1]), exact(corners[2])}};
+    for (const std::uint32_t other : others) {
+      cut_by(pieces, plane, scene_.corners(other));
+      if (pieces.size() > kMostPieces) return Overlap::unknown;
+    }
+    // Where the object meets itself, its own inside changes within the triangle.
+    const Box box = box_of(corners);
+    for_triangles(scene_, own, [&](const Corners& other) {
+      if (pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
+      if (other != corners && intersects_beyond_shared(corners, other))
+        cut_by(pieces, plane, other);
+    });
+    tests_ += pieces.size() * triangles_;
+    if (pieces.size() > kMostPieces || tests_ > kMostTests) return Overlap::unknown;
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (abs(plane.normal[k]) > abs(plane.normal[axis])) axis = k;
+    }
+    for (const Polygon& piece : pieces) {
+      const Overlap answer = test(plane, piece, axis);
+      if (answer != Overlap::no) return answer;
+    }
+    return Overlap::no;
+  }
+
+ private:
+  Overlap test(const Plane& plane, const Polygon& piece, int axis) {
+    constexpr int kDraws = 8;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const Q3 p = point_inside(piece, random_);
+      const std::optional<Sides> a = sides_of(scene_, objects_.a, plane, p, axis);
+      if (!a) continue;
+      const std::optional<Sides> b = sides_of(scene_, objects_.b, plane, p, axis);
+      if (!b) continue;
+      Overlap out = Overlap::no;
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (a->inside[side] && b->inside[side]) return Overlap::yes;
+        if (a->perhaps[side] && b->perhaps[side]) out = Overlap::unknown;
+      }
+      return out;
+    }
+    return Overlap::unknown;
+  }
+
+  const Scene& scene_;
+  ObjectPair objects_;
+  RandomNumbers random_{1};
+  std::size_t triangles_;  // of both
+  std::size_t tests_ = 0;
+};
+
+/// Whether one of the points is inside; a point of the surface is left to the pieces.
+bool any_inside(const Scene& scene, std::uint32_t object, std::span<const Vec3> points) {
+  return std::ranges::any_of(
+      points, [&](const Vec3& point) { return inside(scene, object, point, true) == Inside::yes; });
+}
+
+/// The triangles of the contacts by their first triangle, or by the second one.
+std::vector<TrianglePair> sorted_by(std::span<const TrianglePair> contacts, bool second) {
+  std::vector<TrianglePair> out(contacts.begin(), contacts.end());
+  if (second) {
+    for (TrianglePair& pair : out) std::swap(pair.a, pair.b);
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+}  // namespace
+
+bool plane_divides(const Scene& scene, ObjectPair objects, std::span<const TrianglePair> contacts) {
+  const FloatingPointGuard guard;
+  Box a = Box::empty(), b = Box::empty();
+  for_triangles(scene, objects.a, [&](const Corners& t) { a.add(box_of(t)); });
+  for_triangles(scene, objects.b, [&](const Corners& t) { b.add(box_of(t)); });
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a.hi[axis] <= b.lo[axis] || b.hi[axis] <= a.lo[axis]) return true;
+  }
+  std::vector<std::uint32_t> triangles;
+  for (const TrianglePair& pair : contacts) {
+    for (const std::uint32_t t : {pair.a, pair.b}) {
+      if (triangles.size() < kMostPlanes && std::ranges::find(triangles, t) == triangles.end())
+        triangles.push_back(t);
+    }
+  }
+  return std::ranges::any_of(triangles, [&](std::uint32_t t) {
+    const Corners corners = scene.corners(t);
+    if (shape(corners) != Shape::triangle) return false;
+    const unsigned of_a = sides_of(scene, objects.a, corners);
+    return of_a != 3 && (of_a & sides_of(scene, objects.b, corners)) == 0;
+  });
+}
+
+Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
+                            std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
+                            std::span<const Vec3> parts_b, bool closed) {
+  const FloatingPointGuard guard;
+  if (plane_divides(scene, objects, contacts)) return Overlap::no;
+  if (!closed) return Overlap::unknown;
+  PieceTest test(scene, objects);
+  for (const bool second : {false, true}) {
+    const std::vector<TrianglePair> sorted = sorted_by(contacts, second);
+    for (std::size_t k = 0; k < sorted.size();) {
+      std::vector<std::uint32_t> others;
+      const std::uint32_t t = sorted[k].a;
+      for (; k < sorted.size() && sorted[k].a == t; ++k) others.push_back(sorted[k].b);
+      const Overlap answer = test.test(second ? objects.b : objects.a, t, others);
+      if (answer != Overlap::no) return answer;
+    }
+  }
+  const bool any = any_inside(scene, objects.b, parts_a) || any_inside(scene, objects.a, parts_b);
+  return any ? Overlap::yes : Overlap::no;
+}
+
+}  // namespace farcull
