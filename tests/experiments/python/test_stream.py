@@ -59,8 +59,8 @@ def test_nothing_is_an_end_and_errors_are_those_of_collide():
     V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9], [8, 9, 9], [9, 8, 9]])
     nothing = farcull.stream(V, [[0, 1, 2], [3, 4, 5]], [0, 1])
     assert list(nothing) == [] and nothing.complete and nothing.decided == 0
-    for where, arguments in (("objects", (V, [[0, 1, 2]])), ("triangles", (V, [[0, 1, 6], [3, 4, 5]], [0, 1])),
-                             ("vertices", (V * np.nan, [[0, 1, 2], [3, 4, 5]], [0, 1]))):
+    for where, arguments in (("object_starts", (V, [[0, 1, 2]])), ("F", (V, [[0, 1, 6], [3, 4, 5]], [0, 1])),
+                             ("V", (V * np.nan, [[0, 1, 2], [3, 4, 5]], [0, 1]))):
         assert refused(farcull.stream, *arguments) == where
     assert refused(farcull.stream, V, [[0, 1, 2], [3, 4, 5]], [0, 1], ignore=[(0, 2)]) == "ignore"
 
