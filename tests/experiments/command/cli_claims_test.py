@@ -77,7 +77,7 @@ one.json << {"objects": [{"mesh": "pierced.obj", "self": true}]}
 0 run cullide | run pierced.obj away.obj --method cullide --device software --resolution 64 | {unasked}
   | ^not asked .*\(--method far-pairs --self asks\)$
 0 compare | compare pierced.obj away.obj --methods far-pairs,exact | {unasked}
-0 bench | bench pierced.obj --device cpu --repeat 1 --peers none | {unasked}
+0 bench | bench pierced.obj away.obj --device cpu --repeat 1 --peers none | {unasked}
 $ cp pierced.obj pierced0.obj
 0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 | ^not asked .* 1 pair of triangles inside pierced
 0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":2,"pairs":1,

@@ -232,7 +232,7 @@ def test_another_interpreter_of_the_process_is_refused(first):
     except interpreters.RunFailedError as error:
         print(error)
     import farcull
-    print(farcull.collide([[0, 0, 0]], [[0, 0, 0]], self=True).pairs.shape)
+    print(farcull.collide([[0, 0, 0]], [[0, 0, 0]] * 2, self=True).pairs.shape)
     """)
     assert "not the main one" in out and out.endswith("(0, 2)\n")
 

@@ -81,7 +81,7 @@ sys.path.insert(0, {folder!r})
 from test_stream import crossed
 V, F, objects = crossed({n})
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # MiB
-farcull.collide(V[:3], F[:1], self=True)  # libraries and threads are there
+farcull.collide(V[:6], F[:2], self=True)  # libraries and threads are there
 sum(len(p.pairs) for p in farcull.stream(*crossed(300)))
 before, count = peak(), 0
 if {whole}:
