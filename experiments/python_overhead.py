@@ -50,7 +50,7 @@ def main():
             for k in (0, 1):
                 V[k].tofile(Path(folder, f"V{k}"))
             scene.triangles.tofile(Path(folder, "F"))
-            scene.objects.astype(np.uint32).tofile(Path(folder, "S"))
+            scene.object_starts.astype(np.uint32).tofile(Path(folder, "S"))
             child = subprocess.Popen(
                 [program, folder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
             )
@@ -59,9 +59,9 @@ def main():
             def in_python(name, which):
                 begun = time.process_time()
                 if call == "find":
-                    result = colliders[name].find(V[which], F[name], scene.objects)
+                    result = colliders[name].find(V[which], F[name], scene.object_starts)
                 else:
-                    result = farcull.collide(V[which], F[name], scene.objects, threads=1)
+                    result = farcull.collide(V[which], F[name], scene.object_starts, threads=1)
                 return 1e3 * (time.process_time() - begun), len(result.pairs)
 
             def in_cpp(which):

@@ -1,4 +1,4 @@
-// Counts the crossings of a ray with the object, and takes the parity. Let a line pass through the
+// Counts the crossings of a ray with the object, each by its direction. Let a line pass through the
 // point x in direction d. The sign of d . ((p - x) x (q - x)) tells on which side of the line an
 // edge from p to q passes. If all three edges of a triangle pass on one side, the line crosses the
 // triangle; the sign of the determinant of the three corners relative to x tells whether before or
@@ -47,18 +47,17 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
       third, closest::cross(closest::minus(exact(p), at), closest::minus(exact(q), at))));
 }
 
-enum class Crossing : std::uint8_t { no, yes, unclear };
-
-/// Does the ray from x cross the triangle? unclear: the line of the ray meets an edge, or lies in
-/// the triangle's plane. Precondition: x is not on the triangle.
-Crossing crossing(const Corners& t, const Vec3& x, const Vec3& d) {
+/// Whether the ray from x crosses the triangle: 0 for no, else 1 or -1 by the side that it comes
+/// from. Empty: the line of the ray meets an edge, or lies in the triangle's plane. Precondition: x
+/// is not on the triangle.
+std::optional<int> crossing(const Corners& t, const Vec3& x, const Vec3& d) {
   std::array<int, 3> side{};
   for (int i = 0; i < 3; ++i) side[i] = triple_sign(t[i], t[(i + 1) % 3], x, d, false);
   const auto [least, most] = std::minmax({side[0], side[1], side[2]});
-  if (least < 0 && most > 0) return Crossing::no;  // passes by
-  if (least == 0 || most == 0) return Crossing::unclear;
+  if (least < 0 && most > 0) return 0;  // passes by
+  if (least == 0 || most == 0) return std::nullopt;
   // x + s d is in the plane for s = det / (sum of the three products with the signs `side`).
-  return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? Crossing::yes : Crossing::no;
+  return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? side[0] : 0;
 }
 
 const Object& object_of(const Scene& scene, std::uint32_t object, const char* where) {
@@ -78,13 +77,18 @@ bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
   return false;
 }
 
-/// Is the number of crossings odd? Empty if a crossing was unclear. If the ray goes along the first
+struct Crossings {
+  std::int64_t winding = 0;  // the sum by direction
+  bool odd = false;          // whether their number is
+};
+
+/// The crossings of a ray. Empty if one was unclear. If the ray goes along the first
 /// axis, boxes show that it misses most triangles. A triangle that is a segment or a point is left
 /// out: no ray in general position crosses it, and if x is on its line, all signs are 0 whatever
 /// the direction.
-std::optional<bool> odd(const Scene& scene, const Object& object, const Vec3& x, const Vec3& d,
-                        bool first_axis) {
-  bool odd = false;
+std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
+                                   const Vec3& d, bool first_axis) {
+  Crossings out;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const Corners t = scene.corners(object.first_triangle + k);
     if (first_axis) {
@@ -92,18 +96,19 @@ std::optional<bool> odd(const Scene& scene, const Object& object, const Vec3& x,
       if (hi.x() < x.x() || lo.y() > x.y() || hi.y() < x.y() || lo.z() > x.z() || hi.z() < x.z())
         continue;
     }
-    const Crossing c = crossing(t, x, d);
-    if (c == Crossing::unclear) {
+    const std::optional<int> c = crossing(t, x, d);
+    if (!c) {
       if (shape(t) != Shape::triangle) continue;
       return std::nullopt;
     }
-    odd = odd != (c == Crossing::yes);
+    out.winding += *c;
+    out.odd = out.odd != (*c != 0);
   }
-  return odd;
+  return out;
 }
 
-bool parity(const Scene& scene, const Object& object, const Vec3& x) {
-  if (const auto answer = odd(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
+Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
+  if (const auto answer = crossings(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
   // For each edge of a triangle that is no segment, the directions to avoid lie in a plane. This
   // holds also if x is in the plane of the triangle, but not on it: for all other directions two of
   // the signs are opposite. With 2^52 values per axis each such plane holds at most 2^-52 of all
@@ -113,7 +118,7 @@ bool parity(const Scene& scene, const Object& object, const Vec3& x) {
   for (int k = 0; k < kDraws; ++k) {
     Vec3 d;
     for (double& c : d) c = std::round(random.between(-0x1p51, 0x1p51));
-    if (const auto answer = odd(scene, object, x, d, false)) return *answer;
+    if (const auto answer = crossings(scene, object, x, d, false)) return *answer;
   }
   throw std::logic_error("inside: every ray meets an edge");
 }
@@ -121,9 +126,17 @@ bool parity(const Scene& scene, const Object& object, const Vec3& x) {
 }  // namespace
 
 bool is_closed(const Scene& scene, std::uint32_t object) {
-  const Object& o = object_of(scene, object, "is_closed");
+  return surface_of(scene, object) != Surface::open;
+}
+
+Surface surface_of(const Scene& scene, std::uint32_t object) {
+  const Object& o = object_of(scene, object, "surface_of");
   using Place = std::array<double, 3>;
-  std::vector<std::array<Place, 2>> edges;
+  struct Edge {
+    std::array<Place, 2> ends;  // the lower one first
+    bool forward = false;       // from the lower end to the upper one
+  };
+  std::vector<Edge> edges;
   edges.reserve(3u * o.triangle_count);
   for (std::uint32_t k = 0; k < o.triangle_count; ++k) {
     const Corners t = scene.corners(o.first_triangle + k);
@@ -132,26 +145,35 @@ bool is_closed(const Scene& scene, std::uint32_t object) {
     for (int i = 0; i < 3; ++i) {
       for (int axis = 0; axis < 3; ++axis) p[i][axis] = t[i][axis] + 0.0;  // no -0.0
     }
-    for (int i = 0; i < 3; ++i)
-      edges.push_back({std::min(p[i], p[(i + 1) % 3]), std::max(p[i], p[(i + 1) % 3])});
+    for (int i = 0; i < 3; ++i) {
+      const Place &from = p[i], &to = p[(i + 1) % 3];
+      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to});
+    }
   }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size(); i += 2) {
-    if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return false;
+  std::ranges::sort(edges, {}, &Edge::ends);
+  bool oriented = true;
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    std::int64_t balance = 0;
+    for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end)
+      balance += edges[end].forward ? 1 : -1;
+    if ((end - i) % 2 != 0) return Surface::open;
+    oriented = oriented && balance == 0;
   }
-  return true;
+  return oriented ? Surface::oriented : Surface::closed;
 }
 
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point) {
-  return inside(scene, object, point, is_closed(scene, object));
+  return inside(scene, object, point, surface_of(scene, object));
 }
 
-Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, bool closed) {
+Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface) {
   const Object& o = object_of(scene, object, "inside");
   const FloatingPointGuard guard;
   if (on_surface(scene, o, point)) return Inside::on;
-  if (!closed) return Inside::not_closed;
-  return parity(scene, o, point) ? Inside::yes : Inside::no;
+  if (surface == Surface::open) return Inside::not_closed;
+  const Crossings found = crossings(scene, o, point);
+  const bool within = surface == Surface::oriented ? found.winding != 0 : found.odd;
+  return within ? Inside::yes : Inside::no;
 }
 
 }  // namespace farcull

@@ -1,9 +1,13 @@
 // Whether one object lies inside another, exactly.
 //
 // Semantics: a mesh is *closed* if every edge, by the positions of its ends, belongs to an even
-// number of its triangles; triangles with two equal corners do not count. A point off the mesh is
-// *inside* if a ray from it crosses the mesh an odd number of times. For a closed mesh this is the
-// same for every ray that meets no edge.
+// number of its triangles; triangles with two equal corners do not count. It is *oriented* if these
+// triangles also pass each edge equally often in both directions. The *winding number* of a point
+// off an oriented mesh is how often a ray from it crosses triangles from behind, less how often
+// from the front. The point is *inside* if that is not 0. So it is inside two shells that overlap,
+// and outside in a cavity whose shell is turned inside out. For a closed mesh that is not oriented,
+// the point is inside if the number of crossings is odd. Both are the same for every ray that meets
+// no edge.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +19,11 @@ namespace farcull {
 /// on: the point lies on a triangle of the object. not_closed: the object has no inside.
 enum class Inside : std::uint8_t { no, yes, on, not_closed };
 
-/// True iff the object is closed; an object without triangles is closed.
+enum class Surface : std::uint8_t { open, closed, oriented };
+/// What the surface of the object is; `closed` if it is not oriented as well. An object without
+/// triangles is oriented.
+Surface surface_of(const Scene& scene, std::uint32_t object);
+/// True iff the object is closed.
 bool is_closed(const Scene& scene, std::uint32_t object);
 
 /// Says where the point (finite) lies; `on` is also the answer for an object that is not closed.
@@ -24,7 +32,7 @@ bool is_closed(const Scene& scene, std::uint32_t object);
 /// have.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);
 
-/// The same with the result of is_closed(), which takes most of the time.
-Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, bool closed);
+/// The same with the result of surface_of(), which takes most of the time.
+Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 }  // namespace farcull

@@ -140,7 +140,7 @@ int BenchCommand::run() {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = load_scene(scene_);
+  Scene scene = read_scene(scene_);
   require_nothing_ignored(scene, "farcull bench");
   if (options.self) make_self(scene);
   if (distances_) {

@@ -115,8 +115,8 @@ int write_check(const CheckArguments& arguments, const Scene& scene, const Check
   return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
 }
 
-Scene read_scene(const CheckArguments& arguments) {
-  Scene scene = load_scene(arguments.scene);
+Scene checked_scene(const CheckArguments& arguments) {
+  Scene scene = read_scene(arguments.scene);
   if (arguments.self) make_self(scene);
   return scene;
 }
@@ -130,13 +130,13 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
-      const Scene scene = read_scene(arguments);
+      const Scene scene = checked_scene(arguments);
       return write_check(arguments, scene,
                          check_with(arguments.certificate, std::move(of_distances), scene));
     }
     certificate = parse_certificate(text, name);
   }
-  const Scene scene = read_scene(arguments);
+  const Scene scene = checked_scene(arguments);
   return write_check(arguments, scene,
                      check_scene_with(clearance_of(arguments, certificate),
                                       clean_name(arguments.certificate), certificate, scene, list,

@@ -63,6 +63,28 @@ DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
 
 DeclaredCommand declared(const CLI::App& app) { return declared(app, ""); }
 
+namespace {
+
+// How the meshes of a scene are read. The options become words of the scene (scene_words()).
+void add_reading_options(CLI::App& command, std::vector<std::string>& scene) {
+  const auto weld = std::make_shared<std::string>(), format = std::make_shared<std::string>();
+  command
+      .add_option(
+          "--weld", *weld,
+          "merge vertices of a mesh that are at most T apart, in\nits units, or relative to "
+          "the diagonal of its box, as in\n1e-7*size")
+      ->type_name("T");
+  command
+      .add_option("--format", *format, "of the mesh SCENE -, standard input: obj, off, ply or stl")
+      ->type_name("F");
+  command.parse_complete_callback([weld, format, &command, &scene] {
+    if (command.count("--weld") > 0) scene.push_back("--weld=" + *weld);
+    if (command.count("--format") > 0) scene.push_back("--format=" + *format);
+  });
+}
+
+}  // namespace
+
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer) {
   CLI::App* command = parent.add_subcommand(name, title);
@@ -87,6 +109,9 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
         },
         row.value);
     if (option != nullptr) option->type_name(row.type)->required(row.need == Need::must);
+    if (row.name != std::string("SCENE")) continue;
+    if (auto* const scene = std::get_if<std::vector<std::string>*>(&row.value))
+      add_reading_options(*command, **scene);
   }
   command->footer("");  // else CLI11 appends the parent's footer to a function's text
   std::visit([&](const auto& text) { command->footer(text); }, footer);
@@ -215,6 +240,12 @@ void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
 }
 
+Scene read_scene(const std::vector<std::string>& arguments) {
+  Scene scene = load_scene(arguments);
+  for (const std::string& note : take_reading_notes()) complain(note);
+  return scene;
+}
+
 void complain_broken(const std::string& message) {
   const std::string line = "farcull: " + clean_name(message);
   std::fprintf(stderr, "%s\n", coloured(line, Colour::bad, STDERR_FILENO).c_str());
@@ -226,11 +257,11 @@ std::string command_with(const std::string& command, const std::vector<std::stri
   return out;
 }
 
-std::string nothing_note(const NothingToTest& nothing, const std::string& command) {
-  if (nothing.reason.empty()) return "";
-  const std::string line = "nothing to test: " + nothing.reason;
-  return coloured(line, Colour::doubtful, STDOUT_FILENO) + "\n" +
-         (nothing.with_self ? "this tests it: " + command + "\n" : "");
+void require_pairs(const NothingToTest& nothing, const std::string& command) {
+  if (nothing.reason.empty()) return;
+  throw Error("SCENE", "nothing to test: " + nothing.reason,
+              nothing.with_self ? "name two objects or more, or test this one: " + command
+                                : "name two objects or more");
 }
 
 Progress TerminalProgress::callback() {
@@ -277,6 +308,7 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
   };
   if (arguments.empty()) add_packaged();
   for (const std::string& argument : arguments) {
+    if (argument == "-" || argument.starts_with("--")) continue;  // no file
     if (is_builtin_scene(argument)) {
       if (needs_meshes(argument)) add_packaged();
     } else if (is_scene_file(argument)) {

@@ -196,12 +196,15 @@ OptionRow scene_row(std::vector<std::string>& scene);
 /// may hold.
 void complain(const std::string& message);
 
+/// load_scene(), and its notes (take_reading_notes()) as lines on standard error.
+Scene read_scene(const std::vector<std::string>& arguments);
+
 /// Prints the line of a broken guarantee likewise, in red on a terminal.
 void complain_broken(const std::string& message);
 
-/// Two lines for people: why nothing was tested, and the `command` that tests it. Empty if
-/// something was tested.
-std::string nothing_note(const NothingToTest& nothing, const std::string& command);
+/// Throws Error if there is nothing to test: 0 pairs would be taken for a scene without collisions.
+/// command: the one that tests an object against itself.
+void require_pairs(const NothingToTest& nothing, const std::string& command);
 /// The command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const std::vector<std::string>& scene);
 

@@ -64,18 +64,15 @@ int CompareCommand::run() const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = load_scene(arguments.scene);
+  Scene scene = read_scene(arguments.scene);
   if (arguments.self) make_self(scene);
+  require_pairs(nothing_to_test(scene),
+                command_with("farcull compare", arguments.scene) + " --self");
   const Comparison comparison = compare(scene, arguments, progress);
   terminal.clear();
   const std::vector<Record> records = comparison.median_records();
   if (outputs.json) write_json(to_json(scene, comparison), *outputs.json);
-  if (!outputs.to_stdout()) {
-    write_output("-",
-                 comparison_table(scene, records) +
-                     nothing_note(nothing_to_test(scene),
-                                  command_with("farcull compare", arguments_.scene) + " --self"));
-  }
+  if (!outputs.to_stdout()) write_output("-", comparison_table(scene, records));
   for (const Record& record : records) {
     if (!broken(record, false)) continue;
     complain_broken(missed(record));

@@ -8,6 +8,7 @@
 #include <cfloat>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -20,6 +21,7 @@
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
+#include "verify/inside.h"
 
 namespace farcull {
 namespace {
@@ -178,7 +180,7 @@ int run_diagram(const std::vector<std::string>& words, const DiagramOptions& opt
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  const Scene scene = load_scene(words);
+  const Scene scene = read_scene(words);
   require_nothing_ignored(scene, "farcull distance");
   const std::string nothing = nothing_asked(scene, {.pairs = DistancePairs::nearest});
   if (!nothing.empty()) throw Error("SCENE", nothing, "name two objects or more");
@@ -316,11 +318,23 @@ int DistanceCommand::run() const {
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
+// The objects of answers for which it is not known what lies inside.
+std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
+  std::set<std::uint32_t> found;
+  for (const Distance& d : record.distances) {
+    if (d.inside != WhichInside::not_closed) continue;
+    for (const std::uint32_t o : {d.objects.a, d.objects.b}) {
+      if (!is_closed(scene, o)) found.insert(o);
+    }
+  }
+  return {found.begin(), found.end()};
+}
+
 int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& outputs) const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = load_scene(scene_);
+  Scene scene = read_scene(scene_);
   if (self_) make_self(scene);
   require_question(scene, options);
   const DistanceRecord record = distances(scene, options, progress);
@@ -329,7 +343,9 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
   if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_)), *outputs.json);
   if (outputs.certificate)
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
-  if (!outputs.to_stdout()) write_output("-", distances_table(scene, record));
+  if (!outputs.to_stdout())
+    write_output("-",
+                 distances_table(scene, record) + weld_lines(scene, not_closed(scene, record)));
   if (!record.verification || record.verification->holds()) return kExitDone;
   complain_broken(verdict_text(*record.verification));
   return kExitBroken;

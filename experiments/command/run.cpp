@@ -1,4 +1,5 @@
 // Reads the options of `farcull run`, `verify` and `plan`, then plans or runs.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -116,6 +117,9 @@ class RunCommand {
   void refuse_outputs() const;
   PairColumns columns() const;
   std::vector<IgnoredNames> ignored() const;
+  bool leaves_out() const { return options_.has("only") || !ignored().empty(); }
+  // The pairs of objects that are not tested: those of --ignore, and all but those of --only.
+  std::vector<ObjectPair> left_out(const Scene& scene, Lacking lacking = Lacking::refused) const;
   // The files that the command reads, which no output may overwrite.
   std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const;
   // The command line that tests a scene of one object, with --self.
@@ -215,7 +219,7 @@ void RunCommand::refuse_outputs() const {
     throw Error(option, "a certificate is about all colliding pairs of all objects",
                 "leave " + option + " or --certificate out");
   };
-  for (const char* name : {"ignore", "ignore_file", "limit"})
+  for (const char* name : {"ignore", "ignore_file", "only", "limit"})
     refuse(option_word(name), options_.has(name));
 }
 
@@ -233,6 +237,27 @@ std::vector<IgnoredNames> RunCommand::ignored() const {
     for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
   }
   return out;
+}
+
+std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking) const {
+  std::vector<ObjectPair> out = ignored_objects(scene, ignored(), lacking);
+  const Text& only = options_.text("only");
+  if (!only) return out;
+  std::vector<IgnoredNames> names = parse_ignored(*only);
+  for (IgnoredNames& one : names) one.where = "--only";
+  const std::vector<ObjectPair> asked = ignored_objects(scene, names, lacking);
+  constexpr std::size_t kMostObjects = 5000;  // so that the list stays below 100 MB
+  if (scene.objects.size() > kMostObjects) {
+    throw Error("--only", fmt::format("is given for {} objects", scene.objects.size()),
+                fmt::format("give a scene of at most {}, or --ignore", kMostObjects));
+  }
+  const auto count = static_cast<std::uint32_t>(scene.objects.size());
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      if (!std::ranges::binary_search(asked, ObjectPair{a, b})) out.push_back({a, b});
+    }
+  }
+  return in_order(std::move(out));
 }
 
 std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& range) const {
@@ -273,10 +298,11 @@ int RunCommand::run() const {
 
 int RunCommand::plan(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, read_files());
-  Scene scene = load_scene(scene_);
+  Scene scene = read_scene(scene_);
   if (options_.has("self")) make_self(scene);
+  require_pairs(nothing_to_test(scene), with_self());
   RunOptions all = options;
-  all.ignored = ignored_objects(scene, ignored());
+  all.ignored = left_out(scene);
   const Plan planned = farcull::plan(scene, all);
   const MissOutlook outlook = look_ahead(scene, planned);
   if (outputs.json) {
@@ -291,8 +317,7 @@ int RunCommand::plan(const RunOptions& options) const {
     write_json(json, *outputs.json);
   }
   if (!outputs.to_stdout()) {
-    write_output("-", plan_table(scene, planned) + outlook_line(outlook) +
-                          nothing_note(nothing_to_test(scene), with_self()));
+    write_output("-", plan_table(scene, planned) + outlook_line(outlook));
   }
   return kExitDone;
 }
@@ -301,11 +326,12 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = load_scene(scene_);
+  Scene scene = read_scene(scene_);
   if (options_.has("self")) make_self(scene);
+  require_pairs(nothing_to_test(scene), with_self());
   if (outputs.certificate) require_nothing_ignored(scene, "a certificate");
   RunOptions all = options;
-  all.ignored = ignored_objects(scene, ignored());
+  all.ignored = left_out(scene);
   Session session(options.device);
   const Record record = farcull::run(scene, all, session, progress);
   terminal.clear();
@@ -318,10 +344,10 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   }
   if (outputs.json) write_json(to_json(scene, record), *outputs.json);
   if (!outputs.to_stdout()) {
-    const NothingToTest nothing = nothing_to_test(scene);
     std::string verdict;
-    if (record.verification && nothing.reason.empty()) verdict = verdict_line(*record.verification);
-    write_output("-", run_table(scene, record, verdict) + nothing_note(nothing, with_self()));
+    if (record.verification) verdict = verdict_line(*record.verification);
+    write_output("-", run_table(scene, record, verdict) + nested_line(scene, record) +
+                          weld_lines(scene, meeting_themselves(scene, record)));
   }
   if (!broken(record, kind_ == Kind::verify)) return kExitDone;
   complain_broken(missed(record));
@@ -339,9 +365,9 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .pairs = outputs.pairs.has_value(),
                           .columns = columns(),
                           .certificates = outputs.certificate.has_value()};
-  if (const std::vector<IgnoredNames> names = ignored(); !names.empty()) {
-    question.ignored = [names, lacking = Lacking::refused](const Scene& scene) mutable {
-      return ignored_objects(scene, names, std::exchange(lacking, Lacking::passed_over));
+  if (leaves_out()) {
+    question.ignored = [this, lacking = Lacking::refused](const Scene& scene) mutable {
+      return left_out(scene, std::exchange(lacking, Lacking::passed_over));
     };
   }
   if (progress) progress("reading the scene");
@@ -367,11 +393,11 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   terminal.clear();
   if (json) json->finish();
   if (pairs) pairs->finish();
+  require_pairs(result.nothing, with_self());
   if (!outputs.to_stdout()) {
     std::string end = result.table;
-    if (kind_ == Kind::verify && result.nothing.reason.empty())
-      end += verdict_line(result.sum) + accounting_sum(result.sum);
-    write_output("-", end + nothing_note(result.nothing, with_self()));
+    if (kind_ == Kind::verify) end += verdict_line(result.sum) + accounting_sum(result.sum);
+    write_output("-", end);
   }
   if (result.broken.empty()) return kExitDone;
   complain_broken(result.broken);
@@ -412,13 +438,13 @@ int RunCommand::run_tile(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, read_files());
   const PairColumns chosen = columns();
   if (outputs.pairs && outputs.json) require_text("--pairs", *outputs.pairs);
-  if (const std::vector<IgnoredNames> names = ignored(); !names.empty())
-    question.ignored = [names](const Scene& scene) { return ignored_objects(scene, names); };
+  if (leaves_out()) question.ignored = [this](const Scene& scene) { return left_out(scene); };
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   Session session(options.device);
   const TileRun tile = farcull::run_tile(source(), question, session, progress);
   terminal.clear();
+  require_pairs(nothing_to_test(tile.census), with_self());
   std::optional<TileList> list;
   if (outputs.pairs) {
     list = TileList{.text = tile_list(tile, chosen), .file = {}, .columns = chosen};
@@ -429,8 +455,7 @@ int RunCommand::run_tile(const RunOptions& options) const {
   }
   if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
   if (!outputs.to_stdout())
-    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile) +
-                          nothing_note(nothing_to_test(tile.census), with_self()));
+    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile));
   if (!broken(tile.record, false)) return kExitDone;
   complain_broken(missed(tile.record));
   return kExitBroken;
@@ -442,10 +467,8 @@ int RunCommand::plan_tiles(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, read_files());
   TerminalProgress terminal;
   if (const Progress progress = terminal.callback()) progress("reading the scene");
-  const std::vector<IgnoredNames> names = ignored();
-  const Census census = take_census(source(), options.clearance, !names.empty());
-  if (!names.empty())
-    ignored_objects(names_of(census), names);  // throws if a name matches no object
+  const Census census = take_census(source(), options.clearance, leaves_out());
+  if (leaves_out()) left_out(names_of(census));  // throws if a name matches no object
   const Cuts cuts = choose_cuts(census, tiles);
   const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
   terminal.clear();

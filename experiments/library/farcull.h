@@ -64,10 +64,12 @@ struct ColliderOptions {
 
 /// Triangles, as flat arrays of the caller. The library does not refer to them after the call.
 struct ColliderInput {
-  std::span<const double> vertices;              // x, y, z of each vertex; finite
+  std::span<const double> vertices;              // x, y, z of each vertex; finite if a triangle
+                                                 // uses it
   std::span<const std::uint32_t> triangles;      // three indices of vertices for each triangle
-  std::span<const std::uint32_t> object_starts;  // the first triangle of each object: ascending,
-                                                 // the first is 0; empty: all are one object
+  std::span<const std::uint32_t> object_starts;  // the first triangle of each object, no label for
+                                                 // each triangle: 0, then rising, so that each has
+                                                 // a triangle; empty: all are one object
   std::span<const std::int64_t> wide_triangles = {};  // the indices as 64-bit numbers, in place of
                                                       // `triangles`, which is then empty
 };
@@ -130,8 +132,9 @@ struct ColliderReport {
   std::uint64_t candidates = 0;  // without those of ignored objects
   std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` if the
                               // limit was reached first
-  std::uint64_t neighbours = 0;  // decided candidates that are neighbours, colliding or not
-  double contacts_ms = 0;        // wall clock of the kinds of contact
+  std::uint64_t neighbours = 0;   // decided candidates that are neighbours, colliding or not
+  double contacts_ms = 0;         // wall clock of the kinds of contact
+  std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   std::vector<View> views;
   std::vector<Stage> stages;
 
@@ -172,11 +175,13 @@ class Collider {
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// Throws ColliderError for input that is not as ColliderInput says, for a self_objects that does
-  /// not have one value for each object, for ignored objects that the input does not have, and for
-  /// any fault of the device; std::bad_alloc if memory runs out. The object can be used again after
-  /// each of these. The calling thread may round in any direction and flush subnormals: the call
-  /// sets its floating-point environment (rounding, flushing, traps) and restores it at the end.
+  /// Throws ColliderError for input that is not as ColliderInput says, for input in which there is
+  /// nothing to test (one object without `self`, or fewer than two triangles), for a self_objects
+  /// that does not have one value for each object, for ignored objects that the input does not
+  /// have, and for any fault of the device; std::bad_alloc if memory runs out. The object can be
+  /// used again after each of these. The calling thread may round in any direction and flush
+  /// subnormals: the call sets its floating-point environment (rounding, flushing, traps) and
+  /// restores it at the end.
   ColliderResult find(const ColliderInput& input);
 
  private:
@@ -278,8 +283,8 @@ class DistanceFinder {
   DistanceFinder(DistanceFinder&&) noexcept;
   DistanceFinder& operator=(DistanceFinder&&) noexcept;
 
-  /// The answers, sorted by objects, then by triangles. There is no answer about an object without
-  /// triangles. Throws ColliderError for input that is not as ColliderInput says, for a
+  /// The answers, sorted by objects, then by triangles. Throws ColliderError for input that is not
+  /// as ColliderInput says or has nothing to ask about, as Collider::find(), for a
   /// self_objects that does not have one value for each object, if `all` has more than 4,194,304
   /// answers, and if `objects` has more pairs of objects than that (four times as many if `within`
   /// is finite); std::bad_alloc if memory runs out. Sets and restores the floating-point

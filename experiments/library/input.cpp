@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"
+#include "experiments/method/distances.h"
 
 namespace farcull {
 namespace {
@@ -72,8 +73,11 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
 // Checks the copies, not the input: another thread of the caller may change the input meanwhile,
 // but the numbers in the scene have to be right. What was in `to` was checked before, so what is
 // equal to it needs no check: most of a scene is often as it was in the last call.
+// A vertex that is not finite becomes 0, 0, 0, and is named in `bad`: no triangle may use it. So it
+// differs from what is there in every call.
 // change: receives the vertices that differ from those before; may be null.
-void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change) {
+void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change,
+                   std::vector<std::uint32_t>& bad) {
   const std::size_t before = 3 * to.size();
   to.resize(from.size() / 3);
   if (from.empty()) return;
@@ -89,11 +93,26 @@ void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameCha
       append_moved(block.data(), copies + begin, size, begin / 3, change->vertices);
     std::memcpy(copies + begin, block.data(), bytes);
     if (all_finite({copies + begin, copies + end})) continue;
-    std::size_t k = begin;
-    while (std::isfinite(copies[k])) ++k;
-    throw Error("vertices", "vertex " + std::to_string(k / 3) + " is not finite",
-                "give finite coordinates");
+    for (std::size_t k = begin; k < end; k += 3) {
+      if (all_finite({copies + k, copies + k + 3})) continue;
+      bad.push_back(static_cast<std::uint32_t>(k / 3));
+      std::fill(copies + k, copies + k + 3, 0.0);
+    }
   }
+}
+
+// bad: ascending vertices that are not finite.
+void require_unused(const std::vector<std::uint32_t>& bad, const Scene& scene) {
+  if (bad.empty()) return;
+  std::vector<bool> is_bad(scene.vertices.size());
+  for (const std::uint32_t v : bad) is_bad[v] = true;
+  std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+  for (const auto& triangle : scene.triangles) {
+    for (const std::uint32_t v : triangle) first = is_bad[v] ? std::min(first, v) : first;
+  }
+  if (first == std::numeric_limits<std::uint32_t>::max()) return;
+  throw Error("vertices", "vertex " + std::to_string(first) + " is not finite",
+              "give finite coordinates to each vertex that a triangle uses");
 }
 
 // checked: what was in `to` has indices below `vertices`. Returns whether nothing changed.
@@ -133,8 +152,32 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
+// Each object has a triangle at least. So a label for each triangle, as in 0, 0, 1, 1, can never be
+// taken for the first triangles of objects, most of which would have no triangles then.
+void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
+  for (std::size_t o = 0; o < starts.size(); ++o) {
+    const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];
+    if (rises && starts[o] < triangles) continue;
+    std::string reason = "object " + std::to_string(o) + " starts at triangle " +
+                         std::to_string(starts[o]) + " of " + std::to_string(triangles);
+    if (!rises && o > 0) reason += ", and the object before it at " + std::to_string(starts[o - 1]);
+    throw Error("object_starts", reason,
+                "give the first triangle of each object: 0, then rising numbers below the number "
+                "of triangles. A label for each triangle is no list of starts: sort the triangles "
+                "by label and give where each label begins (Python: give labels=)");
+  }
+}
+
+// Without a pair to test, an empty answer would be taken for a scene without collisions.
+void require_pairs(const Scene& scene) {
+  if (const std::string reason = nothing_asked(scene, {}); !reason.empty())
+    throw Error("object_starts", reason + ", so there is nothing to test",
+                "give the first triangle of each of two objects or more, or test the object "
+                "against itself with self");
+}
+
 void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change) {
+          Scene& scene, FrameChange* change, bool asked, std::uint64_t* passed_over) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (input.vertices.size() % 3 != 0 || input.vertices.size() / 3 > kMost)
     throw Error("vertices", "are not three doubles for each of at most 2^32 - 1 vertices",
@@ -148,12 +191,15 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
   const auto count = static_cast<std::uint32_t>(indices / 3);
   const std::size_t vertices = input.vertices.size() / 3;
   bool same = scene.vertices.size() == vertices;
-  copy_vertices(input.vertices, scene.vertices, change);
+  std::vector<std::uint32_t> bad;
+  copy_vertices(input.vertices, scene.vertices, change, bad);
   if (input.wide_triangles.empty()) {
     same = copy_triangles(input.triangles, vertices, same, scene.triangles) && same;
   } else {
     same = copy_triangles(input.wide_triangles, vertices, same, scene.triangles) && same;
   }
+  require_unused(bad, scene);
+  if (passed_over != nullptr) *passed_over = bad.size();
   scene.source_face.resize(count);
   const std::size_t objects = std::max<std::size_t>(input.object_starts.size(), 1);
   if (!self_objects.empty() && self_objects.size() != objects) {
@@ -162,18 +208,12 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
                     " objects",
                 "give one for each object, or none");
   }
+  require_starts(input.object_starts, count);
   same = same && scene.objects.size() == objects;
   scene.objects.resize(objects);
   for (std::size_t o = 0; o < objects; ++o) {
     const std::uint32_t first = input.object_starts.empty() ? 0 : input.object_starts[o];
     const std::uint32_t end = o + 1 < objects ? input.object_starts[o + 1] : count;
-    if ((o == 0 && first != 0) || first > end) {
-      throw Error("object_starts",
-                  "object " + std::to_string(o) + " starts at triangle " + std::to_string(first) +
-                      " and ends before " + std::to_string(end),
-                  "begin with 0, and let no start be below the one before it or beyond the number "
-                  "of triangles");
-    }
     Object& object = scene.objects[o];
     const bool of_self = self || (!self_objects.empty() && self_objects[o]);
     same = same && object.first_triangle == first && object.triangle_count == end - first &&
@@ -182,15 +222,16 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
     object.triangle_count = end - first;
     object.self = of_self;
   }
+  if (asked) require_pairs(scene);
   if (change) change->same = same;
 }
 
 }  // namespace
 
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change) {
+          Scene& scene, FrameChange* change, bool asked, std::uint64_t* passed_over) {
   try {
-    copy(input, self, self_objects, scene, change);
+    copy(input, self, self_objects, scene, change, asked, passed_over);
   } catch (...) {
     scene.vertices.clear();  // nothing that was not checked stays there
     scene.triangles.clear();

@@ -57,10 +57,13 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// Copies the input into `scene`, which holds the scene of the last call, and reuses its memory.
 /// self: every object is tested against itself; self_objects: the same for each object, empty or
-/// one for each. change: receives what is new since the last call; may be null. Throws Error for
-/// input that is not as ColliderInput says, and leaves the scene empty then.
+/// one for each. change: receives what is new since the last call; may be null. asked: a scene in
+/// which there is nothing to test is an error. passed_over: receives the number of vertices that
+/// are not finite and that no triangle uses; may be null. Throws Error for input that is not as
+/// ColliderInput says, and leaves the scene empty then.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change = nullptr);
+          Scene& scene, FrameChange* change = nullptr, bool asked = true,
+          std::uint64_t* passed_over = nullptr);
 
 /// Throws Error naming an option that is bad for any input.
 void check(const ColliderOptions& options);

@@ -64,7 +64,7 @@ struct Collider::State {
   Session session;
   Scene scene;  // of the last call
   FrameChange change;
-  std::uint64_t calls = 0;
+  std::uint64_t calls = 0, passed_over = 0;
   std::atomic_flag used;
 
   explicit State(const ColliderOptions& given)
@@ -116,7 +116,8 @@ void Collider::State::take_scene(const ColliderInput& input) {
   const PairMemory* const memory = session.pair_memory();
   const bool compares = memory && !memory->moved.waits();
   change = {};
-  take(input, options.self, options.self_objects, scene, compares ? &change : nullptr);
+  take(input, options.self, options.self_objects, scene, compares ? &change : nullptr, true,
+       &passed_over);
 }
 
 ColliderResult Collider::State::find(const Stopwatch& start) {
@@ -131,6 +132,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   report.candidates = record.found.count;
   report.decided = record.decided;
   report.neighbours = record.collisions.neighbours;
+  report.passed_over = passed_over;
   report.exact_ms = record.ms.exact;
   report.contacts_ms = record.ms.contacts;
   out.pairs = given_out(record.collisions.pairs);
@@ -329,9 +331,8 @@ DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
 std::vector<DistanceAnswer> DistanceFinder::find(const ColliderInput& input) {
   return exclusive(state_, "DistanceFinder", [&](State& state) {
     take(input, state.given.self, state.given.self_objects, state.scene);
-    std::vector<DistanceAnswer> out;
-    if (!nothing_asked(state.scene, state.options).empty()) return out;
     const DistanceRecord record = distances(state.scene, state.options, {}, &state.memory);
+    std::vector<DistanceAnswer> out;
     out.reserve(record.distances.size());
     for (const Distance& d : record.distances) out.push_back(given_out(d));
     return out;

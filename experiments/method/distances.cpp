@@ -23,7 +23,8 @@ namespace {
 
 // A *part* of an object is a connected component of its triangles, joined where they share a vertex
 // position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
-// path between two of them never crosses the mesh, and parity changes only at a crossing. So one
+// path between two of them never crosses the mesh, and the winding number and the parity change
+// only at a crossing. So one
 // vertex of each part decides. Whatever lies inside a closed mesh also lies in the mesh's box, so
 // boxes settle most pairs.
 Box box_of(const Scene& scene, const Object& object) {
@@ -75,7 +76,7 @@ std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
 struct Insides::OfObject {
   Box box;
   std::once_flag closed_found, parts_found;
-  bool closed = false;
+  Surface surface = Surface::open;
   std::vector<Vec3> parts;
 };
 
@@ -91,15 +92,15 @@ bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_close
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
   if (!lies_within(in.box, out.box)) return false;
-  std::call_once(out.closed_found, [&] { out.closed = is_closed(scene_, outer); });
-  if (!out.closed) {
+  std::call_once(out.closed_found, [&] { out.surface = surface_of(scene_, outer); });
+  if (out.surface == Surface::open) {
     not_closed = true;
     return false;
   }
   std::call_once(in.parts_found,
                  [&] { in.parts = point_of_each_part(scene_, scene_.objects[inner]); });
   return std::ranges::all_of(in.parts, [&](const Vec3& point) {
-    const Inside answer = inside(scene_, outer, point, true);
+    const Inside answer = inside(scene_, outer, point, out.surface);
     if (answer == Inside::on) throw std::logic_error("which_inside: the objects meet");
     return answer == Inside::yes;
   });
@@ -420,7 +421,8 @@ std::string nothing_asked(const Scene& scene, const DistanceOptions& options) {
     if (itself && object.triangle_count > 1) return "";
   }
   if (with_triangles > 1) return "";
-  return with_triangles == 1 ? "only one object has triangles" : "no object has triangles";
+  if (scene.triangles.size() < 2) return "there are fewer than two triangles";
+  return "only one object has triangles, and it is not tested against itself";
 }
 
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record) {

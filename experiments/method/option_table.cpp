@@ -385,6 +385,11 @@ const Option kOptions[] = {
      .type = "FILE",
      .help = "the same, a pair a line; # begins a comment",
      .serves = any},
+    {.name = "only",
+     .type = "LIST",
+     .help = "only these pairs of objects are tested against each\n"
+             "other, as in a:b,link*:gripper",
+     .serves = any},
     {.name = "limit",
      .type = "N",
      .help = "only the first N colliding pairs, in the order of\n"

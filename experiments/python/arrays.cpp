@@ -196,14 +196,15 @@ std::span<const std::int64_t> Rows::wide() const {
 }
 
 Given::Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts)
-    : vertices_(vertices, "vertices", false), triangles_(triangles, "triangles", true) {
+    : vertices_(vertices, "V", false), triangles_(triangles, "F", true) {
   const auto starts = py::array_t<std::int64_t, py::array::c_style>::ensure(object_starts);
   if (!starts || starts.ndim() != 1)
-    refuse("objects", "are no array of one dimension", "give the first triangle of each object");
+    refuse("object_starts", "are no array of one dimension",
+           "give the first triangle of each object");
   for (py::ssize_t k = 0; k < starts.size(); ++k) {
     const std::int64_t first = starts.at(k);
     if (first < 0 || first > std::numeric_limits<std::uint32_t>::max()) {
-      refuse("objects",
+      refuse("object_starts",
              "object " + std::to_string(k) + " starts at triangle " + std::to_string(first),
              "give the first triangle of each object, ascending from 0");
     }

@@ -40,6 +40,7 @@ py::dict report_of(const ColliderReport& report) {
                   "candidates_ms"_a = report.candidates_ms, "exact_ms"_a = report.exact_ms,
                   "candidates"_a = report.candidates, "neighbours"_a = report.neighbours,
                   "decided"_a = report.decided, "contacts_ms"_a = report.contacts_ms,
+                  "passed_over"_a = report.passed_over,
                   "callers_arithmetic"_a = report.callers_arithmetic, "views"_a = std::move(views),
                   "stages"_a = std::move(stages));
 }

@@ -118,24 +118,28 @@ std::string as_parameters(const std::string& text) {
 
 // Whether an error of the library names a parameter of the caller.
 bool is_parameter(std::string_view where) {
-  constexpr std::array<std::string_view, 14> kNames = {
-      "vertices",  "triangles",  "object_starts", "self_objects", "threads",
-      "clearance", "resolution", "views",         "neighbours",   "kind",
-      "within",    "k",          "ignore",        "limit"};
+  constexpr std::array<std::string_view, 16> kNames = {
+      "V",       "F",         "vertices", "triangles",  "object_starts", "self_objects",
+      "threads", "clearance", "views",    "resolution", "neighbours",    "kind",
+      "within",  "k",         "ignore",   "limit"};
   return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
 }
 
 // The Python names of the library's parameters.
 std::string parameter_of(const std::string& where) {
-  if (where == "object_starts") return "objects";
   if (where == "self_objects") return "self";
+  if (where == "vertices") return "V";
+  if (where == "triangles") return "F";
   return where;
 }
 
 void set(const std::string& where, const std::string& reason, const std::string& remedy,
          bool input) {
-  const py::object type =
-      py::module_::import("farcull._errors").attr(input ? "InputError" : "Error");
+  const bool missing = reason == "the file does not exist";
+  const py::object type = py::module_::import("farcull._errors")
+                              .attr(missing ? "MissingFileError"
+                                    : input ? "InputError"
+                                            : "Error");
   const py::object made = type(where, reason, remedy);
   PyErr_SetObject(type.ptr(), made.ptr());
 }

@@ -40,7 +40,7 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   return answer_beside([&] {
     Scene scene;
     Copies copies;
-    take(given.input(copies), self, self_objects, scene);
+    take(given.input(copies), self, self_objects, scene, nullptr, false);
     scene.name = name;
     if (!names.empty() && names.size() != scene.objects.size()) {
       throw Error("names",
@@ -134,7 +134,7 @@ void add_scenes(py::module_& module) {
       .def_property_readonly("name", [](const KeptScene& k) { return k.scene->name; })
       .def_property_readonly("vertices", rows(&Scene::vertices))
       .def_property_readonly("triangles", rows(&Scene::triangles))
-      .def_property_readonly("objects", &object_starts)
+      .def_property_readonly("object_starts", &object_starts)
       .def_property_readonly("ignored",
                              [](const KeptScene& k) { return pair_array(k.scene->ignored); })
       .def("pairs_named", &pairs_named)
@@ -142,6 +142,11 @@ void add_scenes(py::module_& module) {
       .def_property_readonly("self", each(&Object::self));
   module.def("scene_of_arrays", &from_arrays);
   module.def("scene_of_names", &from_names);
+  module.def("take_reading_notes", [] {
+    py::list out;
+    for (const std::string& note : take_reading_notes()) out.append(note);
+    return out;
+  });
   module.def("builtin_scenes", [] {
     py::list out;
     for (const BuiltinScene& scene : builtin_scenes()) out.append(scene.name);
@@ -190,10 +195,19 @@ RunOptions options_of(const GivenOptions& given, const Ignored& ignore, std::uin
   return read_options(given, out);
 }
 
+void require_pairs(const Scene& scene) {
+  const NothingToTest nothing = nothing_to_test(scene);
+  if (nothing.reason.empty()) return;
+  throw Error("scene", "nothing to test: " + nothing.reason,
+              nothing.with_self ? "make the scene with self=True, or of two objects or more"
+                                : "make it of two objects or more");
+}
+
 KeptRecord run_of(const KeptScene& kept, const GivenOptions& given, bool verify, unsigned threads,
                   bool kinds, const Ignored& ignore, std::uint64_t limit) {
   return answer_beside([&] {
     const RunOptions options = options_of(given, ignore, limit, verify, kinds);
+    require_pairs(*kept.scene);
     Session session(options.device, threads, Say());
     return KeptRecord{kept.scene, run(*kept.scene, options, session, stopping_progress())};
   });
@@ -230,6 +244,7 @@ py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned thr
                   const Ignored& ignore, std::uint64_t limit) {
   const auto [json, table] = answer_beside([&] {
     const RunOptions options = options_of(given, ignore, limit);
+    require_pairs(*kept.scene);
     const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
     return std::pair(plan_json(*kept.scene, planned).dump(), plan_table(*kept.scene, planned));
   });

@@ -1,12 +1,15 @@
 """`pip install --no-build-isolation ./experiments/python`: builds the module with CMake.
 
-FARCULL_BUILD names a build folder of farcull to use; default build-python beside the sources.
-CMAKE_ARGS: more arguments for CMake.
+FARCULL_BUILD names a build folder of farcull to use, from where pip was called or from the top of the
+sources; default build-python there. CMAKE_ARGS: more arguments for CMake. `pip install -v` shows the
+progress.
 """
 
 import os
 import pathlib
+import re
 import shlex
+import shutil
 import subprocess
 import sys
 
@@ -17,6 +20,22 @@ from setuptools.dist import Distribution
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
+VERSION = re.search(
+    '__version__ = "(.*)"', (ROOT / "experiments/python/farcull/__init__.py").read_text()
+).group(1)
+
+
+def build_folder():
+    named = os.environ.get("FARCULL_BUILD")
+    if not named:
+        return ROOT / "build-python"
+    # pip changes into the folder of this file, and leaves the caller's in PWD.
+    for base in (pathlib.Path(os.environ.get("PWD", ".")), ROOT, pathlib.Path.cwd()):
+        if (base / named / "CMakeCache.txt").exists():
+            return base / named
+    raise SystemExit(f"farcull: FARCULL_BUILD={named} is no build folder; give its whole path")
+
+
 class Build(build_py):
     """Puts the compiled module beside the files of the package."""
 
@@ -24,17 +43,19 @@ class Build(build_py):
         super().run()
         if not (ROOT / "core").is_dir():
             raise SystemExit("farcull: the sources are not here; install from a checkout of farcull")
-        folder = pathlib.Path(os.environ.get("FARCULL_BUILD", ROOT / "build-python"))
+        folder = build_folder()
         configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-DFARCULL_PYTHON=ON"]
         if not (folder / "CMakeCache.txt").exists():
             configure += [
                 "-DFARCULL_TESTS=OFF",
                 f"-DPython3_EXECUTABLE={sys.executable}",
+                *(["-GNinja"] if shutil.which("ninja") else []),
                 *shlex.split(os.environ.get("CMAKE_ARGS", "")),
             ]
             subprocess.run(configure, check=True)
+        jobs = str(len(os.sched_getaffinity(0)))
         subprocess.run(
-            ["cmake", "--build", str(folder), "--target", "farcull_python"], check=True
+            ["cmake", "--build", str(folder), "--target", "farcull_python", "-j", jobs], check=True
         )
         built = list((folder / "python" / "farcull").glob("_farcull.*.so"))
         if len(built) != 1:
@@ -53,7 +74,7 @@ class Compiled(Distribution):
 
 setup(
     name="farcull",
-    version="0.1",
+    version=VERSION,
     description="Collision culling that never misses",
     packages=["farcull"],
     package_data={"farcull": ["py.typed", "*.pyi"]},

@@ -56,6 +56,17 @@ std::string stage_table(const std::vector<Stage>& stages);
 /// the first. The accounting is at the end; `verdict`, lines of the caller, comes before it.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
+/// The objects of which two triangles collide with each other, ascending.
+std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
+
+/// Lines about these objects that are not closed, and that --weld would close: at which tolerance,
+/// and where; at most three. Empty for objects of more than 4 million triangles together.
+std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
+
+/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
+/// surfaces do not meet. Empty if there are none, or more than a million pairs of boxes to look at.
+std::string nested_line(const Scene& scene, const Record& record);
+
 /// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was
 /// culled, 26,214,400 pairs accounted for".
 std::string verdict_text(const Accounting& accounting);

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -21,6 +22,7 @@
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/mesh/weld.h"
 
 namespace farcull {
 namespace {
@@ -144,7 +146,7 @@ class SceneFile {
     const json& objects = root["objects"];
     require(objects.is_array(), "objects", "must be an array", form);
     require(!objects.empty(), "objects", "is empty", form);
-    SceneBuilder builder(clean_name(name), path_);
+    SceneBuilder builder(clean_name(name) + meshes_.note(), path_);
     for (std::size_t i = 0; i < objects.size(); ++i) {
       add_object(objects[i], fmt::format("objects[{}]", i), builder);
       if (added) added(builder);
@@ -174,7 +176,8 @@ class SceneFile {
  private:
   void add_object(const json& object, const std::string& place, SceneBuilder& builder) const {
     require(object.is_object(), place, "must be a JSON object", "write {\"mesh\": FILE}");
-    check_keys(object, place, {"name", "mesh", "scale", "rotate", "translate", "split", "self"});
+    check_keys(object, place,
+               {"name", "mesh", "matrix", "scale", "rotate", "translate", "split", "self"});
     require(object.contains("mesh"), place + ".mesh", "is missing", "name a mesh file");
     const std::string mesh = text(object["mesh"], place + ".mesh");
     require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
@@ -194,6 +197,13 @@ class SceneFile {
 
   Placement read_placement(const json& object, const std::string& place) const {
     Placement placement;
+    if (object.contains("matrix")) {
+      for (const char* other : {"scale", "rotate", "translate"}) {
+        require(!object.contains(other), place + "." + other, "stands beside a matrix",
+                "give the matrix alone, or scale, rotate and translate");
+      }
+      placement.matrix = read_matrix(object["matrix"], place + ".matrix");
+    }
     if (object.contains("scale")) {
       const json& scale = object["scale"];
       const std::string at = place + ".scale";
@@ -208,17 +218,58 @@ class SceneFile {
       const std::string at = place + ".rotate";
       const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
       require(rotate.is_object(), at, "must be a JSON object", form);
-      check_keys(rotate, at, {"axis", "angle"});
-      require(rotate.contains("axis"), at + ".axis", "is missing", form);
-      require(rotate.contains("angle"), at + ".angle", "is missing", form);
-      placement.rotate = Placement::Rotation{vec3(rotate["axis"], at + ".axis"),
-                                             number(rotate["angle"], at + ".angle")};
-      require((placement.rotate->axis.array() != 0).any(), at + ".axis", "is the zero vector",
-              "give a direction of any length");
+      if (rotate.contains("quaternion")) {
+        check_keys(rotate, at, {"quaternion"});
+        const json& q = rotate["quaternion"];
+        const std::string of = at + ".quaternion", four = "write [X, Y, Z, W], not all of them 0";
+        require(q.is_array() && q.size() == 4, of, "must be an array of 4 numbers", four);
+        std::array<double, 4> values{};
+        for (std::size_t i = 0; i < 4; ++i) values[i] = number(q[i], fmt::format("{}[{}]", of, i));
+        require(values != std::array<double, 4>{}, of, "is 0", four);
+        placement.rotate = Placement::Rotation{.quaternion = values};
+      } else {
+        placement.rotate = read_rotation(rotate, at);
+      }
     }
     if (object.contains("translate"))
       placement.translate = vec3(object["translate"], place + ".translate");
     return placement;
+  }
+
+  Placement::Rotation read_rotation(const json& rotate, const std::string& at) const {
+    const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
+    check_keys(rotate, at, {"axis", "angle"});
+    require(rotate.contains("axis"), at + ".axis", "is missing", form);
+    require(rotate.contains("angle"), at + ".angle", "is missing", form);
+    const Placement::Rotation out{.axis = vec3(rotate["axis"], at + ".axis"),
+                                  .angle = number(rotate["angle"], at + ".angle")};
+    require((out.axis.array() != 0).any(), at + ".axis", "is the zero vector",
+            "give a direction of any length");
+    return out;
+  }
+
+  // The upper three rows of a matrix of 4 x 4 numbers, row by row.
+  std::array<std::array<double, 4>, 3> read_matrix(const json& value,
+                                                   const std::string& place) const {
+    const std::string form =
+        "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
+    require(value.is_array() && value.size() == 4, place, "must be an array of 4 rows", form);
+    std::array<std::array<double, 4>, 3> out{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::string row = fmt::format("{}[{}]", place, i);
+      require(value[i].is_array() && value[i].size() == 4, row, "must be an array of 4 numbers",
+              form);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double x = number(value[i][k], fmt::format("{}[{}]", row, k));
+        if (i < 3) out[i][k] = x;
+        require(i < 3 || x == (k == 3 ? 1 : 0), row, "must be [0, 0, 0, 1]", form);
+      }
+    }
+    for (const std::array<double, 4>& row : out) {
+      require(row[0] != 0 || row[1] != 0 || row[2] != 0, place,
+              "has a row of zeros, which leaves no mesh", form);
+    }
+    return out;
   }
 
   Split read_split(const json& value, const std::string& place) const {
@@ -328,8 +379,8 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
 // Memory for the meshes that a streamed scene file keeps.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
-std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& take) {
-  MeshCache meshes;
+std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
+                                    const TakePart& take) {
   // Size of the parts since the cache was emptied: an upper bound on the size of its meshes.
   std::size_t bytes = 0;
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
@@ -343,7 +394,7 @@ std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& tak
     }
     bytes += part.vertices.size() * sizeof(Vec3) + part.triangles.size() * 20;
     if (bytes > kKeptBytes) {
-      meshes = MeshCache();
+      meshes.clear();
       bytes = 0;
     }
     take(part);
@@ -361,26 +412,59 @@ SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& m
       throw Error(path, "a scene stands among other arguments",
                   "name one scene alone, or only mesh files");
     }
-    mesh_format(path);
+    if (path != "-") mesh_format(path);
   }
-  std::string name = mesh_stem(paths[0]);
-  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + mesh_stem(paths[i]);
+  const auto stem = [](const std::string& path) {
+    return path == "-" ? std::string("stdin") : mesh_stem(path);
+  };
+  std::string name = stem(paths[0]);
+  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
-  SceneBuilder builder(clean_name(name), paths[0]);
+  SceneBuilder builder(clean_name(name + meshes.note()), paths[0]);
   for (const std::string& path : paths) {
-    builder.add(meshes.get(path), mesh_stem(path));
+    builder.add(meshes.get(path), stem(path));
     if (added) added(builder);
   }
   return builder;
 }
 
-void stream_meshes(const std::vector<std::string>& paths, const TakePart& take) {
-  MeshCache meshes;
+void stream_meshes(const std::vector<std::string>& paths, MeshCache& meshes, const TakePart& take) {
   scene_of_meshes(paths, meshes, [&](SceneBuilder& builder) {
-    meshes = MeshCache();  // frees the mesh: the builder has a copy
+    meshes.clear();  // frees the mesh: the builder has a copy
     Scene part = builder.take_part();
     take(part);
   });
+}
+
+// The fewest letters to insert, delete or replace that make one word of the other.
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t before = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t changed = before + (a[i] != b[k]);
+      before = row[k + 1];
+      row[k + 1] = std::min({changed, before + 1, row[k] + 1});
+    }
+  }
+  return row.back();
+}
+
+// "did you mean two-spheres? " for a name that differs little from one; else "correct the name; ".
+std::string likely_name(const std::string& name) {
+  constexpr std::size_t kLongest = 40, kFew = 2;
+  std::string best;
+  std::size_t least = kFew + 1;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (name.size() > kLongest) break;
+    const std::size_t apart = letters_apart(name, scene.name);
+    if (apart < least && apart < name.size() / 2) {
+      least = apart;
+      best = scene.name;
+    }
+  }
+  return best.empty() ? "correct the name; " : "did you mean " + best + "? ";
 }
 
 Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
@@ -390,13 +474,17 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
   }
   if (arguments.size() > 1) return scene_of_meshes(arguments, meshes).finish();
   const std::string& name = arguments[0];
-  if (is_builtin_scene(name)) return make_builtin_scene(name);
+  if (is_builtin_scene(name)) {
+    if (!meshes.note().empty())
+      throw Error("--weld", "has no meaning for a built-in scene", "leave it out");
+    return make_builtin_scene(name);
+  }
   if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
-  if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes).finish();
+  if (name == "-" || has_mesh_extension(name)) return scene_of_meshes(arguments, meshes).finish();
   if (const std::optional<Error> foreign = foreign_mesh(name)) throw *foreign;
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
-              "correct the name; farcull scenes lists the built-in scenes");
+              likely_name(name) + "farcull scenes lists the built-in scenes");
 }
 
 }  // namespace
@@ -408,15 +496,36 @@ Scene load_scene(const std::vector<std::string>& arguments) {
 
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
   try {
-    return load_any_scene(arguments, meshes);
+    SceneWords words = scene_words(arguments);
+    meshes.read_as(std::move(words.reading));
+    return load_any_scene(words.names, meshes);
   } catch (const std::bad_alloc&) {
     throw Error(arguments[0], "the scene does not fit into memory",
                 "give fewer or smaller objects, or use a larger machine");
   }
 }
 
-std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
-                                     const TakePart& take) {
+SceneWords scene_words(const std::vector<std::string>& arguments) {
+  constexpr std::string_view kWeld = "--weld=", kFormat = "--format=";
+  SceneWords out;
+  for (const std::string& word : arguments) {
+    if (word.starts_with(kWeld)) {
+      out.reading.weld = word.substr(kWeld.size());
+      parse_weld(out.reading.weld);
+    } else if (word.starts_with(kFormat)) {
+      out.reading.format = named_format(word.substr(kFormat.size()));
+    } else {
+      out.names.push_back(word);
+    }
+  }
+  return out;
+}
+
+std::vector<ObjectPair> stream_scene(const std::vector<std::string>& words, const TakePart& take) {
+  SceneWords of = scene_words(words);
+  const std::vector<std::string>& arguments = of.names;
+  MeshCache meshes;
+  meshes.read_as(of.reading);
   if (arguments.size() == 1 && is_builtin_scene(arguments[0])) {
     const SceneRequest request = parse_scene_name(arguments[0]);
     if (request.entry->name == "field" && request.suffixes.empty()) {
@@ -425,12 +534,12 @@ std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
       return {};
     }
   } else if (arguments.size() == 1 && is_scene_file(arguments[0])) {
-    return stream_file(arguments[0], take);
+    return stream_file(arguments[0], meshes, take);
   } else if (arguments.size() > 1 || (arguments.size() == 1 && has_mesh_extension(arguments[0]))) {
-    stream_meshes(arguments, take);
+    stream_meshes(arguments, meshes, take);
     return {};
   }
-  Scene whole = load_scene(arguments);
+  Scene whole = load_scene(words);
   const std::vector<ObjectPair> ignored = std::exchange(whole.ignored, {});
   take(whole);
   return ignored;

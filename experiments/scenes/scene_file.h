@@ -80,9 +80,18 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 /// Throws Error if an argument cannot be read or is not of this form. The Error names the file and,
 /// in a scene file, the line (syntax, and names of ignored objects) or the place as in
 /// objects[1].rotate.axis (contents).
+/// Beside them may stand --weld=T (weld.h), which the name of the scene then says, and --format=F,
+/// for a mesh file "-", which is standard input.
 Scene load_scene(const std::vector<std::string>& arguments);
 /// load_scene() that takes meshes from the cache `meshes`, where they stay.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
+
+struct SceneWords {
+  std::vector<std::string> names;
+  MeshReading reading;
+};
+/// The arguments of load_scene(), taken apart. Throws Error for a bad value.
+SceneWords scene_words(const std::vector<std::string>& arguments);
 
 /// Whether load_scene() treats the name as that of a scene file.
 bool is_scene_file(const std::string& name);

@@ -5,9 +5,11 @@
 
 #include <Eigen/Geometry>
 
+#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
+#include "verify/certificate/integer_distance.h"
 
 namespace farcull {
 namespace {
@@ -146,6 +148,59 @@ TEST(Inside, NestedCubesOfAnySize) {
     EXPECT_EQ(at(2, 0, 0), Inside::on);
     EXPECT_EQ(at(4, 4, 4), Inside::on);
     EXPECT_EQ(at(-4, 1, 4), Inside::on);
+  }
+}
+
+/// The same with all normals outwards, or inwards.
+std::vector<Triangle> oriented_cube(const Vec3& lo, const Vec3& hi, bool outwards = true) {
+  std::vector<Triangle> out = cube(lo, hi);
+  for (Triangle& t : out) {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    if ((normal.dot(t[0] - (lo + hi) / 2) > 0) != outwards) std::swap(t[1], t[2]);
+  }
+  return out;
+}
+
+Scene shells(const std::vector<std::vector<Triangle>>& all) {
+  std::vector<Triangle> triangles;
+  for (const auto& shell : all) triangles.insert(triangles.end(), shell.begin(), shell.end());
+  return scene_of(triangles);
+}
+
+// One file often holds shells that overlap. The checker's own code agrees; parity is the twin,
+// which calls the overlap outside.
+TEST(Inside, OverlappingShellsAreCountedByTheirWindingNumber) {
+  const std::vector<Triangle> first = oriented_cube(Vec3(0, 0, 0), Vec3(2, 2, 2));
+  const auto second = [](bool outwards) {
+    return oriented_cube(Vec3(1, 0.5, 0.5), Vec3(3, 1.5, 1.5), outwards);
+  };
+  const Scene both = shells({first, second(true)}), against = shells({first, second(false)});
+  std::vector<Triangle> one_turned = second(true);
+  std::swap(one_turned[0][1], one_turned[0][2]);
+  const Scene mixed = shells({first, one_turned});
+  EXPECT_EQ(surface_of(both, 0), Surface::oriented);
+  EXPECT_EQ(surface_of(against, 0), Surface::oriented);
+  EXPECT_EQ(surface_of(mixed, 0), Surface::closed);
+  struct Case {
+    Vec3 at;
+    Inside both, against, parity;
+  };
+  for (const Case& c : {Case{{1.5, 1, 1}, Inside::yes, Inside::no, Inside::no},
+                        Case{{0.5, 1, 1}, Inside::yes, Inside::yes, Inside::yes},
+                        Case{{2.5, 1, 1}, Inside::yes, Inside::yes, Inside::yes},
+                        Case{{2.5, 1.75, 1}, Inside::no, Inside::no, Inside::no}}) {
+    EXPECT_EQ(inside(both, 0, c.at), c.both);
+    EXPECT_EQ(inside(against, 0, c.at), c.against);
+    EXPECT_EQ(inside(mixed, 0, c.at), c.parity);
+    for (const auto& [outer, expected] :
+         {std::pair(&both, c.both), std::pair(&against, c.against), std::pair(&mixed, c.parity)}) {
+      Scene scene = *outer;
+      const Scene part =
+          scene_of(oriented_cube(c.at - Vec3(0.01, 0.01, 0.01), c.at + Vec3(0.01, 0.01, 0.01)));
+      append_object("part", part.vertices, part.triangles, part.source_face, scene);
+      EXPECT_EQ(IntegerInside(scene).which(0, 1),
+                expected == Inside::yes ? InsideClaim::b : InsideClaim::none);
+    }
   }
 }
 

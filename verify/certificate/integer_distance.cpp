@@ -10,6 +10,7 @@
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -134,7 +135,7 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
   return false;
 }
 
-// Finds the parity of crossings along a ray in the direction of the first axis. The ray starts a
+// Counts the crossings along a ray in the direction of the first axis. The ray starts a
 // little beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
 // smaller than any number. So the ray meets no edge, and one ray is enough. The sign of a
 // polynomial in e is that of its first coefficient that is not 0.
@@ -172,9 +173,11 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   return true;
 }
 
-/// Is the number of crossings odd? Empty if x lies on a triangle that the ray crosses.
-std::optional<bool> is_odd(const Scene& scene, const Object& object, const Vec3& x) {
-  bool odd = false;
+enum class Mesh : std::uint8_t { open, closed, oriented };
+
+/// Is x inside the closed mesh? Empty if x lies on a triangle that the ray crosses.
+std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x, Mesh mesh) {
+  std::int64_t winding = 0, count = 0;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
     if (!may_cross(t, x)) continue;
@@ -187,14 +190,16 @@ std::optional<bool> is_odd(const Scene& scene, const Object& object, const Vec3&
     // Along the ray the plane is at distance determinant / n_x, and n_x has the sign `side`.
     const int ahead = sgn(determinant(pair.b));
     if (ahead == 0) return std::nullopt;
-    if (ahead == side) odd = !odd;
+    if (ahead != side) continue;
+    winding += side;
+    ++count;
   }
-  return odd;
+  return mesh == Mesh::oriented ? winding != 0 : count % 2 != 0;
 }
 
 using Place = std::array<double, 3>;
 
-bool is_closed_mesh(const Scene& scene, const Object& object) {
+Mesh mesh_of(const Scene& scene, const Object& object) {
   std::vector<Place> places;  // each once
   const auto place_of = [](const Vec3& p) {
     return Place{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};  // no -0.0
@@ -205,7 +210,7 @@ bool is_closed_mesh(const Scene& scene, const Object& object) {
   std::ranges::sort(places);
   const auto rest = std::ranges::unique(places);
   places.erase(rest.begin(), rest.end());
-  std::vector<std::pair<std::size_t, std::size_t>> edges;
+  std::vector<std::tuple<std::size_t, std::size_t, bool>> edges;  // lower end, upper end, upwards
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     std::array<std::size_t, 3> at{};
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
@@ -214,13 +219,26 @@ bool is_closed_mesh(const Scene& scene, const Object& object) {
                                        places.begin());
     }
     if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
-    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(std::minmax(at[i], at[(i + 1) % 3]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t from = at[i], to = at[(i + 1) % 3];
+      edges.emplace_back(std::min(from, to), std::max(from, to), from < to);
+    }
   }
   std::ranges::sort(edges);
-  for (std::size_t i = 0; i < edges.size(); i += 2) {
-    if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return false;
+  // The edges of one place follow each other, those downwards first.
+  bool oriented = true;
+  for (std::size_t i = 0; i < edges.size();) {
+    const auto [lower, upper, up] = edges[i];
+    std::size_t count = 0, upwards = 0;
+    for (; i < edges.size() && std::get<0>(edges[i]) == lower && std::get<1>(edges[i]) == upper;
+         ++i) {
+      ++count;
+      upwards += std::get<2>(edges[i]) ? 1 : 0;
+    }
+    if (count % 2 != 0) return Mesh::open;
+    oriented = oriented && 2 * upwards == count;
   }
-  return true;
+  return oriented ? Mesh::oriented : Mesh::closed;
 }
 
 /// One corner of each connected part of the mesh: triangles that share a vertex index, directly or
@@ -256,7 +274,7 @@ std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) 
 struct IntegerInside::OfObject {
   Box box = Box::empty();
   std::once_flag closed_found, corners_found;
-  bool closed = false;
+  Mesh mesh = Mesh::open;
   std::vector<Vec3> corners;  // one of each part
 };
 
@@ -277,15 +295,14 @@ IntegerInside::Answer IntegerInside::contains(std::uint32_t outer, std::uint32_t
   const Box &x_box = in.box, &y_box = out.box;
   if ((x_box.lo.array() < y_box.lo.array()).any() || (x_box.hi.array() > y_box.hi.array()).any())
     return Answer::no;
-  std::call_once(out.closed_found,
-                 [&] { out.closed = is_closed_mesh(scene_, scene_.objects[outer]); });
-  if (!out.closed) return Answer::not_closed;
+  std::call_once(out.closed_found, [&] { out.mesh = mesh_of(scene_, scene_.objects[outer]); });
+  if (out.mesh == Mesh::open) return Answer::not_closed;
   std::call_once(in.corners_found,
                  [&] { in.corners = corner_of_each_part(scene_, scene_.objects[inner]); });
   for (const Vec3& x : in.corners) {
-    const std::optional<bool> odd = is_odd(scene_, scene_.objects[outer], x);
-    if (!odd) return Answer::on;
-    if (!*odd) return Answer::no;
+    const std::optional<bool> within = is_within(scene_, scene_.objects[outer], x, out.mesh);
+    if (!within) return Answer::on;
+    if (!*within) return Answer::no;
   }
   return Answer::yes;
 }

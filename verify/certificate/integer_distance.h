@@ -54,8 +54,10 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
 // experiments/method/distances. docs/certificate.md has the proof.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
-// triangles; triangles with two equal corners do not count. A point off a closed mesh is *inside*
-// if a ray from it crosses the mesh an odd number of times.
+// triangles; triangles with two equal corners do not count. It is *oriented* if they also pass each
+// edge equally often in both directions. A point off an oriented mesh is *inside* if a ray from it
+// does not cross the mesh equally often from both sides; off another closed mesh, if it crosses it
+// an odd number of times.
 
 /// a, b: this object is inside the other, with all of its points. none: neither object is inside
 /// the other. not_closed: neither is inside the other, but the box of one is in the box of the

@@ -3,7 +3,7 @@
 Arrays to colliding pairs in three lines::
 
     import farcull
-    result = farcull.collide(V, F, objects=[0, 12])  # two objects; the second begins at triangle 12
+    result = farcull.collide(V, F, object_starts=[0, 12])  # two objects; the second begins at triangle 12
     print(result.pairs)
 
 ``V`` is an array of shape (n, 3), the vertices, in any type of number that a double holds exactly.
@@ -11,7 +11,8 @@ Arrays to colliding pairs in three lines::
 Triangles are closed sets, so touching counts. A degenerate triangle is the segment or the point that
 it is. Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends it. What
 is wrong raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and ``remedy``, and
-MemoryError where there is no memory; there is no answer then.
+MemoryError where there is no memory; a file that is missing, :class:`MissingFileError`, which is a
+FileNotFoundError too. There is no answer then.
 """
 
 import os
@@ -21,7 +22,7 @@ import os
 os.environ.setdefault("LP_NUM_THREADS", "0")
 del os
 
-from ._errors import Error, InputError
+from ._errors import Error, InputError, MissingFileError
 from . import _farcull
 
 _farcull.require_main_interpreter()  # before the import of numpy, which needs it too
@@ -31,10 +32,12 @@ from ._collide import collide, distances, join, stream
 from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes
 
+__version__ = "0.1"
+
 __all__ = [
-    "Check", "Collider", "Distance", "Error", "Frames", "InputError", "KINDS", "Part", "Picture",
-    "Plan", "Record", "Report", "Result", "Scene", "Stream", "builtin_scenes", "check", "collide",
-    "distances", "join", "picture", "plan", "stream",
+    "Check", "Collider", "Distance", "Error", "Frames", "InputError", "KINDS", "MissingFileError",
+    "Part", "Picture", "Plan", "Record", "Report", "Result", "Scene", "Stream", "builtin_scenes",
+    "check", "collide", "distances", "join", "picture", "plan", "stream",
 ]
 
 del _farcull

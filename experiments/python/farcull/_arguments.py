@@ -25,32 +25,181 @@ def array(name: str, given: Any) -> np.ndarray:
     if not out.dtype.isnative:
         out = out.astype(out.dtype.newbyteorder("="))
     if out.shape == (0,) and out.dtype == np.float64:  # an empty list
-        out = np.empty((0, 3), np.int64 if name == "triangles" else np.float64)
+        out = np.empty((0, 3), np.int64 if name == "F" else np.float64)
     return out
 
 
-def starts(given: Any, triangles: np.ndarray) -> np.ndarray:
-    """The first triangle of each object; None stands for one object."""
+class Grouped:
+    """Triangles grouped into objects, by the first triangle of each or by a label for each triangle."""
+
+    def __init__(self, F: Any, object_starts: Any, labels: Any) -> None:
+        self.triangles = array("F", F)
+        self.labels: Optional[np.ndarray] = None  # of the objects; None without labels
+        self.order: Optional[np.ndarray] = None  # numbers of the caller's triangles; None: as given
+        if labels is None:
+            self.starts = _starts(object_starts)
+            return
+        if object_starts is not None:
+            raise InputError("labels", "are given beside object_starts", "give one of the two")
+        try:
+            each = np.asarray(labels)
+        except MemoryError:
+            raise
+        except Exception as error:
+            raise InputError(
+                "labels", f"cannot be read as an array ({error})", "give one for each triangle"
+            ) from error
+        if each.ndim != 1 or len(each) != len(self.triangles) or each.dtype.kind not in "iubUS":
+            raise InputError(
+                "labels",
+                f"have the shape {each.shape} and the type {each.dtype} for {len(self.triangles)} triangles",
+                "give one whole number or text for each triangle",
+            )
+        order = np.argsort(each, kind="stable")
+        self.labels, first = np.unique(each[order], return_index=True)
+        self.starts = np.ascontiguousarray(first, np.int64)
+        if len(order) and (order != np.arange(len(order))).any():
+            self.order, self.triangles = order, self.triangles[order]
+
+    def pairs(self, pairs: np.ndarray, *others: Any) -> Tuple[Any, ...]:
+        """Pairs in the caller's numbers, rows sorted, and what belongs to each row, None for none."""
+        if self.order is None:
+            return (pairs, *others)
+        named = np.sort(self.order[pairs], axis=1).reshape(-1, 2)
+        by = np.lexsort((named[:, 1], named[:, 0]))
+        return (named[by], *(None if other is None else other[by] for other in others))
+
+    def ignored(self, given: Any) -> Any:
+        """Pairs of labels as pairs of numbers of objects."""
+        if self.labels is None or given is None or np.size(given) == 0:
+            return given
+        rows = np.asarray(given)
+        if rows.ndim != 2 or rows.shape[1] != 2 or not np.isin(rows, self.labels).all():
+            raise InputError(
+                "ignore", "are no rows of two labels that triangles have", "give labels, as in [(3, 7)]"
+            )
+        return np.searchsorted(self.labels, rows)
+
+
+def _starts(given: Any) -> np.ndarray:
+    """The first triangle of each object; None stands for one object. The library checks them."""
     if given is None:
-        return np.zeros(1, np.int64)
+        return np.zeros(0, np.int64)
     try:
         out = np.asarray(given)
     except MemoryError:
         raise
     except Exception as error:
         raise InputError(
-            "objects", f"cannot be read as an array ({error})", "give whole numbers"
+            "object_starts", f"cannot be read as an array ({error})", "give whole numbers"
         ) from error
     if out.ndim != 1 or (out.dtype.kind not in "iu" and out.size):
         raise InputError(
-            "objects",
-            "are no whole numbers in one dimension",
+            "object_starts",
+            "must be a one-dimensional array of whole numbers",
             "give the number of the first triangle of each object",
         )
-    if out.size == 0:
-        return np.zeros(1, np.int64)
-    if out.dtype == np.uint64 and out.max() > np.iinfo(np.int64).max:
-        raise InputError("objects", f"hold {out.max()}", "give numbers of triangles")
+    if out.dtype == np.uint64 and out.size and out.max() > np.iinfo(np.int64).max:
+        raise InputError("object_starts", f"hold {out.max()}", "give numbers of triangles")
+    return np.ascontiguousarray(out, dtype=np.int64)
+
+
+def number(name: str, given: Any) -> float:
+    if isinstance(given, (bool, np.bool_)) or not isinstance(given, numbers.Real):
+        raise InputError(name, f"{given!r} is no number", "give a number")
+    try:
+        out = float(given)
+    except OverflowError:
+        out = math.inf
+    if math.isnan(out):
+        raise InputError(name, "is no number", "give a number")
+    return out
+
+
+def integer(name: str, given: Any, low: int, high: int) -> int:
+    try:
+        if isinstance(given, (bool, np.bool_)):
+            raise TypeError
+        out = operator.index(given)
+    except TypeError:
+        raise InputError(name, f"{given!r} is no whole number", "give a whole number") from None
+    if not low <= out <= high:
+        raise InputError(name, f"is {out}", f"give a whole number from {low} to {high}")
+    return out
+
+
+def flag(name: str, given: Any) -> bool:
+    if not isinstance(given, (bool, np.bool_)):
+        raise InputError(name, f"{given!r} is neither True nor False", "give one of them")
+    return bool(given)
+
+
+def text(name: str, given: Any) -> str:
+    if not isinstance(given, str):
+        raise InputError(name, f"{given!r} is no text", "give a string")
+    return encoded(name, given)
+
+
+def encoded(name: str, given: str) -> str:
+    """The text. Raises InputError if UTF-8 cannot hold it."""
+    try:
+        given.encode()
+    except UnicodeEncodeError:
+        raise InputError(name, "holds what is no character", "give text") from None
+    return given
+
+
+def choice(name: str, given: Any, choices: Sequence[str]) -> str:
+    if not isinstance(given, str) or given not in choices:
+        raise InputError(name, f"{given!r} is no choice", "give " + " or ".join(choices))
+    return given
+
+
+def selves(given: Any) -> Tuple[bool, List[bool]]:
+    """Whether all objects are tested against themselves, and which."""
+    if isinstance(given, (bool, np.bool_)):
+        return bool(given), []
+    try:
+        each = list(given)
+    except TypeError:
+        raise InputError(
+            "self", f"{given!r} is no truth value", "give True, False, or one for each object"
+        ) from None
+    return False, [flag("self", value) for value in each]
+
+
+def ignored(self, given: Any) -> Any:
+        """Pairs of labels as pairs of numbers of objects."""
+        if self.labels is None or given is None or np.size(given) == 0:
+            return given
+        rows = np.asarray(given)
+        if rows.ndim != 2 or rows.shape[1] != 2 or not np.isin(rows, self.labels).all():
+            raise InputError(
+                "ignore", "are no rows of two labels that triangles have", "give labels, as in [(3, 7)]"
+            )
+        return np.searchsorted(self.labels, rows)
+
+
+def _starts(given: Any) -> np.ndarray:
+    """The first triangle of each object; None stands for one object. The library checks them."""
+    if given is None:
+        return np.zeros(0, np.int64)
+    try:
+        out = np.asarray(given)
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise InputError(
+            "object_starts", f"cannot be read as an array ({error})", "give whole numbers"
+        ) from error
+    if out.ndim != 1 or (out.dtype.kind not in "iu" and out.size):
+        raise InputError(
+            "object_starts",
+            "must be a one-dimensional array of whole numbers",
+            "give the number of the first triangle of each object",
+        )
+    if out.dtype == np.uint64 and out.size and out.max() > np.iinfo(np.int64).max:
+        raise InputError("object_starts", f"hold {out.max()}", "give numbers of triangles")
     return np.ascontiguousarray(out, dtype=np.int64)
 
 

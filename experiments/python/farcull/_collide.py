@@ -1,13 +1,17 @@
 """Pairs of triangles that collide, and distances of objects."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _farcull
 from ._errors import InputError
+
+Device = Literal["cpu", "gl", "best"]
 
 KINDS: Tuple[str, ...] = _farcull.kinds
 """How two triangles A and B meet: the first that is true.
@@ -36,6 +40,7 @@ class Report:
     decided: int  # candidates that exact tests decided; fewer where the limit was reached before
     neighbours: int  # of those decided, neighbours, colliding or not
     contacts_ms: float  # wall clock of the kinds of contact
+    passed_over: int  # vertices that are not finite and that no triangle uses
     callers_arithmetic: str  # how the calling thread computes, where that is unusual; else empty
     views: List[Dict[str, Any]]
     stages: List[Dict[str, Any]]
@@ -60,11 +65,16 @@ class Result:
     missing."""
     report: Report
 
+    def __repr__(self) -> str:
+        rows = len(self.pairs), len(self.neighbour_pairs)
+        more = "" if self.complete else ", and there may be more"
+        return f"<farcull.Result: {rows[0]} pairs, {rows[1]} of neighbours{more}>"
+
 
 def _question(
     self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
     kinds: bool, ignore: Optional[ArrayLike], limit: Optional[int],
-) -> "_farcull.Question":
+) -> _farcull.Question:
     """What a collider and a stream are asked, checked."""
     all_objects, each = _arguments.selves(self)
     return {
@@ -107,53 +117,102 @@ class Collider:
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
         collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
-        neighbours: bool = True, device: str = "cpu", threads: int = 0, kinds: bool = False,
+        neighbours: bool = True, device: Device = "cpu", threads: int = 0, kinds: bool = False,
         ignore: Optional[ArrayLike] = None, limit: Optional[int] = None, views: str = "auto",
         resolution: int = 0,
     ) -> None:
         question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
-        collider._selves = question["all_objects"], question["self_objects"]
+        collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(
             question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
             views=_arguments.text("views", views),
             resolution=_arguments.integer("resolution", resolution, 0, 16384),
         )
 
-    def find(self, V: ArrayLike, F: ArrayLike, objects: Any = None) -> Result:
+    def find(
+        self, V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+        labels: Optional[ArrayLike] = None,
+    ) -> Result:
         """The pairs that collide.
 
-        - ``V``: (n, 3), the vertices; finite.
-        - ``F``: (m, 3), the triangles, as indices of vertices from 0.
-        - ``objects``: the number of the first triangle of each object, ascending from 0. None: all
-          triangles are one object, which has to be tested against itself.
+        Parameters
+        ----------
+        V: (n, 3), the vertices; finite where a triangle uses them.
+        F: (m, 3), the triangles, as indices of vertices from 0.
+        object_starts: the number of the first triangle of each object: 0, then rising. None: all
+            triangles are one object, which has to be tested against itself.
+        labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in
+            any order. The objects are numbered by their labels in ascending order.
 
-        Raises InputError for arrays that are not so, and where ``ignore`` names an object that is not
-        there; Error for a fault of the device, and MemoryError.
+        Raises InputError for arrays that are not so, where there is nothing to test, and where
+        ``ignore`` names an object that is not there; Error for a fault of the device, and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
-        triangles = _arguments.array("triangles", F)
-        starts = _arguments.starts(objects, triangles)
-        _arguments.require_something(len(starts), *self._selves)
-        found = self._collider.find(_arguments.array("vertices", V), triangles, starts)
+        grouped = _arguments.Grouped(F, object_starts, labels)
+        if labels is not None and self._needs_numbers:
+            raise InputError(
+                "labels", "have no meaning with the ignored numbers or the limit of a Collider",
+                "sort the triangles by label and give object_starts, or call farcull.collide",
+            )
+        return self._find(V, grouped)
+
+    def _find(self, V: ArrayLike, grouped: _arguments.Grouped) -> Result:
+        found = self._collider.find(
+            _arguments.array("V", V), grouped.triangles, grouped.starts
+        )
+        for pairs, kinds in (("pairs", "kinds"), ("neighbour_pairs", "neighbour_kinds")):
+            found[pairs], found[kinds] = grouped.pairs(found[pairs], found[kinds])
         return Result(**{**found, "report": Report(**found["report"])})
 
 
 def collide(
-    V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
-    clearance: float = 0.0, neighbours: bool = True, device: str = "cpu", threads: int = 0,
-    kinds: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
+    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+    self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
+    device: Device = "cpu", threads: int = 0, kinds: bool = False,
+    ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
+    labels: Optional[ArrayLike] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
-    itself. The parameters are those of :class:`Collider`, but for its ``views`` and ``resolution``, and
-    of :meth:`Collider.find`.
+    itself. For many frames, keep a :class:`Collider`.
 
-    For many frames, keep a Collider.
+    Parameters
+    ----------
+    V: (n, 3), the vertices; finite where a triangle uses them.
+    F: (m, 3), the triangles, as indices of vertices from 0.
+    object_starts: the number of the first triangle of each object: 0, then rising. None: all triangles
+        are one object, which has to be tested against itself.
+    self: True: every object is tested against itself as well; or one truth value for each object.
+    clearance: pairs at this distance or less collide too. World units, finite, 0 or more.
+    neighbours: False: neighbours are counted, not decided.
+    device: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where boxes of
+        runs decide, else gl if hardware answers, else the CPU.
+    threads: up to 1024; 0: one for each core.
+    kinds: True: say of each pair how the two triangles meet (:data:`KINDS`).
+    ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers
+        from 0; with ``labels`` by their labels.
+    limit: only the first so many pairs, neighbours among them, in the order of the rows; 1 or more.
+        None: all. Not with ``labels``.
+    labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any
+        order. The objects are numbered by their labels in ascending order.
+
+    Returns a :class:`Result`. Raises InputError for arguments that are not so and where there is nothing
+    to test; Error for a fault of the device, and MemoryError.
     """
+    grouped = _arguments.Grouped(F, object_starts, labels)
+    _refuse_limit(limit, labels)
     collider = Collider(
         self=self, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
-        kinds=kinds, ignore=ignore, limit=limit,
+        kinds=kinds, ignore=grouped.ignored(ignore), limit=limit,
     )
-    return collider.find(V, F, objects)
+    return collider._find(V, grouped)
+
+
+def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
+    if limit is not None and labels is not None:
+        raise InputError(
+            "limit", "has no meaning with labels: rows are found in the order of the labels",
+            "sort the triangles by label and give object_starts",
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,16 +223,20 @@ class Part:
     neighbours: NDArray[np.bool_]  # (k,): which pairs are of neighbours
     kinds: Optional[NDArray[np.uint8]]  # (k,): places in KINDS; None unless asked for
 
+    def __repr__(self) -> str:
+        return f"<farcull.Part: {len(self.pairs)} pairs>"
+
 
 class Stream:
     """The pairs of :func:`stream`, as an iterator over :class:`Part`. One thread at a time."""
 
-    __slots__ = ("_stream",)
+    __slots__ = ("_stream", "_grouped")
 
-    def __init__(self, stream: Any) -> None:
+    def __init__(self, stream: Any, grouped: Any) -> None:
         self._stream = stream
+        self._grouped = grouped
 
-    def __iter__(self) -> "Stream":
+    def __iter__(self) -> Stream:
         return self
 
     def __next__(self) -> Part:
@@ -181,7 +244,7 @@ class Stream:
             found = self._stream.next()
             if found is None:
                 raise StopIteration
-            part = Part(*found)
+            part = Part(*self._grouped.pairs(*found))
             self._stream.taken = True
             if len(part.pairs) > 0:
                 return part
@@ -198,34 +261,42 @@ class Stream:
 
 
 def stream(
-    V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
-    clearance: float = 0.0, neighbours: bool = True, threads: int = 0, kinds: bool = False,
-    ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
+    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+    self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
+    threads: int = 0, kinds: bool = False, ignore: Optional[ArrayLike] = None,
+    limit: Optional[int] = None, labels: Optional[ArrayLike] = None,
 ) -> Stream:
     """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
     rows: where they are too many for the memory, or the first ones are wanted at once. ::
 
-        for part in farcull.stream(V, F, objects):
+        for part in farcull.stream(V, F, object_starts):
             use(part.pairs)
 
     The arrays are copied. Memory does not grow with the number of pairs; a part has at most about
     2^16. It is slower than :func:`collide` where all pairs are wanted, and uses the CPU alone. The
-    loop can be left at any time. The parameters are those of :func:`collide`.
+    loop can be left at any time.
+
+    Parameters: those of :func:`collide`. With ``labels`` that do not ascend, rows are sorted within each
+    part alone.
 
     Raises as :func:`collide`. After an exception in a part, Ctrl-C among them, what that part had is
     lost: the stream then raises Error, so that nobody takes what is left for all.
     """
-    triangles = _arguments.array("triangles", F)
-    starts = _arguments.starts(objects, triangles)
-    question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
-    _arguments.require_something(len(starts), question["all_objects"], question["self_objects"])
-    return Stream(_farcull.Stream(_arguments.array("vertices", V), triangles, starts, question))
+    grouped = _arguments.Grouped(F, object_starts, labels)
+    _refuse_limit(limit, labels)
+    question = _question(
+        self, clearance, neighbours, threads, kinds, grouped.ignored(ignore), limit
+    )
+    made = _farcull.Stream(
+        _arguments.array("V", V), grouped.triangles, grouped.starts, question
+    )
+    return Stream(made, grouped)
 
 
 def join(
     *meshes: Tuple[ArrayLike, ArrayLike]
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Several meshes, each as (V, F), as one V, F and objects: the arguments of :func:`collide`."""
+    """Several meshes, each as (V, F), as one V, F and object_starts: the arguments of :func:`collide`."""
     if not meshes:
         raise InputError("meshes", "are none", "give (V, F) of each")
     vertices, triangles, starts = [], [], []
@@ -233,14 +304,16 @@ def join(
     for mesh in meshes:
         if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
             raise InputError("meshes", "hold what is no pair of arrays", "give (V, F) of each")
-        V = _arguments.array("vertices", mesh[0])
-        F = _arguments.array("triangles", mesh[1])
-        for name, given, kinds in (("vertices", V, "fiu"), ("triangles", F, "iu")):
+        V = _arguments.array("V", mesh[0])
+        F = _arguments.array("F", mesh[1])
+        for name, given, kinds in (("V", V, "fiu"), ("F", F, "iu")):
             if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in kinds:
                 raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
-        if F.size and not (0 <= F.min() and F.max() < len(V)):
+        if not F.size:
+            raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
+        if not (0 <= F.min() and F.max() < len(V)):
             raise InputError(
-                "triangles", "name a vertex that the mesh does not have", "correct the index"
+                "F", "names a vertex that the mesh does not have", "correct the index"
             )
         vertices.append(V)
         triangles.append(F.astype(np.int64) + first_vertex)
@@ -254,7 +327,7 @@ def join(
 class Distance:
     """How far two objects are apart, or with kind="all" two triangles."""
 
-    objects: Tuple[int, int]
+    objects: Tuple[Any, Any]  # numbers from 0, or labels
     triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
     distance: float  # rounded to nearest; infinity beyond the largest double
     squared: str  # "numerator/denominator" in lowest terms, nothing rounded
@@ -264,26 +337,31 @@ class Distance:
 
 
 def distances(
-    V: ArrayLike, F: ArrayLike, objects: Any = None, kind: str = "objects", k: int = 1,
-    within: Union[float, None] = None, self: Union[bool, Sequence[bool]] = False,
-    inside: bool = True, threads: int = 0,
+    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+    kind: Literal["objects", "nearest", "all"] = "objects", k: int = 1,
+    within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
+    inside: bool = True, threads: int = 0, labels: Optional[ArrayLike] = None,
 ) -> List[Distance]:
     """How far objects are apart, exactly, with the points that are nearest.
 
-    - ``V``, ``F``, ``objects``: as in :func:`collide`; ``self`` as well, but not with "nearest".
-    - ``kind``: "objects": of every two objects; "nearest": of each object and its ``k`` nearest
-      others, where alone ``k`` has a meaning; "all": every pair of triangles at the distance ``within`` or less.
-    - ``within``: nothing farther apart is answered. World units, 0 or more; None: no limit.
-    - ``inside``: whether an object lies inside another; not with "all".
-    - ``threads``: up to 1024; 0: one for each core.
+    Parameters
+    ----------
+    V, F, object_starts, labels: as in :func:`collide`. With ``labels`` the objects of an answer are
+        labels.
+    kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
+        "all": every pair of triangles at the distance ``within`` or less.
+    k: how many others, 1 or more; with "nearest" alone.
+    within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
+    self: as in :func:`collide`, but not with "nearest".
+    inside: whether an object lies inside another; not with "all".
+    threads: up to 1024; 0: one for each core.
 
-    The answers are sorted by objects, then by triangles. Raises InputError naming the argument that is
-    wrong, and MemoryError.
+    Returns a list of :class:`Distance`, sorted by objects, then by triangles; with ``labels`` in the
+    order of the labels. Raises InputError naming the argument that is wrong, also where there is nothing
+    to ask, and MemoryError.
     """
-    triangles = _arguments.array("triangles", F)
-    starts = _arguments.starts(objects, triangles)
+    grouped = _arguments.Grouped(F, object_starts, labels)
     all_objects, each = _arguments.selves(self)
-    _arguments.require_something(len(starts), all_objects, each)
     limit = _arguments.optional_number("within", within)
     if limit is not None and limit < 0:
         raise InputError("within", f"is {limit}", "give a distance, 0 or more, or None")
@@ -294,8 +372,13 @@ def distances(
     if which != "nearest" and wanted != 1:
         raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
     answers = _farcull.distances(
-        _arguments.array("vertices", V), triangles, starts, which, wanted,
+        _arguments.array("V", V), grouped.triangles, grouped.starts, which, wanted,
         -1.0 if limit is None else limit, all_objects, each, _arguments.flag("inside", inside),
         _arguments.threads(threads),
     )
+    for answer in answers:
+        if grouped.order is not None:
+            answer["triangles"] = tuple(int(grouped.order[t]) for t in answer["triangles"])
+        if grouped.labels is not None:
+            answer["objects"] = tuple(grouped.labels[o].item() for o in answer["objects"])
     return [Distance(**answer) for answer in answers]

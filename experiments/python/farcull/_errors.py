@@ -1,5 +1,7 @@
 """The exceptions of the package."""
 
+import errno
+
 
 class Error(Exception):
     """What farcull raises where it has no answer.
@@ -20,3 +22,11 @@ class Error(Exception):
 
 class InputError(Error, ValueError):
     """An argument is wrong; ``where`` names it."""
+
+
+class MissingFileError(Error, FileNotFoundError):
+    """A file does not exist; ``where`` and ``filename`` name it."""
+
+    def __init__(self, where: str, reason: str, remedy: str) -> None:
+        Error.__init__(self, where, reason, remedy)
+        self.errno, self.strerror, self.filename = errno.ENOENT, reason, where

@@ -62,7 +62,7 @@ class Scene:
     name: str
     vertices: NDArray[float64]
     triangles: NDArray[uint32]
-    objects: NDArray[int64]
+    object_starts: NDArray[int64]
     ignored: NDArray[int64]
     names: List[str]
     self: List[bool]
@@ -79,6 +79,7 @@ def scene_of_arrays(
 ) -> Scene: ...
 def scene_of_names(names: Sequence[str], all_objects: bool) -> Scene: ...
 def builtin_scenes() -> List[str]: ...
+def take_reading_notes() -> List[str]: ...
 
 class Frames:
     first: int

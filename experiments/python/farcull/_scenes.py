@@ -1,6 +1,9 @@
 """Scenes: of arrays, files, or built-in ones; and scenes that move."""
 
+from __future__ import annotations
+
 import os
+import warnings
 from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -30,35 +33,47 @@ class Scene:
 
     ``Scene("two-bunnies")`` is a built-in scene; ``Scene("a.obj", "b.ply")`` are mesh files, each an
     object; ``Scene("scene.json")`` is a scene file; :meth:`from_arrays` takes arrays. With
-    ``self=True`` every object is tested against itself as well. Raises Error for what cannot be read.
+    ``self=True`` every object is tested against itself as well. ``weld`` merges vertices of a mesh that
+    are at most so far apart, in its units, or relative to the diagonal of its box, as in "1e-7*size".
+    What a reader passes over is a warning. Raises Error for what cannot be read.
     """
 
     __slots__ = ("_scene",)
 
-    def __init__(scene, /, *names: Union[str, "os.PathLike[str]"], self: bool = False) -> None:
-        scene._scene = _farcull.scene_of_names(_names(names), _arguments.flag("self", self))
+    def __init__(
+        scene, /, *names: Union[str, os.PathLike[str]], self: bool = False,
+        weld: Union[None, float, str] = None,
+    ) -> None:
+        words = _names(names)
+        if weld is not None:
+            (text,) = _arguments.texts(weld=weld).values()
+            words.append("--weld=" + text)
+        scene._scene = _farcull.scene_of_names(words, _arguments.flag("self", self))
+        for note in _farcull.take_reading_notes():
+            warnings.warn(note, stacklevel=2)
 
     @classmethod
-    def _of(cls, made: Any) -> "Scene":
+    def _of(cls, made: Any) -> Scene:
         out = cls.__new__(cls)
         out._scene = made
         return out
 
     @staticmethod
     def from_arrays(
-        V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
-        name: str = "arrays", names: Optional[Sequence[str]] = None,
-    ) -> "Scene":
+        V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+        self: Union[bool, Sequence[bool]] = False, name: str = "arrays",
+        names: Optional[Sequence[str]] = None,
+    ) -> Scene:
         """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
         objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
-        triangles = _arguments.array("triangles", F)
-        starts = _arguments.starts(objects, triangles)
+        grouped = _arguments.Grouped(F, object_starts, None)
         all_objects, each = _arguments.selves(self)
         if isinstance(names, str):
             raise InputError("names", "are one text", "give a list of texts")
         return Scene._of(
             _farcull.scene_of_arrays(
-                _arguments.array("vertices", V), triangles, starts, _arguments.text("name", name),
+                _arguments.array("V", V), grouped.triangles, grouped.starts,
+                _arguments.text("name", name),
                 [_arguments.text("names", one) for one in names or []], all_objects, each,
             )
         )
@@ -78,9 +93,9 @@ class Scene:
         return self._scene.triangles
 
     @property
-    def objects(self) -> NDArray[np.int64]:
+    def object_starts(self) -> NDArray[np.int64]:
         """The number of the first triangle of each object."""
-        return self._scene.objects
+        return self._scene.object_starts
 
     @property
     def ignored(self) -> NDArray[np.int64]:
@@ -97,7 +112,7 @@ class Scene:
         """Which objects are tested against themselves."""
         return self._scene.self
 
-    def run(scene, /, method: str = "far-pairs", **options: Any) -> "Record":
+    def run(scene, /, method: str = "far-pairs", **options: Any) -> Record:
         """Culls the scene, tests what is left, and accounts for every pair.
 
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
@@ -113,11 +128,24 @@ class Scene:
 
         return run(scene, method, **options)
 
+    def __reduce__(self) -> Any:
+        """For pickle: the arrays and names, exactly, without what the scene file ignores."""
+        if len(self.ignored):
+            raise InputError("scene", "ignores objects, which a pickle does not hold", "pass its file")
+        return _of_arrays, (
+            np.array(self.vertices), np.array(self.triangles), self.object_starts, self.self, self.name,
+            self.names,
+        )
+
     def __repr__(self) -> str:
         return (
             f"<farcull.Scene {self.name!r}: {len(self.names)} objects, "
             f"{len(self.triangles)} triangles>"
         )
+
+
+def _of_arrays(V: Any, F: Any, starts: Any, self: Any, name: str, names: Any) -> Scene:
+    return Scene.from_arrays(V, F, starts, self=self, name=name, names=names)
 
 
 class Frames:
@@ -129,7 +157,7 @@ class Frames:
     """
 
     def __init__(
-        collection, /, *names: Union[str, "os.PathLike[str]"], frames: Union[int, Tuple[int, int]],
+        collection, /, *names: Union[str, os.PathLike[str]], frames: Union[int, Tuple[int, int]],
         self: bool = False,
     ) -> None:
         most = 10**9

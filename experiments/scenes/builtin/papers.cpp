@@ -261,7 +261,7 @@ std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j
 // grid lines i = 6 and i = 12, over the cells beyond: three triangles meet at these edges. The
 // raised vertices come after those of the grid.
 Mesh sheet() {
-  auto [vertices, triangles, source_face, group, group_names, folded] = grid(kCells);
+  auto [vertices, triangles, source_face, group, group_names, folded, notes] = grid(kCells);
   for (const std::uint32_t line : {6u, 12u}) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     for (std::uint32_t j = 3; j <= kCells - 3; ++j) {

@@ -12,12 +12,15 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/mesh/weld.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -35,8 +38,9 @@ struct Converter {
   const char* command;
   const char* extension = "";  // of the result
   const char* import = "";     // Blender's operator that reads the file; empty: Blender opens it
-  bool packed = false;         // the file is unpacked, not converted
+  const char* verb = "convert it: ";
 };
+constexpr const char* kUnpack = "unpack it: ";
 
 constexpr Converter kAssimp = {"assimp export {0} {1} (Debian: assimp-utils)", ".obj"};
 constexpr Converter kMeshio = {"meshio convert {0} {1} (Debian: meshio-tools)", ".off"};
@@ -53,7 +57,7 @@ struct Foreign {
   std::array<std::string_view, 2> signs = {};
 };
 
-constexpr std::array<Foreign, 22> kForeign = {{
+constexpr std::array<Foreign, 28> kForeign = {{
     {"glTF", kAssimp, ".gltf .glb", {"glTF"}},
     {"FBX", kAssimp, ".fbx", {"Kaydara FBX Binary", "; FBX "}},
     {"COLLADA", kAssimp, ".dae", {"<COLLADA"}},
@@ -63,26 +67,42 @@ constexpr std::array<Foreign, 22> kForeign = {{
     {"a mesh of Medit", kMeshio, ".mesh", {"MeshVersionFormatted"}},
     {"STEP", kGmshShape, ".step .stp", {"ISO-10303-21"}},
     {"a shape of OpenCASCADE", kGmshShape, ".brep", {"DBRep_DrawableShape"}},
-    {"USD", {kNewBlender, ".obj", "usd_import"}, ".usd .usda .usdc .usdz", {"PXR-USDC", "#usda"}},
-    {"Alembic", {kNewBlender, ".obj", "alembic_import"}, ".abc", {"Ogawa"}},
+    {"USD",
+     {kNewBlender, ".obj", "wm.usd_import"},
+     ".usd .usda .usdc .usdz",
+     {"PXR-USDC", "#usda"}},
+    {"Alembic", {kNewBlender, ".obj", "wm.alembic_import"}, ".abc", {"Ogawa"}},
     {"a file of Blender", kBlender, ".blend", {"BLENDER"}},
     {"compressed by xz",
-     {"xz -dk {0} (Debian: xz-utils)", "", "", true},
+     {"xz -dk {0} (Debian: xz-utils)", "", "", kUnpack},
      ".xz",
      {"\xfd"
       "7zXZ\0"sv}},
     {"compressed by zstd",
-     {"zstd -d {0} (Debian: zstd)", "", "", true},
+     {"zstd -d {0} (Debian: zstd)", "", "", kUnpack},
      ".zst",
      {"\x28\xb5\x2f\xfd"}},
-    {"a zip archive", {"unzip {0} (Debian: unzip)", "", "", true}, ".zip", {"PK\x03\x04"}},
-    {"compressed by bzip2", {"bzip2 -dk {0} (Debian: bzip2)", "", "", true}, ".bz2"},
+    {"a zip archive", {"unzip {0} (Debian: unzip)", "", "", kUnpack}, ".zip", {"PK\x03\x04"}},
+    {"compressed by bzip2", {"bzip2 -dk {0} (Debian: bzip2)", "", "", kUnpack}, ".bz2"},
     {"3DS", kAssimp, ".3ds"},
     {"3MF", kAssimp, ".3mf"},
     {"an input file of Abaqus", kMeshio, ".inp"},
     {"bulk data of Nastran", kMeshio, ".bdf .nas"},
     {"a mesh of Netgen", kMeshio, ".vol"},
     {"IGES", kGmshShape, ".iges .igs"},
+    {"IFC", {"IfcConvert {0} {1} (ifcopenshell.org)", ".obj"}, ".ifc"},
+    {"polygons of VTK",
+     {"open it in ParaView and save its data as PLY (Debian: paraview)", "", "", ""},
+     ".vtp"},
+    {"VRML", {kNewBlender, ".obj", "import_scene.x3d"}, ".wrl .vrml", {"#VRML"}},
+    {"AMF", kAssimp, ".amf", {"<amf"}},
+    {"a robot in URDF",
+     {"name the meshes that it names, or write a scene file (farcull help scene-file)", "", "", ""},
+     ".urdf",
+     {"<robot"}},
+    {"a document of FreeCAD",
+     {"open it in FreeCAD and export its shapes as STEP or STL (Debian: freecad)", "", "", ""},
+     ".fcstd"},
 }};
 
 // The text as a string literal of Python, in double quotes.
@@ -92,15 +112,18 @@ std::string python_text(const std::string& text) {
   return out + "\"";
 }
 
-// The command that converts the file, and the source of its program.
-std::string command(const Converter& by, const std::string& path) {
-  const std::filesystem::path whole(path);
-  const std::string to = (whole.parent_path() / (mesh_stem(path) + by.extension)).string();
+// The path with the extension in place of its own.
+std::string with_extension(const std::string& path, const std::string& extension) {
+  return (std::filesystem::path(path).parent_path() / (mesh_stem(path) + extension)).string();
+}
+
+// The command that converts the file to the path `to`, and the source of its program.
+std::string command(const Converter& by, const std::string& path, const std::string& to) {
   std::string script = "import bpy; ";
   if (*by.import != '\0') {
-    script += fmt::format(
-        "bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.wm.{}(filepath={}); ", by.import,
-        python_text(path));
+    script +=
+        fmt::format("bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.{}(filepath={}); ",
+                    by.import, python_text(path));
   }
   script += "bpy.ops.wm.obj_export(filepath=" + python_text(to) + ")";
   return fmt::format(fmt::runtime(by.command), quoted(path), quoted(to), farcull::quoted(script));
@@ -114,11 +137,28 @@ bool is_3ds(std::string_view bytes) {
   return chunk == "\x02\0"sv || chunk == "\x3d\x3d"sv;
 }
 
+// No command may write to the file itself, or to another one that is there. A file with a wrong
+// extension is renamed first, also because converters go by the extension.
 Error refusal(const Foreign& format, const std::string& path, const char* how) {
+  const bool packed = format.by.verb == kUnpack;
+  const std::string_view extensions = format.extensions;
+  const std::string own(extensions.substr(0, extensions.find(' ')));
+  std::error_code error;
+  const bool known =
+      (std::string(extensions) + " ").find(lower_extension(path) + " ") != std::string::npos;
+  std::string from = path, remedy, to = with_extension(path, format.by.extension);
+  if (!known && *format.by.verb != '\0') {
+    from = packed ? path + own : with_extension(path, own);
+    if (std::filesystem::exists(from, error)) from = with_extension(path, "-renamed" + own);
+    remedy =
+        "rename it first: mv " + farcull::quoted(path) + " " + farcull::quoted(from) + ", then ";
+  }
+  if (to != path && std::filesystem::exists(to, error))
+    to = with_extension(path, std::string("-converted") + format.by.extension);
   return Error(path,
                fmt::format("{}{}, which is not read ({})", how, format.name,
-                           format.by.packed ? "gzip is" : "OBJ, OFF, PLY and STL are"),
-               (format.by.packed ? "unpack it: " : "convert it: ") + command(format.by, path));
+                           packed ? "gzip is" : "OBJ, OFF, PLY and STL are"),
+               remedy + format.by.verb + command(format.by, from, to));
 }
 
 const Foreign& named(std::string_view name) {
@@ -151,6 +191,14 @@ std::optional<Error> foreign_name(const std::string& path) {
 
 std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path) {
   bytes = bytes.substr(0, kTellingBytes);
+  // IFC is written in the form of STEP, and polygons of VTK in that of its grids.
+  const std::size_t schema = bytes.find("FILE_SCHEMA");
+  if (bytes.starts_with("ISO-10303-21") && schema != std::string_view::npos &&
+      bytes.find("IFC", schema) != std::string_view::npos)
+    return refusal(named("IFC"), path, "holds ");
+  if (bytes.find("<VTKFile") != std::string_view::npos &&
+      bytes.find("\"PolyData\"") != std::string_view::npos)
+    return refusal(named("polygons of VTK"), path, "holds ");
   for (const Foreign& format : kForeign) {
     for (const std::string_view sign : format.signs) {
       const std::size_t at = sign.empty() ? std::string_view::npos : bytes.find(sign);
@@ -247,6 +295,12 @@ constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
+MeshFormat named_format(const std::string& name) {
+  const auto found = std::ranges::find(kReaders, "." + name, &Reader::extension);
+  if (found != kReaders.end()) return found->format;
+  throw Error("--format", quote_token(name) + " is no format", "give obj, off, ply or stl");
+}
+
 MeshFormat mesh_format(const std::string& path) {
   if (const std::optional<MeshFormat> format = find_format(path)) return *format;
   if (const std::optional<Error> foreign = foreign_mesh(path)) throw *foreign;
@@ -275,15 +329,45 @@ std::optional<Error> foreign_mesh(const std::string& path) {
 
 bool has_mesh_extension(const std::string& path) { return find_format(path).has_value(); }
 
+namespace {
+
+struct ReadingNotes {
+  std::mutex mutex;
+  std::vector<std::string> notes;
+};
+ReadingNotes& reading_notes() {
+  static ReadingNotes made;
+  return made;
+}
+
+void add_reading_notes(const std::string& path, const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 100;
+  ReadingNotes& all = reading_notes();
+  const std::lock_guard lock(all.mutex);
+  for (const std::string& note : notes) {
+    if (all.notes.size() < kMost) all.notes.push_back(path + ": " + note);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> take_reading_notes() {
+  ReadingNotes& all = reading_notes();
+  const std::lock_guard lock(all.mutex);
+  return std::exchange(all.notes, {});
+}
+
 Mesh load_mesh(const std::string& path) {
   const MeshFormat format = mesh_format(path);
   try {
     std::string bytes = read_file(path, kMaxMeshBytes);
     if (lower_extension(path).ends_with(".gz") && !bytes.empty() && !is_gzip(bytes)) {
       throw Error(path, "is named .gz, but its contents are not compressed by gzip",
-                  "compress it with gzip, or give it the extension of what it holds");
+                  "rename it: without .gz it is read as what it holds");
     }
-    return parse_mesh(bytes, format, path);
+    Mesh mesh = parse_mesh(bytes, format, path);
+    add_reading_notes(path, mesh.notes);
+    return mesh;
   } catch (const std::bad_alloc&) {
     throw Error(path, "the mesh does not fit into memory", "split it or use a larger machine");
   }
@@ -303,6 +387,7 @@ MeshBuilder::MeshBuilder(std::string name) : name_(std::move(name)) {}
 void MeshBuilder::add_vertex(const Vec3& p, long line) {
   if (mesh_.vertices.size() == kMaxCount)
     throw Error(name_, "more than 4294967295 vertices", "split the mesh", line);
+  if (!p.allFinite()) not_finite_[static_cast<std::uint32_t>(mesh_.vertices.size())] = line;
   mesh_.vertices.push_back(p);
 }
 
@@ -327,6 +412,13 @@ void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {
                   fmt::format("face {} names vertex {} (counted from 0) of {}", faces_, corner,
                               mesh_.vertices.size()),
                   "correct the index, or see whether the file is damaged", line);
+    }
+    if (const auto bad = not_finite_.find(corner);
+        !not_finite_.empty() && bad != not_finite_.end()) {
+      throw Error(name_,
+                  fmt::format("vertex {} (counted from 0) is not finite, and face {} uses it",
+                              corner, faces_),
+                  "give it finite coordinates that a double can hold", bad->second);
     }
     points.push_back(mesh_.vertices[corner]);
   }
@@ -356,6 +448,11 @@ void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {
 Mesh MeshBuilder::finish() {
   if (mesh_.triangles.empty())
     throw Error(name_, "the mesh has no triangles", "give a mesh with at least one face");
+  for (const auto& [vertex, line] : not_finite_) mesh_.vertices[vertex] = Vec3(0, 0, 0);
+  if (!not_finite_.empty()) {
+    note(counted(not_finite_.size(), "vertex that is", "vertices that are") +
+         " not finite and that no face uses: passed over");
+  }
   return std::move(mesh_);
 }
 
@@ -369,14 +466,33 @@ std::string numbered(const std::string& name, long number) {
          name.substr(place.at + place.size);
 }
 
+Mesh MeshCache::read(const std::string& path) const {
+  Mesh mesh;
+  if (path == "-") {
+    if (!reading_.format) {
+      throw Error("-", "standard input does not say in which format it is",
+                  "add --format obj, off, ply or stl");
+    }
+    mesh = parse_mesh(read_standard_input(kMaxMeshBytes), *reading_.format, "standard input");
+    add_reading_notes("standard input", mesh.notes);
+  } else {
+    mesh = load_mesh(path);
+  }
+  if (reading_.weld.empty()) return mesh;
+  const std::uint64_t merged = weld(mesh, parse_weld(reading_.weld));
+  add_reading_notes(path,
+                    {counted(merged, "vertex", "vertices") + " merged by --weld " + reading_.weld});
+  return mesh;
+}
+
 const Mesh& MeshCache::get(const std::string& path) {
   if (frame_ && is_numbered(path)) {
     const std::string file = numbered(path, *frame_);
     const auto found = moving_.find(path);
     if (found == moving_.end())
-      return moving_.emplace(path, Moving{*frame_, load_mesh(file)}).first->second.mesh;
+      return moving_.emplace(path, Moving{*frame_, read(file)}).first->second.mesh;
     Moving& moving = found->second;
-    if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
+    if (moving.frame != *frame_) moving = {*frame_, read(file)};
     return moving.mesh;
   }
   std::error_code error;
@@ -388,7 +504,7 @@ const Mesh& MeshCache::get(const std::string& path) {
   }
   const std::string key = real_path(path);
   auto entry = meshes_.find(key);
-  if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
+  if (entry == meshes_.end()) entry = meshes_.emplace(key, read(path)).first;
   return entry->second;
 }
 

@@ -30,6 +30,7 @@ struct Mesh {
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded = {};  // faces of the file that are folded (below), ascending
+  std::vector<std::string> notes = {};     // what the reader passed over, a sentence each
 };
 
 /// Triangles with vertices of their own.
@@ -43,6 +44,8 @@ enum class MeshFormat { kObj, kOff, kPly, kStl };
 /// The format of a path by its extension (before ".gz", if it ends so), in upper or lower case.
 /// Throws Error naming the path for any other extension: the one of foreign_mesh(path), if any.
 MeshFormat mesh_format(const std::string& path);
+/// The format of "obj", "off", "ply" or "stl". Throws Error naming --format.
+MeshFormat named_format(const std::string& name);
 /// True iff mesh_format(path) would not throw.
 bool has_mesh_extension(const std::string& path);
 /// The Error for a path or a file in a format that is not read but has a known converter. The Error
@@ -50,18 +53,23 @@ bool has_mesh_extension(const std::string& path);
 /// unknown. Empty for an unknown format.
 std::optional<Error> foreign_mesh(const std::string& path);
 
+/// What load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that are not
+/// finite and that no face uses are passed over"; at most the first 100 sentences. Any thread.
+std::vector<std::string> take_reading_notes();
+
 /// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place, as triangulate()
 /// (below) says: a planar simple polygon keeps its area exactly, convex or not; one that is
-/// folded gets some triangulation of its corners, and is named in Mesh::folded. OBJ: `o` and `g`
+/// folded gets some triangulation of its corners, and is named in Mesh::folded. Vertices that are
+/// not finite and that no face uses become 0, 0, 0, and Mesh::notes says how many. OBJ: `o` and `g`
 /// name the group of the faces that follow, whichever came last. Other formats: one group,
-/// "default". STL: corners at one exact position become one vertex (0.0 and -0.0 are one position),
-/// the first one read. Contents compressed by gzip are decompressed, whatever their name; lines
-/// count in the decompressed text. Throws Error (where = path, line if the format has lines) if it
-/// is missing, is not a regular file, cannot be read, is malformed or shorter or longer than it
-/// claims, holds NaN, infinity or a value beyond double, an index out of range, a polygon of fewer
-/// than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip data that are cut, damaged
-/// or suspiciously small (text.h). The Error for contents of a known format that is not read names
-/// its converter.
+/// "default". ASCII STL: each solid is a group. STL: corners at one exact position become one
+/// vertex (0.0 and -0.0 are one position), the first one read. Contents compressed by gzip are
+/// decompressed, whatever their name; lines count in the decompressed text. Throws Error (where =
+/// path, line if the format has lines) if it is missing, is not a regular file, cannot be read, is
+/// malformed or shorter or longer than it claims, has a face with a corner that is NaN, infinite or
+/// beyond double, an index out of range, a polygon of fewer than 3 vertices, more than 2^32 - 1
+/// triangles, no triangle, or gzip data that are cut, damaged or suspiciously small (text.h). The
+/// Error for contents of a known format that is not read names its converter.
 Mesh load_mesh(const std::string& path);
 
 /// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
@@ -78,6 +86,13 @@ bool is_numbered(const std::string& name);
 /// The name with the number in its place. Precondition: is_numbered(name), number >= 0.
 std::string numbered(const std::string& name, long number);
 
+/// How the meshes of a scene are read, as the words --weld=T and --format=F among its arguments
+/// say.
+struct MeshReading {
+  std::string weld;                  // as parse_weld() takes it; empty: vertices stay as they are
+  std::optional<MeshFormat> format;  // of standard input, "-"
+};
+
 class MeshCache {
  public:
   /// Without frames: every name is the name of a file.
@@ -87,9 +102,16 @@ class MeshCache {
   /// Precondition: constructed with a first frame.
   void set_frame(long frame) { frame_ = frame; }
 
-  /// The mesh of the path; valid until the same path is asked for in another frame. Throws Error as
-  /// load_mesh, and without frames for a numbered name that is no file. The meshes of two frames
-  /// may differ in their triangles.
+  /// How meshes are read from now on.
+  void read_as(MeshReading reading) { reading_ = std::move(reading); }
+  /// ", welded at 1e-7*size", which the name of the scene ends with; empty if nothing is welded.
+  std::string note() const { return reading_.weld.empty() ? "" : ", welded at " + reading_.weld; }
+  /// Frees the meshes of names without numbers.
+  void clear() { meshes_.clear(); }
+
+  /// The mesh of the path, or of standard input for "-", welded if that is said; valid until the
+  /// same path is asked for in another frame. Throws Error as load_mesh, and without frames for a
+  /// numbered name that is no file. The meshes of two frames may differ in their triangles.
   const Mesh& get(const std::string& path);
 
   /// The numbered names that get() was called with.
@@ -101,7 +123,10 @@ class MeshCache {
     Mesh mesh;
   };
 
+  Mesh read(const std::string& path) const;
+
   std::optional<long> frame_;
+  MeshReading reading_;
   std::map<std::string, Mesh> meshes_;    // by the file's real path
   std::map<std::string, Moving> moving_;  // by the name
 };
@@ -132,15 +157,17 @@ class MeshBuilder {
   explicit MeshBuilder(std::string name);
 
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
-  /// p must be finite. Throws Error beyond 2^32 - 1 vertices.
+  /// p may be infinite or NaN where no face uses it. Throws Error beyond 2^32 - 1 vertices.
   void add_vertex(const Vec3& p, long line);
   /// The faces added from now on belong to the group of this name; an empty name is "default".
   void set_group(std::string_view group_name);
   /// One polygon, corners in order as 0-based vertex indices. Throws Error if there are fewer than
-  /// 3, if one is not a vertex added before, if the triangles exceed 2^32 - 1, or if it is neither
-  /// convex nor within reach of ear clipping (more than 8,192 corners, or a search of more than 16
-  /// corners^2 steps).
+  /// 3, if one is not a vertex added before or is not finite, if the triangles exceed 2^32 - 1, or
+  /// if it is neither convex nor within reach of ear clipping (more than 8,192 corners, or a search
+  /// of more than 16 corners^2 steps).
   void add_face(std::span<const std::uint32_t> corners, long line);
+  /// Adds a sentence to Mesh::notes.
+  void note(std::string text) { mesh_.notes.push_back(std::move(text)); }
   /// Throws Error if there is no triangle.
   Mesh finish();
 
@@ -150,6 +177,7 @@ class MeshBuilder {
   std::unordered_map<std::string, std::uint32_t> groups_;
   std::uint32_t group_ = 0;
   std::uint32_t faces_ = 0;
+  std::unordered_map<std::uint32_t, long> not_finite_;  // vertices, and their lines
 };
 
 Mesh parse_obj(std::string_view bytes, const std::string& name);

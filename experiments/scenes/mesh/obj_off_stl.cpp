@@ -4,9 +4,9 @@
 // skipped; free-form surfaces are refused, since skipping them would lose geometry.
 //
 // OFF, as written by Geomview and its followers: a header, the counts, one vertex and one face per
-// line. A vertex line begins with the position, so normals, colours and texture coordinates that
-// the header declares (NOFF, COFF, STOFF and their combinations) are skipped, and so is the colour
-// at the end of a face line.
+// line; or, without colours, the same numbers on any lines. A vertex line begins with the position,
+// so normals, colours and texture coordinates that the header declares (NOFF, COFF, STOFF and their
+// combinations) are skipped, and so is the colour at the end of a face line.
 //
 // STL, ASCII and binary. A binary file may begin with "solid" too, so its length decides first,
 // then its contents.
@@ -21,6 +21,7 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 
@@ -69,6 +70,9 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
   TextReader in(bytes, name, {.comment = '#', .continuation = true});
   MeshBuilder mesh(name);
   std::vector<std::uint32_t> corners;
+  std::uint64_t unknown = 0;
+  std::string first_unknown;
+  long line_of_unknown = 0;
   while (in.next_line()) {
     const std::string_view keyword = in.token();
     if (keyword == "v") {
@@ -84,10 +88,20 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
     } else if (contains(kFreeForm, keyword)) {
       in.fail("free-form geometry (" + quote_token(keyword) + ") is not read",
               "export the mesh as polygons");
-    } else if (!contains(kPassedOver, keyword)) {
-      in.fail(quote_token(keyword) + " is not a statement of OBJ",
-              "see whether the file is an OBJ file and whole");
+    } else if (!contains(kPassedOver, keyword) && unknown++ == 0) {
+      first_unknown = quote_token(keyword);
+      line_of_unknown = in.line();
     }
+  }
+  if (unknown > 0 && mesh.vertex_count() == 0) {
+    throw Error(name, first_unknown + " is not a statement of OBJ",
+                "see whether the file is an OBJ file and whole", line_of_unknown);
+  }
+  if (unknown > 0) {
+    mesh.note(fmt::format(
+        "{}, {} in line {}{}: passed over",
+        counted(unknown, "statement that OBJ does not have", "statements that OBJ does not have"),
+        first_unknown, line_of_unknown, unknown > 1 ? " first" : ""));
   }
   return mesh.finish();
 }
@@ -154,7 +168,9 @@ Header read_header(TextReader& in) {
 
 }  // namespace
 
-Mesh parse_off(std::string_view bytes, const std::string& name) {
+namespace {
+
+Mesh parse_off_lines(std::string_view bytes, const std::string& name) {
   TextReader in(bytes, name, {.comment = '#'});
   const Header header = read_header(in);
   MeshBuilder mesh(name);
@@ -190,6 +206,61 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
   }
   if (in.next_line()) in.fail("more follows than the counts of the header promise", kDamaged);
   return mesh.finish();
+}
+
+// Reads plain OFF without colours, whose numbers may stand on any lines: three counts, then
+// vertices and faces, and nothing else.
+Mesh parse_off_numbers(std::string_view bytes, const std::string& name) {
+  TextReader in(bytes, name, {.comment = '#'});
+  const auto go_on = [&] {
+    if (!in.seek()) in.fail("the file ends too early", kDamaged);
+  };
+  go_on();
+  if (in.token() != "OFF") in.fail("is not plain OFF", kDamaged);
+  go_on();
+  const std::uint64_t vertices = count(in, "vertices", 6);
+  go_on();
+  const std::uint64_t faces = count(in, "faces", 8);
+  go_on();
+  in.integer("the number of edges");
+  MeshBuilder mesh(name);
+  for (std::uint64_t i = 0; i < vertices; ++i) {
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis) {
+      go_on();
+      p[axis] = in.coordinate("a coordinate");
+    }
+    mesh.add_vertex(p, in.line());
+  }
+  std::vector<std::uint32_t> corners;
+  for (std::uint64_t i = 0; i < faces; ++i) {
+    go_on();
+    corners.resize(count(in, "corners", 2));
+    for (std::uint32_t& corner : corners) {
+      go_on();
+      const std::int64_t index = in.integer("a vertex index of the face");
+      if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
+        in.fail(fmt::format("vertex index {} of {} vertices", index, vertices), kDamaged);
+      corner = static_cast<std::uint32_t>(index);
+    }
+    mesh.add_face(corners, in.line());
+  }
+  if (in.seek()) in.fail("more follows than the counts promise", kDamaged);
+  return mesh.finish();
+}
+
+}  // namespace
+
+Mesh parse_off(std::string_view bytes, const std::string& name) {
+  try {
+    return parse_off_lines(bytes, name);
+  } catch (const Error& of_lines) {
+    try {
+      return parse_off_numbers(bytes, name);
+    } catch (const Error&) {
+      throw of_lines;
+    }
+  }
 }
 
 namespace {
@@ -314,17 +385,34 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Moves to the next line and checks its first words; false at the end of the file.
+// Moves to the next word and checks it and those after it. They may stand on any lines.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
-  if (!in.next_line())
-    in.fail(fmt::format("the file ends where '{}' should follow", words), remedy);
   for (std::size_t start = 0; start < words.size();) {
     const std::size_t end = std::min(words.find(' ', start), words.size());
+    if (!in.seek()) in.fail(fmt::format("the file ends where '{}' should follow", words), remedy);
     const std::string_view word = in.token();
     if (lower_case(word) != words.substr(start, end - start))
       in.fail(fmt::format("'{}' should stand here, not {}", words, quote_token(word)), remedy);
     start = end + 1;
+  }
+}
+
+// Reads the rest of the line, but not the word `stop`, if it is there with `after` among the few
+// words behind it: then the whole file may stand on one line.
+std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
+  std::string out;
+  for (;;) {
+    TextReader ahead = in;
+    const std::string_view word = ahead.token();
+    if (word.empty()) return out;
+    TextReader behind = ahead;
+    constexpr int kFew = 8;
+    for (int k = 0; lower_case(word) == stop && k < kFew; ++k) {
+      if (lower_case(behind.token()) == after) return out;
+    }
+    out.append(out.empty() ? "" : " ").append(word);
+    in = ahead;
   }
 }
 
@@ -333,18 +421,24 @@ Mesh parse_text(std::string_view bytes, const std::string& name) {
   MeshBuilder mesh(name);
   Welder welder(mesh);
   bool inside = false;
+  std::size_t solids = 0;
   std::vector<std::uint32_t> corners;
-  while (in.next_line()) {
+  while (in.seek()) {
     const std::string word = lower_case(in.token());
     if (!inside && word == "solid") {
       inside = true;
+      const std::string solid = rest_before(in, "facet", "normal");
+      mesh.set_group(solid.empty() && solids > 0 ? fmt::format("solid {}", solids + 1) : solid);
+      ++solids;
     } else if (inside && word == "endsolid") {
       inside = false;
+      rest_before(in, "solid", "facet");
     } else if (inside && word == "facet") {
+      rest_before(in, "outer", "loop");
       expect(in, "outer loop");
       corners.clear();
       for (;;) {
-        if (!in.next_line()) in.fail("the file ends within a facet", "get the whole file");
+        if (!in.seek()) in.fail("the file ends within a facet", "get the whole file");
         const std::string_view token = in.token();
         if (lower_case(token) == "endloop") break;
         if (lower_case(token) != "vertex") {

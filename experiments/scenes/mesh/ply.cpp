@@ -144,7 +144,7 @@ class AsciiBody {
   void end() {
     if (!in_.token().empty()) in_.fail("more values than the header declares", kDamaged);
   }
-  double coordinate(Type, std::string_view what) { return in_.number(what); }
+  double coordinate(Type, std::string_view what) { return in_.coordinate(what); }
   std::int64_t integer(Type, std::string_view what) { return in_.integer(what); }
   void skip(Type) {
     if (in_.token().empty()) in_.fail("fewer values than the header declares", kDamaged);
@@ -169,12 +169,7 @@ class BinaryBody {
 
   void begin() {}
   void end() {}
-  double coordinate(Type type, std::string_view what) {
-    const double value = take(type);
-    if (!std::isfinite(value))
-      fail(fmt::format("{} of a vertex is not finite", what), "correct the mesh where it was made");
-    return value;
-  }
+  double coordinate(Type type, std::string_view) { return take(type); }
   // Every integer type of PLY fits into a double.
   std::int64_t integer(Type type, std::string_view) {
     return static_cast<std::int64_t>(take(type));
@@ -360,8 +355,12 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
     }
   }
   if (!body.at_end()) body.fail("more follows than the header promises", kDamaged);
-  if (!has_faces)
-    throw Error(name, "there is no element 'face'", "write the mesh as faces, not strips");
+  if (faces.sizes.empty() && mesh.vertex_count() > 0) {
+    throw Error(name,
+                fmt::format("is a cloud of {} points: {}", mesh.vertex_count(),
+                            has_faces ? "it has no faces" : "there is no element 'face'"),
+                "give the mesh of a surface, written as faces, not as strips");
+  }
 
   std::span<const std::uint32_t> corners = faces.corners;
   for (std::size_t i = 0; i < faces.sizes.size(); ++i) {

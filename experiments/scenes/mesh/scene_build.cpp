@@ -26,6 +26,15 @@ constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 // Rodrigues' formula. The diagonal is k^2 + c (1 - k^2), with 1 - k^2 written as the other two
 // squares, so that a rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
+  if (rotation.quaternion) {
+    auto [x, y, z, w] = *rotation.quaternion;
+    const double most = std::max({std::abs(x), std::abs(y), std::abs(z), std::abs(w)});
+    for (double* const c : {&x, &y, &z, &w}) *c /= most;  // squares neither overflow nor vanish
+    const double s = 2 / (x * x + y * y + z * z + w * w);
+    return {Vec3(1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
+            Vec3(s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)),
+            Vec3(s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y))};
+  }
   Vec3 k = rotation.axis /
            rotation.axis.cwiseAbs().maxCoeff();  // so that squares neither overflow nor vanish
   k /= std::sqrt(k.x() * k.x() + k.y() * k.y() + k.z() * k.z());
@@ -40,6 +49,17 @@ std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   return {Vec3(xx + c * (yy + zz), xy - k.z() * s, xz + k.y() * s),
           Vec3(xy + k.z() * s, yy + c * (xx + zz), yz - k.x() * s),
           Vec3(xz - k.y() * s, yz + k.x() * s, zz + c * (xx + yy))};
+}
+
+void transform(const std::array<Vec3, 3>& rows, std::vector<Vec3>& points) {
+  for (Vec3& p : points) {
+    Vec3 turned;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3& row = rows[static_cast<std::size_t>(i)];
+      turned[i] = row.x() * p.x() + row.y() * p.y() + row.z() * p.z();
+    }
+    p = turned;
+  }
 }
 
 // Finds the parts that are connected through shared vertices, and numbers them in the order of
@@ -69,21 +89,36 @@ std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part
 
 }  // namespace
 
+namespace {
+
+bool turns(const Placement::Rotation& rotation) {
+  if (!rotation.quaternion) return rotation.angle != 0;
+  const auto& [x, y, z, w] = *rotation.quaternion;
+  return x != 0 || y != 0 || z != 0;
+}
+
+}  // namespace
+
 std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement) {
+  if (placement.matrix) {
+    Placement translated;
+    std::array<Vec3, 3> rows;
+    Vec3 by;
+    for (int i = 0; i < 3; ++i) {
+      const std::array<double, 4>& row = (*placement.matrix)[static_cast<std::size_t>(i)];
+      rows[static_cast<std::size_t>(i)] = Vec3(row[0], row[1], row[2]);
+      by[i] = row[3];
+    }
+    if (rows != std::array<Vec3, 3>{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()})
+      transform(rows, points);
+    translated.translate = by;
+    return place(std::move(points), translated);
+  }
   if (placement.scale) {
     for (Vec3& p : points) p = p.cwiseProduct(*placement.scale);
   }
-  if (placement.rotate && placement.rotate->angle != 0) {
-    const std::array<Vec3, 3> rows = rotation_rows(*placement.rotate);
-    for (Vec3& p : points) {
-      Vec3 turned;
-      for (int i = 0; i < 3; ++i) {
-        const Vec3& row = rows[static_cast<std::size_t>(i)];
-        turned[i] = row.x() * p.x() + row.y() * p.y() + row.z() * p.z();
-      }
-      p = turned;
-    }
-  }
+  if (placement.rotate && turns(*placement.rotate))
+    transform(rotation_rows(*placement.rotate), points);
   if (placement.translate) {
     for (int i = 0; i < 3; ++i) {
       const double step = (*placement.translate)[i];

@@ -20,15 +20,18 @@
 
 namespace farcull {
 
-/// Scale, then rotate, then translate, each step in double and about the origin. A step that is
-/// absent or does nothing (angle 0, translation 0 along an axis) is skipped, so an identity changes
-/// no bit, not even of -0.0.
+/// A matrix alone; or scale, then rotate, then translate, each step in double and about the origin.
+/// A step that is absent or does nothing (angle 0, translation 0 along an axis) is skipped, so an
+/// identity changes no bit, not even of -0.0.
 struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
     double angle = 0;           // radians, counterclockwise seen from the tip of the axis
+    // x, y, z, w of any length but 0, in place of axis and angle
+    std::optional<std::array<double, 4>> quaternion = {};
   };
-  std::optional<Vec3> scale;  // per coordinate
+  std::optional<std::array<std::array<double, 4>, 3>> matrix = {};  // the upper rows of a 4 x 4 one
+  std::optional<Vec3> scale;                                        // per coordinate
   std::optional<Rotation> rotate;
   std::optional<Vec3> translate;
 };

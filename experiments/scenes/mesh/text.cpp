@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -70,11 +71,29 @@ bool underflows(std::string_view digits) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kNameAFile = "name a file that exists and that you may read";
+
+Error too_large(const std::string& path, std::uint64_t max_bytes) {
+  return Error(path, fmt::format("holds more than {} bytes", max_bytes), "split it");
+}
+
+void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
+              std::string& bytes) {
+  char chunk[65536];
+  while (const std::size_t n = std::fread(chunk, 1, sizeof chunk, file)) {
+    bytes.append(chunk, n);
+    if (bytes.size() > max_bytes) throw too_large(path, max_bytes);
+  }
+  if (std::ferror(file))
+    throw Error(path, std::string("cannot be read: ") + std::strerror(errno), kNameAFile);
+}
+
+}  // namespace
+
 std::string read_file(const std::string& path, std::uint64_t max_bytes) {
-  const std::string remedy = "name a file that exists and that you may read";
-  const auto too_large = [&] {
-    return Error(path, fmt::format("holds more than {} bytes", max_bytes), "split it");
-  };
+  const std::string remedy = kNameAFile;
   if (path.find('\0') != std::string::npos)
     throw Error(clean_name(path), "the path contains a NUL byte", remedy);
   std::error_code error;
@@ -90,18 +109,18 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
                                                              &std::fclose);
   if (!file) throw Error(path, std::string("cannot be opened: ") + std::strerror(errno), remedy);
   const std::uintmax_t claimed = std::filesystem::file_size(path, error);
-  if (!error && claimed > max_bytes) throw too_large();
+  if (!error && claimed > max_bytes) throw too_large(path, max_bytes);
 
   // The size is a hint: the file may change while it is read, and in /proc it is 0.
   std::string bytes;
   if (!error) bytes.reserve(claimed);
-  char chunk[65536];
-  while (const std::size_t n = std::fread(chunk, 1, sizeof chunk, file.get())) {
-    bytes.append(chunk, n);
-    if (bytes.size() > max_bytes) throw too_large();
-  }
-  if (std::ferror(file.get()))
-    throw Error(path, std::string("cannot be read: ") + std::strerror(errno), remedy);
+  read_all(file.get(), path, max_bytes, bytes);
+  return bytes;
+}
+
+std::string read_standard_input(std::uint64_t max_bytes) {
+  std::string bytes;
+  read_all(stdin, "standard input", max_bytes, bytes);
   return bytes;
 }
 
@@ -159,23 +178,25 @@ Number parse_number(std::string_view token, double& value) {
   return Number::kOk;
 }
 
-TextReader::TextReader(std::string_view text, std::string name, Rules rules)
-    : text_(text), name_(std::move(name)), rules_(rules) {
+TextReader::TextReader(std::string_view text, std::string_view name, Rules rules)
+    : text_(text), name_(name), rules_(rules) {
   if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+  if (text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos)
+    end_ = '\r';
 }
 
 bool TextReader::at_continuation(std::size_t at) const {
   if (!rules_.continuation || text_[at] != '\\') return false;
   const std::string_view after = text_.substr(at + 1, 2);
-  return after.starts_with('\n') || after.starts_with("\r\n");
+  return after.starts_with(end_) || after.starts_with("\r\n");
 }
 
 void TextReader::skip_blanks() {
   while (at_ < text_.size()) {
-    if (is_blank(text_[at_])) {
+    if (text_[at_] != end_ && is_blank(text_[at_])) {
       ++at_;
     } else if (at_continuation(at_)) {
-      at_ = text_.find('\n', at_) + 1;
+      at_ = text_.find(end_, at_) + 1;
       ++line_;
     } else {
       return;
@@ -196,9 +217,9 @@ bool TextReader::next_line() {
       skip_blanks();
       if (at_ == text_.size()) return false;
       const bool comment = rules_.comment != '\0' && text_[at_] == rules_.comment;
-      if (text_[at_] != '\n' && !comment) return true;
+      if (text_[at_] != end_ && !comment) return true;
     }
-    const std::size_t end = text_.find('\n', at_);
+    const std::size_t end = text_.find(end_, at_);
     if (end == std::string_view::npos) {
       at_ = text_.size();
     } else {
@@ -210,11 +231,18 @@ bool TextReader::next_line() {
   return false;
 }
 
+bool TextReader::seek() {
+  skip_blanks();
+  const bool comment = at_ < text_.size() && rules_.comment != '\0' && text_[at_] == rules_.comment;
+  if (started_ && at_ < text_.size() && text_[at_] != end_ && !comment) return true;
+  return next_line();
+}
+
 std::string_view TextReader::token() {
   skip_blanks();
   const std::size_t start = at_;
   if (start < text_.size() && rules_.comment != '\0' && text_[start] == rules_.comment) return {};
-  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) &&
+  while (at_ < text_.size() && text_[at_] != end_ && !is_blank(text_[at_]) &&
          !at_continuation(at_)) {
     ++at_;
   }
@@ -230,7 +258,11 @@ std::string TextReader::rest() {
   return joined;
 }
 
-double TextReader::number(std::string_view what) {
+double TextReader::number(std::string_view what) { return read_number(what, true); }
+
+double TextReader::coordinate(std::string_view what) { return read_number(what, false); }
+
+double TextReader::read_number(std::string_view what, bool finite) {
   const std::string_view text = token();
   if (text.empty()) fail(fmt::format("{} is missing", what), "complete the line");
   double value = 0;
@@ -241,6 +273,7 @@ double TextReader::number(std::string_view what) {
       fail(fmt::format("{} is {}, not a number", what, quote_token(text)),
            "write a decimal number");
     case Number::kNotFinite:
+      if (!finite) return std::numeric_limits<double>::quiet_NaN();
       break;
   }
   fail(fmt::format("{} is {}, not a finite double", what, quote_token(text)),
@@ -264,14 +297,14 @@ std::int64_t TextReader::integer(std::string_view what) {
 
 Vec3 TextReader::point() {
   Vec3 p;
-  p.x() = number("x");
-  p.y() = number("y");
-  p.z() = number("z");
+  p.x() = coordinate("x");
+  p.y() = coordinate("y");
+  p.z() = coordinate("z");
   return p;
 }
 
 void TextReader::fail(const std::string& reason, const std::string& remedy) const {
-  throw Error(name_, reason, remedy, line_);
+  throw Error(std::string(name_), reason, remedy, line_);
 }
 
 namespace {
@@ -304,7 +337,8 @@ void check_size(std::uint64_t size, std::uint64_t compressed, const std::string&
     throw Error(name,
                 fmt::format("decompresses to more than {} times its {} bytes", limits.most_ratio,
                             compressed),
-                "if it is a mesh all the same, decompress it with gzip -d and name the result");
+                "if it is a mesh all the same, write its contents to another file, gzip -dc FILE "
+                ">OTHER, and name that");
   }
 }
 

@@ -15,6 +15,9 @@ namespace farcull {
 /// device, cannot be read, or holds more than max_bytes.
 std::string read_file(const std::string& path, std::uint64_t max_bytes);
 
+/// All bytes of standard input. Throws Error if it cannot be read or holds more than max_bytes.
+std::string read_standard_input(std::uint64_t max_bytes);
+
 /// A token for a message: in quotes, printable ASCII, cut after 40 characters.
 std::string quote_token(std::string_view token);
 
@@ -32,9 +35,10 @@ enum class Number { kOk, kMalformed, kNotFinite };
 /// kNotFinite. value is set only with kOk.
 Number parse_number(std::string_view token, double& value);
 
-/// A cursor over the lines and tokens of a text that outlives it. Tokens are separated by blanks
-/// (space, tab, CR, VT, FF). Lines without a token are passed over but counted. A byte order mark
-/// at the start is passed over.
+/// A cursor over the lines and tokens of a text that outlives it, as does the name. Tokens are
+/// separated by blanks (space, tab, CR, VT, FF). Lines end with LF; in a text that has CR and no
+/// LF, with CR. Lines without a token are passed over but counted. A byte order mark at the start
+/// is passed over.
 class TextReader {
  public:
   struct Rules {
@@ -42,10 +46,12 @@ class TextReader {
     bool continuation = false;  // a backslash before the end of a line joins the next line to it
   };
 
-  TextReader(std::string_view text, std::string name, Rules rules);
+  TextReader(std::string_view text, std::string_view name, Rules rules);
 
   /// Leaves the current line for the next one that holds a token; false at the end of the text.
   bool next_line();
+  /// Moves to the next token, on this line or a later one; false at the end of the text.
+  bool seek();
   /// The next token of the current line; empty at its end.
   std::string_view token();
   /// The tokens that are left on the line, joined by single spaces.
@@ -54,7 +60,10 @@ class TextReader {
   double number(std::string_view what);
   /// The next token of the line as an integer. Throws Error calling it `what`.
   std::int64_t integer(std::string_view what);
-  /// The next three tokens of the line as a point. Throws Error.
+  /// number() for a coordinate, which may be infinite or a NaN.
+  double coordinate(std::string_view what);
+  /// The next three tokens of the line as a point, whose coordinates may be infinite or NaNs.
+  /// Throws Error.
   Vec3 point();
 
   /// 1-based line of the token read last.
@@ -67,14 +76,16 @@ class TextReader {
 
  private:
   bool at_continuation(std::size_t at) const;
+  double read_number(std::string_view what, bool finite);
   void skip_blanks();
 
   std::string_view text_;
-  std::string name_;
+  std::string_view name_;
   Rules rules_;
   std::size_t at_ = 0;
   long line_ = 1;
   bool started_ = false;
+  char end_ = '\n';  // of a line
 };
 
 /// Whether the bytes begin as gzip data do: 1f 8b, and 8 for the method "deflate".

@@ -56,42 +56,38 @@ bad a certificate of another version | older\.json: version is not 3 | check old
 rows(r"""
 pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
 good.obj << {T}; f 1 2 3
-0 run | run pierced.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^not asked .*\(--self asks\)$
-  | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":1,"pairs":1,"which":\[\[0,0\]\]\}
-  | @p.json ~ "not_asked":\{"objects":1,"pairs":1\}
-# One object leaves nothing to test. That is said, with the command that tests it.
-0 nothing for {command} | {command} pierced.obj | ! ^verified
-  | ^nothing to test: the scene is one object, and an object is tested .* only with --self$
-  | ^this tests it: farcull {command} pierced\.obj --self$
-0 nothing for compare | compare pierced.obj --methods far-pairs,exact | ^this tests it: farcull compare pierced\.obj --self$
-0 nothing for cullide | run pierced.obj --method cullide --device software --resolution 64
-  | ^this tests it: farcull run pierced\.obj --method far-pairs --self$
+away.obj << v 50 0 0; v 51 0 0; v 50 1 0; f 1 2 3
+0 run | run pierced.obj away.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^not asked .*\(--self asks\)$
+  | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":2,"pairs":1,"which":\[\[0,1\]\]\}
+  | @p.json ~ "not_asked":\{"objects":2,"pairs":1\}
+# One object leaves nothing to test. That is an error that names the command which tests it.
+bad nothing for {command} | SCENE: nothing to test: the scene is one object, and an object is tested .* only with --self; .*test this one: farcull {command} pierced\.obj --self$ | {command} pierced.obj
+bad nothing for compare | SCENE: nothing to test.*: farcull compare pierced\.obj --self$ | compare pierced.obj --methods far-pairs,exact
+bad nothing for cullide | SCENE: .*: farcull run pierced\.obj --method far-pairs --self$ | run pierced.obj --method cullide --device software --resolution 64
 one.json << {"objects": [{"mesh": "pierced.obj"}]}
-0 nothing in a scene file | verify one.json | ^this tests it: farcull verify one\.json --self$
-  | @r.json ^    "nothing_to_test": "the scene is one object, and
-0 plan as JSON | plan pierced.obj --json - | ^  "nothing_to_test": "the scene is one object, and
+bad nothing in a scene file | SCENE: .*: farcull verify one\.json --self$ | verify one.json
 0 something for verify | verify pierced.obj --self --json something.json | ! nothing to test
   | ^verified: no colliding pair was culled, 1 pair accounted for$ | @something.json ^    "nothing_to_test": null,$
 one.json << {"objects": [{"mesh": "pierced.obj", "self": true}]}
 0 something in a scene file | verify one.json | ^verified:
 0 two objects | verify pierced.obj good.obj | ^verified:
-0 check | check p.json pierced.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
-0 verify | verify pierced.obj --method far-pairs | {unasked}
-0 run far | run pierced.obj --method far --device software --resolution 64 | {unasked} | ^not asked .*\(--self asks\)$
-0 run cullide | run pierced.obj --method cullide --device software --resolution 64 | {unasked}
+0 check | check p.json pierced.obj away.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
+0 verify | verify pierced.obj away.obj --method far-pairs | {unasked}
+0 run far | run pierced.obj away.obj --method far --device software --resolution 64 | {unasked} | ^not asked .*\(--self asks\)$
+0 run cullide | run pierced.obj away.obj --method cullide --device software --resolution 64 | {unasked}
   | ^not asked .*\(--method far-pairs --self asks\)$
-0 compare | compare pierced.obj --methods far-pairs,exact | {unasked}
-0 bench | bench pierced.obj --device cpu --repeat 1 --peers none | {unasked}
+0 compare | compare pierced.obj away.obj --methods far-pairs,exact | {unasked}
+0 bench | bench pierced.obj away.obj --device cpu --repeat 1 --peers none | {unasked}
 $ cp pierced.obj pierced0.obj
-0 frames | run pierced%d.obj --method far-pairs --frames 1 | ^not asked .* 1 pair of triangles inside pierced
-  | ^this tests it: farcull run pierced%d\.obj --method far-pairs --frames 1 --self$
-0 frames | run pierced%d.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":1,"pairs":1,
-0 plan | plan pierced.obj --method far-pairs
-  | ^not asked  whether an object meets itself: 1 pair of triangles inside pierced[ ]
+0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 | ^not asked .* 1 pair of triangles inside pierced
+0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":2,"pairs":1,
+$ ! "$farcull" run pierced%d.obj --frames 1 >/dev/null 2>err && grep -q 'SCENE: nothing to test.*farcull run pierced%d.obj --frames 1 --self$' err
+0 plan | plan pierced.obj away.obj --method far-pairs
+  | ^not asked  whether an object meets itself: 1 pair of triangles inside pierced,
 0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! not asked
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
-     unasked=r'^not asked +whether an object meets itself: 1 pair of triangles inside pierced \(')
+     unasked=r'^not asked +whether an object meets itself: 1 pair of triangles inside pierced, away \(')
 
 # ---- outputs that are inputs
 

@@ -42,9 +42,11 @@ rows(r"""
 0 kinds of frames | run two-spheres --frames 2 --contacts --json - --pairs frames.csv | ^ +"crossing": [0-9]+,$
   | @frames.csv #0 ^frame,object_a,.*,contact$
 
+0 the time of contacts | run {all} --contacts | ^time .*; contacts [0-9.]+ more; accounting
+0 no such time | run {all} | ! ; contacts
 # far-pairs makes none of the ignored pairs.
 0 ignored | verify {all} --ignore 'f*:spike' --pairs ignored.csv | [ ]2 ignored \+ 0 missed$
-  | ^ignored    0 candidate pairs of 2 pairs of objects$ | $ cmp -s ignored.csv <(grep -v ',2,0$' plain.csv)
+  | ^ignored    2 pairs of objects, of which no candidate pairs were made$ | $ cmp -s ignored.csv <(grep -v ',2,0$' plain.csv)
 pairs.txt << # links; floor:spike; fin:spike
 0 ignored by {method} | run {all} --method {method} --ignore-file pairs.txt --pairs by.csv | $ cmp -s ignored.csv by.csv
 $ printf '\xEF\xBB\xBFfloor:spike\r\nfin:spike\r\n' >marked.txt

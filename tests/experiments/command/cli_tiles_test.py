@@ -83,7 +83,7 @@ each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*' | pl
 $ "$farcull" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv' 2>&1 >/dev/null | grep -qF 'no UTF-8'
 ignored.txt << tetrahedron0:*2
 each .*--ignore-file | run crowd --ignore-file ignored.txt | --tiles 1/2 --pairs ignored.txt | --json ignored.txt
-0 a tile of one object | run {mesh} --tiles 1/1 | nothing to test: the scene is one object
+bad a tile of one object | SCENE: nothing to test: the scene is one object | run {mesh} --tiles 1/1
 # A record and a list in two folders, of which one is behind a link.
 $ mkdir -p real/deep && ln -s real/deep link
 0 behind a link | run two-tori --tiles 1/1 --json link/t.json --pairs t.csv

@@ -1,12 +1,17 @@
 """Answers of collide, Collider, join and distances, and the arrays that they take."""
 
+import inspect
+import json
 import math
+import os
+import pickle
+import subprocess
 import threading
 
 import farcull
 import numpy as np
 import pytest
-from lab import error_of
+from lab import PROGRAM, error_of, same_pairs
 
 V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1], [9, 9, 9]], float)
 F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
@@ -49,11 +54,11 @@ def test_an_index_that_does_not_fit_is_named_with_its_row(row, value):
     given[row, row % 3] = value
     said = f"triangle {row} names vertex {value}"
     error = error_of(farcull.collide, V, given, self=True)
-    assert error.where == "triangles" and error.reason == f"{said} of {len(V)}"
+    assert error.where == "F" and error.reason == f"{said} of {len(V)}"
     for other in (np.asfortranarray(given), given.astype(np.uint64)):
         error = error_of(farcull.collide, V, other, self=True)
         as_read = said if other.dtype == np.int64 else f"triangle {row} names vertex {value % 2**64}"
-        assert error.where == "triangles" and error.reason == as_read
+        assert error.where == "F" and error.reason == as_read
 
 
 def test_half_precision_is_read_exactly():
@@ -94,9 +99,9 @@ def test_arrays_that_fit_are_not_copied(monkeypatch):
     from farcull import _arguments
 
     indices = F.astype(np.uint32)
-    assert _arguments.array("vertices", V) is V
-    assert _arguments.array("triangles", indices) is indices
-    assert _arguments.array("vertices", V.tolist()) is not V
+    assert _arguments.array("V", V) is V
+    assert _arguments.array("F", indices) is indices
+    assert _arguments.array("V", V.tolist()) is not V
 
 
 def test_an_answer_outlives_its_collider_and_its_input():
@@ -119,7 +124,7 @@ def bad_arguments():
            V.astype(object), V.astype(bool), V.astype(str), np.full((7, 3), 2**60), np.ma.masked_less(V, 0),
            [[0, 0, 0], [1]], None, []],
         F=[F - 1, F + 1, far, F.astype(float), F.astype(bool), F[:, :2], "triangles"],
-        objects=[[1, 2], [0, 2, 1], [0, 4], [0, -1], [0, 2**40], np.array([0, 2**63], np.uint64), [0.0, 1.0],
+        object_starts=[[1, 2], [0, 2, 1], [0, 0, 2], [0, 3], [0, 4], [0, -1], [0, 2**40], np.array([0, 2**63], np.uint64), [0.0, 1.0],
                  [[0, 1]], None, []],
         self=[[True], 1, "yes"],
         clearance=[-1, math.inf, math.nan, "0", 10**400],
@@ -135,18 +140,107 @@ def bad_arguments():
 
 @pytest.mark.parametrize("name, value", bad_arguments())
 def test_an_argument_that_is_wrong_is_named(name, value):
-    error = error_of(farcull.collide, **{**dict(V=V, F=F, objects=OBJECTS), name: value})
+    error = error_of(farcull.collide, **{**dict(V=V, F=F, object_starts=OBJECTS), name: value})
     assert isinstance(error, farcull.InputError) and isinstance(error, ValueError)
     # An index beyond no vertices at all is the triangles' fault.
-    assert error.where == {"V": "vertices", "F": "triangles"}.get(name, name) or (
-        name == "V" and error.where == "triangles")
+    assert error.where == name or (name == "V" and error.where == "F")
 
 
-def test_nothing_at_all_is_an_answer():
-    empty = np.empty((0, 3))
-    result = farcull.collide(empty, empty.astype(int), [0, 0])
-    assert result.pairs.shape == (0, 2)
-    assert farcull.collide([], [], self=True).pairs.shape == (0, 2)
+# The cases of the tests of C++, and the program beside them where the input is one object.
+with open(os.path.join(os.environ["FARCULL_ROOT"], "tests/cases/misunderstood.json")) as file:
+    CASES = json.load(file)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_is_misunderstood_is_an_error_with_a_remedy(name, tmp_path):
+    case = CASES[name]
+    vertices, triangles = (np.array(case[key]).reshape(-1, 3) for key in ("vertices", "triangles"))
+    triangles = triangles.astype(int)
+    arguments = dict(V=vertices, F=triangles, object_starts=case["object_starts"], self=case["self"])
+
+    def streamed(**given):
+        return list(farcull.stream(**given))
+
+    def run_as_scene(**given):
+        return farcull.Scene.from_arrays(**given).run()
+
+    for call in (farcull.collide, streamed, farcull.distances, run_as_scene):
+        if "where" not in case:
+            call(**arguments)
+            continue
+        error = error_of(call, **arguments)
+        if call is run_as_scene and error.where == "scene":
+            assert "nothing to test" in error.reason
+        else:
+            assert error.where == case["where"] and case["reason"] in error.reason
+    if case["object_starts"] or not len(triangles):
+        return
+    mesh = tmp_path / "mesh.obj"
+    mesh.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in vertices)
+                    + "".join(f"f {a} {b} {c}\n" for a, b, c in triangles + 1))
+    for command in ("run", "verify", "plan", "distance"):
+        words = [PROGRAM, command, mesh] + ["--self"] * case["self"]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        assert done.returncode == (2 if "where" in case else 0)
+        if "where" in case:
+            assert done.stdout == "" and "SCENE: " in done.stderr and ";" in done.stderr
+
+
+def test_labels_group_triangles_in_any_order():
+    scene = farcull.Scene("two-tori")
+    V, F, starts = scene.vertices, scene.triangles, scene.object_starts
+    count = len(F)
+    expected = farcull.collide(V, F, starts, kinds=True)
+    assert len(expected.pairs) == 282
+    labels = np.repeat([3, 7], [starts[1], count - starts[1]])
+    order = np.random.default_rng(20261127).permutation(count)
+    place = np.argsort(order)  # where the triangle k is now
+    wanted = np.sort(place[expected.pairs], axis=1)
+    wanted = wanted[np.lexsort((wanted[:, 1], wanted[:, 0]))].tolist()
+    for names in (labels, labels.astype(str)):
+        assert same_pairs(farcull.collide(V, F, labels=names), expected)
+        mixed = farcull.collide(V, F[order], labels=names[order], kinds=True)
+        assert mixed.pairs.tolist() == wanted
+        assert sorted(mixed.kinds) == sorted(expected.kinds)
+        streamed = [pair for part in farcull.stream(V, F[order], labels=names[order]) for pair in part.pairs.tolist()]
+        assert sorted(streamed) == wanted
+        (answer,) = farcull.distances(V, F[order], labels=names[order])
+        assert answer.objects == tuple(np.unique(names).tolist()) and list(sorted(answer.triangles)) in wanted
+        ignore = [tuple(np.unique(names))]
+        assert len(farcull.collide(V, F[order], labels=names[order], ignore=ignore).pairs) == 0
+    # The same labels as starts were 12 pairs before, without an error.
+    assert error_of(farcull.collide, V, F, np.repeat([0, 1], count // 2)).where == "object_starts"
+    for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None):
+        assert error_of(farcull.collide, V, F, labels=wrong).where in ("labels", "object_starts")
+    assert error_of(farcull.collide, V, F, starts, labels=labels).where == "labels"
+    assert error_of(farcull.collide, V, F, labels=labels, limit=3).where == "limit"
+    assert error_of(farcull.collide, V, F, labels=labels, ignore=[(3, 8)]).where == "ignore"
+
+
+def test_a_vertex_that_no_triangle_uses_may_be_no_number():
+    more = np.vstack([V, [[math.nan, 0, 0], [0, math.inf, 0]]])
+    result = farcull.collide(more, F, OBJECTS)
+    assert result.pairs.tolist() == [[0, 1]] and result.report.passed_over == 2
+    used = F.copy()
+    used[2, 1] = len(V) + 1
+    assert error_of(farcull.collide, more, used, OBJECTS).reason == f"vertex {len(V) + 1} is not finite"
+
+
+def test_what_the_package_shows_of_itself():
+    result = farcull.collide(V, F, OBJECTS)
+    assert repr(result) == "<farcull.Result: 1 pairs, 0 of neighbours>"
+    said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+    assert said.startswith(f"farcull {farcull.__version__}, ")
+    for call in (farcull.collide, farcull.stream, farcull.distances, farcull.Collider.find):
+        for name in inspect.signature(call).parameters:
+            assert name in call.__doc__ or call is farcull.stream, (call, name)
+    with pytest.raises(FileNotFoundError) as caught:
+        farcull.Scene("/no/such/file.obj")
+    assert isinstance(caught.value, farcull.Error) and caught.value.filename == "/no/such/file.obj"
+    scene = farcull.Scene.from_arrays(V, F, OBJECTS, self=[True, False, False], names=["a", "b", "c"])
+    again = pickle.loads(pickle.dumps(scene))
+    assert again.names == scene.names and again.self == scene.self
+    assert np.array_equal(again.vertices, V) and again.object_starts.tolist() == OBJECTS
 
 
 def test_what_only_claims_to_be_an_array_is_refused():
@@ -158,8 +252,8 @@ def test_what_only_claims_to_be_an_array_is_refused():
             raise RuntimeError("no")
 
     for given in (Liar(), Thrower(), object(), {1, 2}, b"bytes"):
-        assert error_of(farcull.collide, given, F, OBJECTS).where == "vertices"
-        assert error_of(farcull.collide, V, given, OBJECTS).where == "triangles"
+        assert error_of(farcull.collide, given, F, OBJECTS).where == "V"
+        assert error_of(farcull.collide, V, given, OBJECTS).where == "F"
 
 
 def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
@@ -246,8 +340,8 @@ def test_join_makes_one_scene_of_several_meshes():
     assert farcull.collide(vertices, triangles, objects).pairs.tolist() == [[0, 1]]
     assert error_of(farcull.join).where == "meshes"
     assert error_of(farcull.join, (V, F), V).where == "meshes"
-    assert error_of(farcull.join, (V[:2], F)).where == "triangles"
-    assert error_of(farcull.join, (V.astype(object), F)).where == "vertices"
+    assert error_of(farcull.join, (V[:2], F)).where == "F"
+    assert error_of(farcull.join, (V.astype(object), F)).where == "V"
 
 
 def cube(size, closed=True):
@@ -296,9 +390,9 @@ def test_distances():
     assert len(farcull.distances(apart, F, OBJECTS, kind="all", within=100)) == 3
     assert len(farcull.distances(apart, F, OBJECTS, kind="nearest", k=1)) == 2
     for change in (dict(kind="far"), dict(k=0), dict(k=-1), dict(within=-1), dict(within=math.nan), dict(kind="all"),
-                   dict(k=7), dict(self=True, kind="nearest"), dict(inside="no"), dict(threads=-1), dict(objects=None),
+                   dict(k=7), dict(self=True, kind="nearest"), dict(inside="no"), dict(threads=-1), dict(object_starts=None),
                    dict(V=V * math.nan)):
-        arguments = {**dict(V=apart, F=F, objects=OBJECTS), **change}
+        arguments = {**dict(V=apart, F=F, object_starts=OBJECTS), **change}
         where = error_of(farcull.distances, **arguments).where
         named = next(iter(change))
-        assert where == {"V": "vertices", "kind": "within"}.get(named, named) or where == named
+        assert where == {"kind": "within"}.get(named, named) or where == named

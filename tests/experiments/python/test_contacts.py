@@ -125,7 +125,7 @@ def test_runs_of_scenes_answer_the_same(scene):
     V, F, program = scene
     files = sorted(program.folder.glob("*.off"))
     read = farcull.Scene(*files, self=True)
-    starts = read.objects.tolist()
+    starts = read.object_starts.tolist()
     assert starts == OBJECTS and read.names == ["o0", "o1", "o2", "o3"]
     for method in ("far-pairs", "exact"):
         record = read.run(method, kinds=True)
@@ -148,7 +148,7 @@ def test_runs_of_scenes_answer_the_same(scene):
 
 def test_all_missed_pairs_are_without_those_of_ignored_objects():
     tori = farcull.Scene("two-tori")
-    (V, F), second = (tori.vertices, tori.triangles), tori.objects[1]
+    (V, F), second = (tori.vertices, tori.triangles), tori.object_starts[1]
     V, F, objects = farcull.join((V, F[:second]), (V, F[second:]), (V, F[second:]))
     three = farcull.Scene.from_arrays(V, F, objects)
     options = dict(resolution=64, device="cpu")

@@ -118,7 +118,7 @@ def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():
 
     changer = threading.Thread(target=change)
     changer.start()
-    seen = {"answered": 0, "vertices": 0, "triangles": 0}
+    seen = {"answered": 0, "V": 0, "F": 0}
     for call in range(400):
         try:
             farcull.collide(V, F, [0, 4000], threads=1)
@@ -165,7 +165,7 @@ def test_threads_that_call_at_once_agree():
                     farcull.collide(V, F + 1, self=True)
                     same = False
                 except farcull.InputError as error:
-                    same = error.where == "triangles"
+                    same = error.where == "F"
             if not same:
                 wrong.append(k)
     threads = [threading.Thread(target=work, args=(k,)) for k in range(6)]
@@ -232,7 +232,7 @@ def test_another_interpreter_of_the_process_is_refused(first):
     except interpreters.RunFailedError as error:
         print(error)
     import farcull
-    print(farcull.collide([[0, 0, 0]], [[0, 0, 0]], self=True).pairs.shape)
+    print(farcull.collide([[0, 0, 0]], [[0, 0, 0]] * 2, self=True).pairs.shape)
     """)
     assert "not the main one" in out and out.endswith("(0, 2)\n")
 

@@ -20,7 +20,7 @@ def program(*arguments):
 
 def listed(record):
     """The pairs of a record as rows of the program's list."""
-    starts = record.scene.objects
+    starts = record.scene.object_starts
     pairs = np.concatenate([record.pairs, record.neighbour_pairs])
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
     owner = np.searchsorted(starts, pairs, side="right") - 1
@@ -47,7 +47,7 @@ def test_every_built_in_scene_answers_as_the_program(name):
         pytest.skip(str(error))
     record = scene.run(verify=False)
     assert np.array_equal(listed(record), of_program(name))
-    starts, selves = scene.objects, scene.self
+    starts, selves = scene.object_starts, scene.self
     if len(starts) > 1 or any(selves):
         assert same_pairs(farcull.collide(scene.vertices, scene.triangles, starts, self=selves), record)
 
@@ -117,7 +117,7 @@ def test_bad_names_are_refused():
 
 
 def test_scenes_of_arrays_have_names():
-    arrays = dict(V=np.eye(3), F=[[0, 1, 2], [0, 0, 0]], objects=[0, 1])
+    arrays = dict(V=np.eye(3), F=[[0, 1, 2], [0, 0, 0]], object_starts=[0, 1])
     assert farcull.Scene.from_arrays(**arrays).names == ["0", "1"]
     assert farcull.Scene.from_arrays(**arrays, names=["a", "b"]).names == ["a", "b"]
     for names in (["a"], "ab", [1, 2]):

@@ -59,8 +59,8 @@ def test_nothing_is_an_end_and_errors_are_those_of_collide():
     V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9], [8, 9, 9], [9, 8, 9]])
     nothing = farcull.stream(V, [[0, 1, 2], [3, 4, 5]], [0, 1])
     assert list(nothing) == [] and nothing.complete and nothing.decided == 0
-    for where, arguments in (("objects", (V, [[0, 1, 2]])), ("triangles", (V, [[0, 1, 6], [3, 4, 5]], [0, 1])),
-                             ("vertices", (V * np.nan, [[0, 1, 2], [3, 4, 5]], [0, 1]))):
+    for where, arguments in (("object_starts", (V, [[0, 1, 2]])), ("F", (V, [[0, 1, 6], [3, 4, 5]], [0, 1])),
+                             ("V", (V * np.nan, [[0, 1, 2], [3, 4, 5]], [0, 1]))):
         assert refused(farcull.stream, *arguments) == where
     assert refused(farcull.stream, V, [[0, 1, 2], [3, 4, 5]], [0, 1], ignore=[(0, 2)]) == "ignore"
 
@@ -81,7 +81,7 @@ sys.path.insert(0, {folder!r})
 from test_stream import crossed
 V, F, objects = crossed({n})
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # MiB
-farcull.collide(V[:3], F[:1], self=True)  # libraries and threads are there
+farcull.collide(V[:6], F[:2], self=True)  # libraries and threads are there
 sum(len(p.pairs) for p in farcull.stream(*crossed(300)))
 before, count = peak(), 0
 if {whole}:

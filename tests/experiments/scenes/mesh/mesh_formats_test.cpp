@@ -65,9 +65,9 @@ TEST(ObjReader, RefusesWithTheLine) {
                        {kThree + "f 1 2 99999999999999999999\n", 4, "9999"},
                        {kThree + "f 1 2\n", 4, "polygon with 2 vertices"},
                        {kThree + "f\n", 4, "polygon with 0 vertices"},
-                       {"v 0 0 nan\n", 1, "z is 'nan'"},
-                       {"v 0 0 0\nv inf 0 0\n", 2, "x is 'inf'"},
-                       {"v 0 1e999 0\n", 1, "y is '1e999'"},
+                       {"v 0 0 nan\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", 1, "vertex 0 (counted from 0)"},
+                       {"v 0 0 0\nv inf 0 0\nf 1 1 2\n", 2, "is not finite, and face 0"},
+                       {"v 0 1e999 0\nf 1 1 1\n", 1, "not finite"},
                        {"v 0 0\n", 1, "z is missing"},
                        {"v 0 0 zero\n", 1, "not a number"},
                        // Free-form geometry would be lost; binary garbage is not printed as it is.
@@ -154,8 +154,8 @@ TEST(OffReader, RefusesWithTheLine) {
                        {"OFF", 1, "counts"},
                        {"OFF\n3                   ", 2, "faces is missing"},
                        {kOff + "3 0 1 2\n3 0 2 3\n3 0 1 3\n", 11, "more follows"},
-                       {"OFF\n1 0 0\n0 nan 0\n", 3, "y is 'nan'"},
-                       {"OFF\n1 0 0\n0 0 -1e309\n", 3, "z is '-1e309'"}});
+                       {"OFF\n1 1 0\n0 nan 0\n3 0 0 0\n", 3, "vertex 0"},
+                       {"OFF\n1 1 0\n0 0 -1e309\n3 0 0 0\n", 3, "vertex 0"}});
 }
 
 TEST(OffReader, RefusesABillionVerticesBeforeAllocatingThem) {
@@ -235,8 +235,8 @@ TEST(PlyReader, RefusesWithTheLine) {
                            bytes_of(std::uint8_t{3}, true) + std::string(12, '\0');
   const std::string start = kPlyHeader + kPlyVertices;
   const std::string wide = replaced(kPlyHeader, "element face 1", "element face 2");
-  expect_refused(ply, {{kPlyHeader + "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n3 0 1 2\n", 12, "y is 'nan'"},
-                       {binary + body, 0, "z of a vertex is not finite"},
+  expect_refused(ply, {{kPlyHeader + "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n3 0 1 2\n", 12, "vertex 1"},
+                       {binary + body, 0, "vertex 0 (counted from 0) is not finite"},
                        {start + "3 0 1 4\n", 15, "vertex 4"},
                        {start + "3 0 1 -1\n", 15, "vertex -1"},
                        {start + "3 0 1 4294967296\n", 15, "4294967296"},
@@ -333,7 +333,7 @@ TEST(StlReader, RefusesWithTheLine) {
                        {binary_stl("b", {}), 0, "no triangles"},
                        {"solid a\nendsolid a\n", 0, "no triangles"},
                        {binary_stl("b", bad), 0, "triangle 1"},
-                       {ascii("1 0 0", "1 nan 0"), 5, "y is 'nan'"},
+                       {ascii("1 0 0", "1 nan 0"), 5, "vertex 1"},
                        {ascii("  vertex 1 0 0\n", ""), 6, "polygon with 2 vertices"},
                        {ascii(" endloop", " vertex 1 1 0\n endloop"), 7, "fourth vertex"},
                        {ascii("outer loop", "inner loop"), 3, "'inner'"},

@@ -1,0 +1,47 @@
+// Points that nearly coincide, and the hint that a mesh would be closed if such corners were one.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Numbers for points, of which near ones share one.
+class NearPoints {
+ public:
+  /// tolerance: finite, >= 0.
+  explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
+
+  /// The number of the nearest point that is kept, if it is at most the tolerance away (in double);
+  /// of equally near ones the lowest. Else the point is kept, with the number `own`.
+  std::uint32_t number(const Vec3& p, std::uint32_t own);
+
+ private:
+  using Cell = std::array<double, 3>;
+  struct Hash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+  Cell cell_of(const Vec3& p) const;
+
+  double tolerance_;
+  std::unordered_map<Cell, std::vector<std::pair<Vec3, std::uint32_t>>, Hash> cells_;
+};
+
+struct WeldHint {
+  std::uint64_t open_edges = 0;  // edges that belong to an odd number of triangles
+  double tolerance = 0;          // world units; merging corners so far apart closes the object
+  Vec3 place;                    // the end of an open edge
+};
+/// If the object has open edges, and merging their ends within some power of 10, from 1e-13 to 1e-5
+/// of the object's size, would leave none: the least such tolerance.
+std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object);
+
+}  // namespace farcull
