@@ -36,6 +36,11 @@ wc -l "$work"/{Spec,Checker,Geometry,Points,Descent,Pairs,Proofs}.v | sed "s|$wo
 if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' "$work"/*.v; then
   echo "coq: the proof assumes something" && exit 1
 fi
+if ! python3 -c 'import sys; page, spec = (open(f, encoding="utf-8").read() for f in sys.argv[1:])
+sys.exit("".join("    " + line if line.strip() else line for line in spec.splitlines(True)) not in page)' \
+  docs/verified.md "$work/Spec.v"; then
+  echo "coq: docs/verified.md does not quote Spec.v as it is" && exit 1
+fi
 for file in Spec Checker Geometry Points Descent Pairs Proofs Extract; do
   if ! (cd "$work" && coqc -q "$file.v") >"$work/$file.log" 2>&1; then
     cat "$work/$file.log"

@@ -157,6 +157,21 @@ class Comparison:
             shutil.copy(certificate, kept)
             self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
 
+    def called(self, certificate, scene, folder):
+        """farcull check --verified calls the program beside it, and fails if that disagrees."""
+        said = output([self.farcull, 'check', certificate, scene, '--verified'])
+        if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
+            self.wrong.append(f'check --verified: {said}')
+        program, other = f'{folder}/farcull', f'{folder}/farcull-check-verified'
+        shutil.copy(self.farcull, program)
+        with open(other, 'w', encoding='utf-8') as file:
+            file.write('#!/bin/sh\nexit 1\n')
+        os.chmod(other, 0o755)
+        said = output([program, 'check', certificate, scene, '--verified'])
+        if said[0] != 2 or 'the two checkers disagree' not in said[1]:
+            self.wrong.append(f'check --verified with a checker that disagrees: {said}')
+        os.remove(program)
+
     def scene(self, name, folder, objects, number, spoil=False):
         scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
         write_words(words, objects)
@@ -166,6 +181,8 @@ class Comparison:
             return
         text = open(certificate, encoding='utf-8').read()
         self.both(certificate, scene, words, name)
+        if spoil:
+            self.called(certificate, scene, folder)
         changed = list(forged(text, number))
         if not spoil:
             changed = random.Random(number).sample(changed, min(3, len(changed)))

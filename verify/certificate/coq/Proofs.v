@@ -229,15 +229,60 @@ Proof.
       apply (meet_prop (Z.of_nat o = Z.of_nat o')); [now rewrite Nat2Z.inj_iff | exact M].
 Qed.
 
+(** * The column of neighbours *)
+Lemma shared_sized k a a' b b' : 0 < k -> sized k a a' -> sized k b b' ->
+  (exists c, is_shared a b c) <-> (exists c, is_shared a' b' c).
+Proof.
+  intros K A B. split; intros (c & C & D).
+  - exists (times (/ k) c). split.
+    + apply (corner_sized (/ k) a' a); auto using sized_inverse.
+    + apply (corner_sized (/ k) b' b); auto using sized_inverse.
+  - exists (times k c). split; eapply corner_sized; eauto.
+Qed.
+Lemma name_flag a b : neighbours (name_of a b) = true <->
+  obj a = obj b /\ exists c, is_shared (qtri (shape a)) (qtri (shape b)) c.
+Proof.
+  unfold name_of, row_of. cbn [neighbours]. destruct (shared_of_cases a b) as [S1 S0].
+  destruct (Z.eq_dec (obj a) (obj b)) as [E | E].
+  - rewrite (S1 E). destruct (shared_corners (shape a) (shape b)) as [|k l] eqn:C.
+    + split; [discriminate|]. intros (_ & c & H). apply is_shared_corners in H.
+      rewrite C in H. destruct H as (k & [] & _).
+    + split; [|reflexivity]. intros _. split; [assumption|]. exists (qvec k).
+      apply is_shared_corners. exists k. rewrite C. split; [now left | apply same_refl].
+  - rewrite (S0 E). split; [discriminate | now intros [? _]].
+Qed.
+Lemma is_triangle_unique s o i t u : is_triangle s o i t -> is_triangle s o i u -> t = u.
+Proof. intros (ob & O & T) (ob' & O' & U). congruence. Qed.
+Lemma neighbours_pairs s a b o i o' i' : In (a, b) (pairs s) -> names (name_of a b) o i o' i' ->
+  (neighbours (name_of a b) = true <-> are_neighbours s o i o' i').
+Proof.
+  intros P (N1 & N2 & N3 & N4). rewrite name_flag. apply pairs_all in P. destruct P as (A & B & _).
+  apply items_all in A, B. destruct A as (m & ob & n & t & O & I & ->).
+  destruct B as (m' & ob' & n' & t' & O' & I' & ->). cbn in N1, N2, N3, N4.
+  apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'. cbn [obj shape make_item].
+  assert (T : is_triangle s o i t) by (exists ob; auto).
+  assert (T' : is_triangle s o' i' t') by (exists ob'; auto).
+  pose proof (shared_sized _ _ _ _ _ (power_positive (lowest s))
+                (sized_value _ _ (lowest_sound _ _ _ _ T))
+                (sized_value _ _ (lowest_sound _ _ _ _ T'))) as S.
+  rewrite Nat2Z.inj_iff, <- S. unfold are_neighbours.
+  split; intros (E & H); (split; [exact E|]).
+  - destruct H as (c & H). exists t, t', c. auto.
+  - destruct H as (u & u' & c & U & U' & H). exists c.
+    rewrite (is_triangle_unique _ _ _ _ _ T U), (is_triangle_unique _ _ _ _ _ T' U'). exact H.
+Qed.
+
 (** * The theorems *)
 Theorem accepted_list_is_right_and_complete s c es l :
   check s c es = Proved l -> right_and_complete s l.
 Proof.
   intros H o i o' i'. rewrite answer_pairs. unfold check in H.
-  pose proof (judge_all_proved _ _ _ _ _ _ H) as L. cbn [rows] in L. split.
+  pose proof (judge_all_proved _ _ _ _ _ _ H) as L. cbn [rows] in L. split; [split|].
   - intros (a & b & P & N & M). exists (name_of a b). split; [|exact N].
     apply L. right. exists a, b. auto.
   - intros (r & R & N). apply L in R. destruct R as [[] | (a & b & P & -> & M)]. eauto.
+  - intros r R N. apply L in R. destruct R as [[] | (a & b & P & -> & M)].
+    now apply neighbours_pairs.
 Qed.
 
 (** A refuted certificate says something false of the pair that is named. *)

@@ -70,9 +70,15 @@ Definition answer (s : scene) (o i o' i' : nat) : Prop :=
     are of one object and have a common corner. *)
 Record row := Row { object_a : Z; triangle_a : Z; object_b : Z; triangle_b : Z; neighbours : bool }.
 
-(** The list is right and complete. *)
+(** The list is right and complete, and so is its last column. *)
 Definition names (r : row) (o i o' i' : nat) : Prop :=
   object_a r = Z.of_nat o /\ triangle_a r = Z.of_nat i /\
   object_b r = Z.of_nat o' /\ triangle_b r = Z.of_nat i'.
+Definition are_neighbours (s : scene) (o i o' i' : nat) : Prop :=
+  o = o' /\ exists t t' c, is_triangle s o i t /\ is_triangle s o' i' t' /\
+                         is_shared (map_triangle value t) (map_triangle value t') c.
 Definition right_and_complete (s : scene) (l : list row) : Prop :=
-  forall o i o' i', answer s o i o' i' <-> exists r, In r l /\ names r o i o' i'.
+  forall o i o' i',
+    (answer s o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
+    (forall r, In r l -> names r o i o' i' ->
+               (neighbours r = true <-> are_neighbours s o i o' i')).
