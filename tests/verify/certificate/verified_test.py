@@ -11,6 +11,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import tarfile
 
 BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
             'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
@@ -50,25 +51,40 @@ def write_words(path, objects):
             file.write(b''.join(struct.pack('<3d', *point) for triangle in triangles for point in triangle))
 
 
+def write_scene(folder, objects):
+    os.makedirs(folder, exist_ok=True)
+    for index, (_, triangles) in enumerate(objects):
+        with open(f'{folder}/o{index}.off', 'w', encoding='utf-8') as file:
+            file.write(f'OFF\n{3 * len(triangles)} {len(triangles)} 0\n')
+            file.writelines('%.17g %.17g %.17g\n' % tuple(point) for triangle in triangles for point in triangle)
+            file.writelines(f'3 {3 * t} {3 * t + 1} {3 * t + 2}\n' for t in range(len(triangles)))
+    with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
+        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}.off', **({'self': True} if inner else {})}
+                               for i, (inner, _) in enumerate(objects)]}, file)
+
+
+ULP = 2.0 ** -52
+# The scene of tests/fuzz/fuzz_check.cpp.
+FUZZ_SCENE = [(False, triangles) for triangles in (
+    [[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(4, 0, 0), (4, 4, 0), (0, 4, 0)]],
+    [[(1, 1, -1), (1, 1, 1), (2, 1, 1)], [(0, 0, 0), (-1, 0, 2), (0, -1, 2)], [(1, 0, 0), (3, 0, 0), (2, -1, 1)],
+     [(3, 3, 0), (3.5, 3, 0), (3, 3.5, 0)], [(1, 1, ULP), (2, 1, 1), (1, 2, 1)]],
+    [[(2, 2, -1), (2, 2, 1), (2, 2, 3)], [(1, 1, 0), (1, 1, 0), (1, 1, 0)], [(3.9, 3.9, -1), (4.5, 3.9, 1), (4.5, 4.5, 1)],
+     [(2, 1 + ULP, 1), (1, 2 + 2 * ULP, 1), (2, 2, 1.5)]])]
+
+
 def random_scene(number, folder, most=40):
     """Triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
     draw = random.Random(number)
     side, scale = draw.choice([2, 2, 3, 4]), draw.choice([1.0, 0.1, 3e-5, 1e10])
     flat = draw.random() < 0.3
     objects = []
-    for index in range(draw.choice([1, 2, 2, 3])):
+    for _ in range(draw.choice([1, 2, 2, 3])):
         corners = [tuple(scale * (0 if flat and axis == 2 else draw.randrange(side)) for axis in range(3))
                    for _ in range(draw.choice([4, 6, 10, 3 * most]))]
         triangles = [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(1, most))]
         objects.append((draw.random() < 0.7, triangles))
-        with open(f'{folder}/o{index}.off', 'w', encoding='utf-8') as file:
-            file.write(f'OFF\n{3 * len(triangles)} {len(triangles)} 0\n')
-            file.writelines('%.17g %.17g %.17g\n' % point for triangle in triangles for point in triangle)
-            file.writelines(f'3 {3 * t} {3 * t + 1} {3 * t + 2}\n' for t in range(len(triangles)))
-    with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
-        json.dump({'name': f'random {number}', 'objects': [
-            {'name': f'o{i}', 'mesh': f'o{i}.off', **({'self': True} if inner else {})}
-            for i, (inner, _) in enumerate(objects)]}, file)
+    write_scene(folder, objects)
     return objects
 
 
@@ -157,6 +173,19 @@ class Comparison:
             shutil.copy(certificate, kept)
             self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
 
+    def fuzzed(self, archive, folder):
+        """The inputs of the fuzzer of certificates. Those with a clearance are not for the proved checker."""
+        write_scene(folder, FUZZ_SCENE)
+        write_words(f'{folder}/words', FUZZ_SCENE)
+        with tarfile.open(archive) as inputs:
+            for member in filter(tarfile.TarInfo.isfile, inputs.getmembers()):
+                text = inputs.extractfile(member).read()
+                if re.search(rb'"version": *4', text):
+                    continue
+                with open(f'{folder}/certificate.json', 'wb') as file:
+                    file.write(text)
+                self.both(f'{folder}/certificate.json', f'{folder}/scene.json', f'{folder}/words', f'fuzz input {member.name}')
+
     def called(self, certificate, scene, folder):
         """farcull check --verified calls the program beside it, and fails if that disagrees."""
         said = output([self.farcull, 'check', certificate, scene, '--verified'])
@@ -202,8 +231,8 @@ def compare(farcull, checker, folder, count):
             comparison.wrong.append(f'{name}: {text[:300]}')
             continue
         comparison.scene(name, place, list(meshes(place)), index, spoil=index % 4 == 0)
+    comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
-    os.makedirs(place, exist_ok=True)
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
     for number in range(first, first + count):
         comparison.scene(f'random scene {number}', place, random_scene(number, place), number)
