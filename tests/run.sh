@@ -31,6 +31,7 @@ campaigns=(
   "reliability_motion bash experiments/reliability.sh motion"
   "reliability_distances bash experiments/reliability.sh distances"
   "odr bash tests/odr.sh"
+  "coq bash tests/coq.sh --long"
   "fuzz bash tests/fuzz/run.sh"
   "gl_loops bash tests/gl_loops.sh"
   "gl_loops_late bash tests/gl_loops.sh 20 --late"

@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
+#include "experiments/command/verified.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -121,6 +122,14 @@ Scene checked_scene(const CheckArguments& arguments) {
   return scene;
 }
 
+// Asks the proved checker as well. Returns the exit status of both.
+int check_again(const CheckArguments& arguments, const Scene& scene, int status) {
+  const int verified = run_verified_checker(arguments.certificate, scene);
+  if ((verified == kExitDone) == (status == kExitDone)) return status;
+  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
+              "keep the certificate and the scene, and report them: one of the checkers is wrong");
+}
+
 // Certificates are read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
@@ -129,19 +138,26 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const std::string name = clean_name(arguments.certificate);
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
+      if (arguments.verified) {
+        throw Error("--verified", "does not go with a certificate of distances", "leave it out");
+      }
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
       const Scene scene = checked_scene(arguments);
       return write_check(arguments, scene,
                          check_with(arguments.certificate, std::move(of_distances), scene));
     }
     certificate = parse_certificate(text, name);
+    if (arguments.verified && certificate->clearance > 0)
+      throw Error("--verified", "does not go with a clearance", "leave it out");
   }
   const Scene scene = checked_scene(arguments);
-  return write_check(arguments, scene,
-                     check_scene_with(clearance_of(arguments, certificate),
-                                      clean_name(arguments.certificate), certificate, scene, list,
-                                      list ? std::span<const ListedPair>(list->rows)
-                                           : std::span<const ListedPair>()));
+  const int status = write_check(
+      arguments, scene,
+      check_scene_with(clearance_of(arguments, certificate), clean_name(arguments.certificate),
+                       certificate, scene, list,
+                       list ? std::span<const ListedPair>(list->rows)
+                            : std::span<const ListedPair>()));
+  return arguments.verified ? check_again(arguments, scene, status) : status;
 }
 
 // The output of the checks of frames: a row of the table and an element of the record for each,
@@ -317,6 +333,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
         "check these frames, as of farcull run --frames: with\n"
         "a number (%d or %04d) in the name of CERTIFICATE and\n"
         "a column `frame` in the list"},
+       {"--verified", &arguments_.verified, "",
+        "the checker that Coq has proved must agree; build it\nwith tests/coq.sh"},
        {"--json", &json_, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
@@ -359,6 +377,10 @@ int CheckCommand::run() {
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);
   require_number(to.certificate, to.frames.has_value());
+  if (to.verified && (to.certificate.empty() || to.frames || pairs_)) {
+    throw Error("--verified", "is for one certificate, without --frames and --pairs",
+                "leave it out, or check each frame by its own certificate");
+  }
   std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);
   if (!to.certificate.empty()) {
     for (const std::string& file : numbered_files(to.certificate, to.frames))

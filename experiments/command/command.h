@@ -320,6 +320,7 @@ struct CheckArguments {
   std::string pairs = {};          // "" for none, or a list as `farcull run --pairs` writes it
   std::optional<double> clearance = {};  // of the list; a certificate must have it too
   std::optional<FrameRange> frames = {};
+  bool verified = false;  // the proved checker must agree; goes with one certificate alone
 };
 
 /// Prints the verdict; with frames one verdict per frame and one for all. Returns 0 if proved, and

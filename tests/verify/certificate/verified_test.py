@@ -1,0 +1,290 @@
+"""Compares the verdicts of farcull check and of farcull-check-verified, on certificates and on forged ones, and changes
+inequalities of the proved checker, which must break its proof. tests/coq.sh calls it.
+  verified_test.py compare FARCULL CHECKER FOLDER RANDOM   RANDOM scenes on a small grid, besides those that are built in
+  verified_test.py mutants SOURCES FOLDER"""
+import base64
+import json
+import os
+import random
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tarfile
+
+BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
+            'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
+VERDICT = re.compile(r'(?:verified +)?(proved|refuted|not proved|undecided)\b')
+
+
+def output(words):
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, check=False)
+    return done.returncode, done.stdout.decode('utf-8', 'replace')
+
+
+def verdict(words):
+    """What a checker says: its exit status and the word of its verdict; no word if it cannot read the file."""
+    status, text = output(words)
+    words = [found[1] for line in text.split('\n') if (found := VERDICT.match(line))]
+    return status, words[0] if status < 2 and words else '', text
+
+
+# ---- scenes ----
+
+def meshes(folder):
+    """The objects of a scene that farcull has written: whether it is tested against itself, and its triangles."""
+    for one in json.load(open(f'{folder}/scene.json', encoding='utf-8'))['objects']:
+        words = open(f"{folder}/{one['mesh']}", encoding='utf-8').read().split()
+        vertices, faces = int(words[1]), int(words[2])
+        points = [tuple(map(float, words[4 + 3 * i:7 + 3 * i])) for i in range(vertices)]
+        start = 4 + 3 * vertices
+        yield one.get('self', False), [[points[int(words[start + 4 * f + k])] for k in (1, 2, 3)] for f in range(faces)]
+
+
+def write_words(path, objects):
+    """The scene as the words that farcull check --verified writes: docs/verified.md."""
+    with open(path, 'wb') as file:
+        file.write(struct.pack('<Q', len(objects)))
+        file.write(b''.join(struct.pack('<Q', len(triangles) | inner << 32) for inner, triangles in objects))
+        for _, triangles in objects:
+            file.write(b''.join(struct.pack('<3d', *point) for triangle in triangles for point in triangle))
+
+
+def write_scene(folder, objects):
+    os.makedirs(folder, exist_ok=True)
+    for index, (_, triangles) in enumerate(objects):
+        with open(f'{folder}/o{index}.off', 'w', encoding='utf-8') as file:
+            file.write(f'OFF\n{3 * len(triangles)} {len(triangles)} 0\n')
+            file.writelines('%.17g %.17g %.17g\n' % tuple(point) for triangle in triangles for point in triangle)
+            file.writelines(f'3 {3 * t} {3 * t + 1} {3 * t + 2}\n' for t in range(len(triangles)))
+    with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
+        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}.off', **({'self': True} if inner else {})}
+                               for i, (inner, _) in enumerate(objects)]}, file)
+
+
+ULP = 2.0 ** -52
+# The scene of tests/fuzz/fuzz_check.cpp.
+FUZZ_SCENE = [(False, triangles) for triangles in (
+    [[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(4, 0, 0), (4, 4, 0), (0, 4, 0)]],
+    [[(1, 1, -1), (1, 1, 1), (2, 1, 1)], [(0, 0, 0), (-1, 0, 2), (0, -1, 2)], [(1, 0, 0), (3, 0, 0), (2, -1, 1)],
+     [(3, 3, 0), (3.5, 3, 0), (3, 3.5, 0)], [(1, 1, ULP), (2, 1, 1), (1, 2, 1)]],
+    [[(2, 2, -1), (2, 2, 1), (2, 2, 3)], [(1, 1, 0), (1, 1, 0), (1, 1, 0)], [(3.9, 3.9, -1), (4.5, 3.9, 1), (4.5, 4.5, 1)],
+     [(2, 1 + ULP, 1), (1, 2 + 2 * ULP, 1), (2, 2, 1.5)]])]
+
+
+def random_scene(number, folder, most=40):
+    """Triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
+    draw = random.Random(number)
+    side, scale = draw.choice([2, 2, 3, 4]), draw.choice([1.0, 0.1, 3e-5, 1e10])
+    flat = draw.random() < 0.3
+    objects = []
+    for _ in range(draw.choice([1, 2, 2, 3])):
+        corners = [tuple(scale * (0 if flat and axis == 2 else draw.randrange(side)) for axis in range(3))
+                   for _ in range(draw.choice([4, 6, 10, 3 * most]))]
+        triangles = [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(1, most))]
+        objects.append((draw.random() < 0.7, triangles))
+    write_scene(folder, objects)
+    return objects
+
+
+# ---- forged certificates ----
+
+def recount(root, data):
+    kinds = [byte & 0xbf for byte in data]
+    counts = {'box_pairs': len(data), 'kept': sum(byte >> 6 & 1 for byte in data), 'meeting': kinds.count(38),
+              'neighbours': kinds.count(39)}
+    counts['culled'] = len(data) - counts['kept']
+    counts['separated'] = len(data) - counts['meeting'] - counts['neighbours']
+    root['claims'].update(counts)
+
+
+def forged(text, number):
+    """Changes of the certificate that tests/verify/certificate/certificate_test.cpp makes, and some of its text."""
+    draw = random.Random(number)
+    root = json.loads(text)
+    data = bytearray(base64.b64decode(root['evidence']))
+
+    def made(change, recounted=False):
+        other, bytes_ = json.loads(text), bytearray(data)
+        change(other, bytes_)
+        if recounted:
+            recount(other, bytes_)
+        other['evidence'] = base64.b64encode(bytes(bytes_)).decode()
+        return json.dumps(other)
+
+    def set_byte(i, byte):
+        return lambda _, bytes_: bytes_.__setitem__(i, byte)
+
+    def add(part, key, by):
+        return lambda other, _: other[part].__setitem__(key, (other[part][key] + by) % 2 ** 64)
+
+    if data:
+        for byte in (*draw.sample(range(40), 3), 38, 39, 0x40 | draw.randrange(38), 0x40 | 38, 0x40 | 39, 45, 63, 128 + 38, 255):
+            yield made(set_byte(draw.randrange(len(data)), byte), draw.random() < 0.5)
+        yield made(lambda _, bytes_: bytes_.pop(draw.randrange(len(bytes_))), True)
+        yield made(lambda _, bytes_: bytes_.reverse(), True)
+        yield made(lambda _, bytes_: bytes_.__setitem__(slice(None), bytes(byte | 0x40 for byte in bytes_)), True)
+        yield made(lambda _, bytes_: bytes_.__setitem__(slice(None), bytes(byte & 0xbf for byte in bytes_)), True)
+        yield made(lambda _, bytes_: bytes_.clear())
+    yield made(lambda _, bytes_: bytes_.append(0x40 | 38), True)
+    for part, key in (('claims', draw.choice(sorted(root['claims']))), ('not_asked', 'objects'), ('not_asked', 'pairs'),
+                      ('scene', 'objects'), ('scene', 'triangles')):
+        yield made(add(part, key, draw.choice([1, -1, 2 ** 63])))
+    yield made(lambda other, _: other.update(list_sha256='0' * 64))
+    yield made(lambda other, _: other['scene'].update(hash='0' * 16))
+
+
+def spoiled(text):
+    """Files that are no certificates, and unusual ones that are."""
+    root = json.loads(text)
+    evidence = root['evidence']
+
+    def made(**changes):
+        return json.dumps({**root, **changes})
+
+    yield from ('', '{}', '[]', 'null', text[:-3], text + 'x', text + ' \n\t', '\ufeff' + text, text.replace('"format"', '"Format"'),
+                text.replace('{', '{"format": "farcull-certificate",', 1), text.replace(',', ',,', 1), text.replace(':', ' : '))
+    yield from (made(version=2), made(version='3'), made(version=3.0), made(more=1), made(scene=None), made(claims={}),
+                made(list_sha256=root['list_sha256'].upper() + '0'), made(evidence=evidence + '='), made(evidence=evidence + 'A'),
+                made(evidence=evidence + '\n'), made(evidence=None), made(format='farcull'), made(unattested=[]))
+    for change in ({'device': {}}, {'device': dict.fromkeys(['vendor', 'renderer', 'version', 'glsl'], 'Ü\n"')}, {'views': [1]},
+                   {'radius_px': -1}, {'radius_px': 1e308}, {'resolution': 1.5}, {'resolution': 2 ** 64}, {'assumptions': ['é']},
+                   {'views': [{'name': '', 'width': 1, 'height': 1, 'radius_px': 0}]}, {'assumptions': [[[[[[[[1]]]]]]]]},
+                   {'assumptions': ['a'] * 10000}):
+        yield made(unattested={**root['unattested'], **change})
+    for old, new in (('"radius_px": 0.0', '"radius_px": 1e999'), ('"radius_px": 0.0', '"radius_px": 01'),
+                     ('"resolution": 0', '"resolution": -0'), ('"none"', '"\\ud83d\\ude00"'), ('"none"', '"\\ud83d"'),
+                     ('"none"', '"\t"'), ('"none"', '"\\x"'), ('"none"', "'none'"), ('null', 'nul'), ('"device": null', '"device": true')):
+        yield text.replace(old, new, 1)
+
+
+# ---- the comparison ----
+
+class Comparison:
+    def __init__(self, farcull, checker):
+        self.farcull, self.checker, self.seen, self.wrong = farcull, checker, {}, []
+
+    def both(self, certificate, scene, words, why):
+        one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
+        self.seen[one[1] or f'status {one[0]}'] = self.seen.get(one[1] or f'status {one[0]}', 0) + 1
+        if one[:2] != two[:2]:
+            kept = f'{certificate}.{len(self.wrong)}'
+            shutil.copy(certificate, kept)
+            self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
+
+    def fuzzed(self, archive, folder):
+        """The inputs of the fuzzer of certificates. Those with a clearance are not for the proved checker."""
+        write_scene(folder, FUZZ_SCENE)
+        write_words(f'{folder}/words', FUZZ_SCENE)
+        with tarfile.open(archive) as inputs:
+            for member in filter(tarfile.TarInfo.isfile, inputs.getmembers()):
+                text = inputs.extractfile(member).read()
+                if re.search(rb'"version": *4', text):
+                    continue
+                with open(f'{folder}/certificate.json', 'wb') as file:
+                    file.write(text)
+                self.both(f'{folder}/certificate.json', f'{folder}/scene.json', f'{folder}/words', f'fuzz input {member.name}')
+
+    def called(self, certificate, scene, folder):
+        """farcull check --verified calls the program beside it, and fails if that disagrees."""
+        said = output([self.farcull, 'check', certificate, scene, '--verified'])
+        if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
+            self.wrong.append(f'check --verified: {said}')
+        program, other = f'{folder}/farcull', f'{folder}/farcull-check-verified'
+        shutil.copy(self.farcull, program)
+        with open(other, 'w', encoding='utf-8') as file:
+            file.write('#!/bin/sh\nexit 1\n')
+        os.chmod(other, 0o755)
+        said = output([program, 'check', certificate, scene, '--verified'])
+        if said[0] != 2 or 'the two checkers disagree' not in said[1]:
+            self.wrong.append(f'check --verified with a checker that disagrees: {said}')
+        os.remove(program)
+
+    def scene(self, name, folder, objects, number, spoil=False):
+        scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
+        write_words(words, objects)
+        status, text = output([self.farcull, 'run', scene, '--method', 'exact', '--certificate', certificate])
+        if status:
+            self.wrong.append(f'{name}: no certificate: {text[:300]}')
+            return
+        text = open(certificate, encoding='utf-8').read()
+        self.both(certificate, scene, words, name)
+        if spoil:
+            self.called(certificate, scene, folder)
+        changed = list(forged(text, number))
+        if not spoil:
+            changed = random.Random(number).sample(changed, min(3, len(changed)))
+        for index, other in enumerate(changed + (list(spoiled(text)) if spoil else [])):
+            with open(certificate, 'w', encoding='utf-8') as file:
+                file.write(other)
+            self.both(certificate, scene, words, f'{name}, change {index}')
+
+
+def compare(farcull, checker, folder, count):
+    comparison = Comparison(os.path.realpath(farcull), os.path.realpath(checker))
+    for index, name in enumerate(BUILT_IN):
+        place = f"{folder}/{re.sub('[^a-z0-9]', '-', name)}"
+        os.makedirs(place, exist_ok=True)
+        status, text = output([comparison.farcull, 'scenes', name, '--write', place])
+        if status:
+            comparison.wrong.append(f'{name}: {text[:300]}')
+            continue
+        comparison.scene(name, place, list(meshes(place)), index, spoil=index % 4 == 0)
+    comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
+    place = f'{folder}/random'
+    first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
+    for number in range(first, first + count):
+        comparison.scene(f'random scene {number}', place, random_scene(number, place), number)
+    print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
+          f'; the two checkers disagree about {len(comparison.wrong)}')
+    print('\n'.join(comparison.wrong[:5]))
+    return bool(comparison.wrong) or not {'proved', 'refuted', 'not proved', 'status 2'} <= set(comparison.seen)
+
+
+# ---- changes of the checker ----
+
+MUTANTS = [
+    ('max3 a1 a2 a3 <? min3 b1 b2 b3', 'max3 a1 a2 a3 <=? min3 b1 b2 b3'),
+    ('max3 b1 b2 b3 <? min3 a1 a2 a3', 'max3 b1 b2 b3 <=? min3 a1 a2 a3'),
+    ('(0 <=? y w) && (0 <=? z w)', '(y w <=? 0) && (0 <=? z w)'),
+    ('(0 <? total w)', '(0 <=? total w)'),
+    ('(dot e r <? 0)', '(dot e r <=? 0)'),
+    ('(m * dot e e <? dot e r)', '(m * dot e e <=? dot e r)'),
+    ('(0 <=? n) && (n <=? l)', '(n <=? 0) && (n <=? l)'),
+    ('(0 <=? n) && (n <=? l)', '(0 <=? n) && (l <=? n)'),
+    ('dot d (corner a j) <=? h) la', 'h <=? dot d (corner a j)) la'),
+    ('h <=? dot d (corner b j)) lb', 'dot d (corner b j) <=? h) lb'),
+    ('(x l <=? x h\')', '(x l <? x h\')'),
+    ('(obj a <? obj b) ||', '(obj a <=? obj b) ||'),
+    ('own a && (num a <? num b)', 'own a && (num a <=? num b)'),
+    ('((obj a <? last b) ||', '((last b <? obj a) ||')]
+FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs']
+
+
+def mutants(sources, folder):
+    """Each change compiles as a program, and its proof does not."""
+    os.makedirs(folder, exist_ok=True)
+    text = open(f'{sources}/Checker.v', encoding='utf-8').read()
+    failed = []
+    for number, (old, new) in enumerate(MUTANTS):
+        if text.count(old) != 1:
+            failed.append(f'{old!r} does not occur once')
+            continue
+        for name in os.listdir(sources):
+            if name.endswith(('.v', '.vo')):
+                shutil.copy(f'{sources}/{name}', folder)
+        with open(f'{folder}/Checker.v', 'w', encoding='utf-8') as file:
+            file.write(text.replace(old, new))
+        broken = next((name for name in FILES if subprocess.run(
+            ['timeout', '300', 'coqc', f'{name}.v'], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            check=False).returncode), 'none')
+        print(f'mutant {number + 1}: {old}  ->  {new}: breaks {broken}', flush=True)
+        if broken in ('none', 'Checker'):
+            failed.append(f'{new!r} breaks {broken}')
+    print('\n'.join(failed) or f'mutants: each of the {len(MUTANTS)} changes breaks the proof')
+    return bool(failed)
+
+
+command, *rest = sys.argv[1:]
+sys.exit(compare(*rest[:3], int(rest[3])) if command == 'compare' else mutants(*rest))

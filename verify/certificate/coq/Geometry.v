@@ -1,0 +1,190 @@
+(** What the tests of Checker.v show about the points of two triangles. *)
+From Coq Require Import ZArith NArith QArith Lqa Lia List Bool Permutation Setoid Morphisms.
+Require Import Spec Checker.
+Import ListNotations.
+Open Scope Q_scope.
+
+(** * From integers to rationals *)
+Notation "# z" := (inject_Z z) (at level 1, format "# z").
+Definition qvec (p : vec Z) : vec Q := map_vec inject_Z p.
+Definition qtri (t : triangle Z) : triangle Q := map_triangle inject_Z t.
+
+Lemma inject_sub a b : #(a - b) = #a - #b.
+Proof. unfold Z.sub. now rewrite inject_Z_plus, inject_Z_opp. Qed.
+Lemma inject_lt a b : (a < b)%Z <-> #a < #b.
+Proof. now rewrite <- Zlt_Qlt. Qed.
+Lemma inject_le a b : (a <= b)%Z <-> #a <= #b.
+Proof. now rewrite <- Zle_Qle. Qed.
+Lemma inject_eq a b : a = b <-> #a == #b.
+Proof. symmetry. apply inject_Z_injective. Qed.
+Ltac inject := repeat rewrite ?inject_sub, ?inject_Z_plus, ?inject_Z_mult, ?inject_Z_opp in *.
+
+(** Splits what a test of the checker says into facts about integers. *)
+Ltac tests :=
+  repeat match goal with
+  | H : (_ && _)%bool = true |- _ => apply andb_prop in H; destruct H
+  | H : negb _ = true |- _ => apply negb_true_iff in H
+  | H : (_ =? _)%Z = true |- _ => apply Z.eqb_eq in H
+  | H : (_ <=? _)%Z = true |- _ => apply Z.leb_le in H
+  | H : (_ <? _)%Z = true |- _ => apply Z.ltb_lt in H
+  | H : (_ =? _)%Z = false |- _ => apply Z.eqb_neq in H
+  | H : (_ <=? _)%Z = false |- _ => apply Z.leb_gt in H
+  | H : (_ <? _)%Z = false |- _ => apply Z.ltb_ge in H
+  end.
+
+Lemma equal_eq p q : equal p q = true <-> p = q.
+Proof.
+  unfold equal. destruct p, q; simpl. rewrite !andb_true_iff, !Z.eqb_eq. split.
+  - intros [[-> ->] ->]. reflexivity.
+  - intros H. now inversion H.
+Qed.
+
+Lemma same_refl p : same p p.
+Proof. unfold same. repeat split; reflexivity. Qed.
+Lemma same_sym p q : same p q -> same q p.
+Proof. unfold same. intuition. Qed.
+Lemma same_trans p q r : same p q -> same q r -> same p r.
+Proof.
+  unfold same. intros (A & B & C) (A' & B' & C').
+  repeat split; etransitivity; eassumption.
+Qed.
+Lemma same_qvec p q : same (qvec p) (qvec q) <-> p = q.
+Proof.
+  unfold same, qvec, map_vec. destruct p, q; simpl. split.
+  - intros (A & B & C). apply <- inject_eq in A; apply <- inject_eq in B; apply <- inject_eq in C. now subst.
+  - intros H. inversion H. repeat split; reflexivity.
+Qed.
+#[export] Instance inside_same t : Proper (same ==> iff) (inside t).
+Proof.
+  intros p q E. split; intros (u & v & w & U & V & W & S & P); exists u, v, w;
+    repeat split; try assumption; eapply same_trans; try apply P; auto using same_sym.
+Qed.
+
+(** A linear function of a point. *)
+Definition qdot (d : vec Z) (p : vec Q) : Q := #(x d) * x p + #(y d) * y p + #(z d) * z p.
+Lemma qdot_qvec d p : qdot d (qvec p) == #(dot d p).
+Proof. unfold qdot, dot. inject. reflexivity. Qed.
+Lemma qdot_same d p q : same p q -> qdot d p == qdot d q.
+Proof. intros (A & B & C). unfold qdot. now rewrite A, B, C. Qed.
+Lemma qdot_mix d u v w t :
+  qdot d (mix u v w (qtri t)) ==
+  u * #(dot d (p1 t)) + v * #(dot d (p2 t)) + w * #(dot d (p3 t)).
+Proof. rewrite <- !qdot_qvec. unfold qdot, mix, plus, times, qtri, map_triangle, qvec. simpl. ring. Qed.
+
+(** A linear function of a point of a triangle is a mean of its values at the corners. *)
+Lemma inside_dot d t p :
+  inside (qtri t) p -> exists u v w, 0 <= u /\ 0 <= v /\ 0 <= w /\ u + v + w == 1 /\
+    qdot d p == u * #(dot d (p1 t)) + v * #(dot d (p2 t)) + w * #(dot d (p3 t)).
+Proof.
+  intros (u & v & w & U & V & W & S & P). exists u, v, w. repeat split; try assumption.
+  rewrite (qdot_same _ _ _ P). apply qdot_mix.
+Qed.
+Lemma mean_le u v w a b c m :
+  0 <= u -> 0 <= v -> 0 <= w -> u + v + w == 1 -> a <= m -> b <= m -> c <= m ->
+  u * a + v * b + w * c <= m.
+Proof.
+  intros. setoid_replace m with ((u + v + w) * m) by (rewrite H2; ring).
+  assert (0 <= u * (m - a)) by (apply Qmult_le_0_compat; lra).
+  assert (0 <= v * (m - b)) by (apply Qmult_le_0_compat; lra).
+  assert (0 <= w * (m - c)) by (apply Qmult_le_0_compat; lra).
+  lra.
+Qed.
+Lemma le_mean u v w a b c m :
+  0 <= u -> 0 <= v -> 0 <= w -> u + v + w == 1 -> m <= a -> m <= b -> m <= c ->
+  m <= u * a + v * b + w * c.
+Proof.
+  intros. assert (u * (- a) + v * (- b) + w * (- c) <= - m) by (apply mean_le; auto; lra).
+  lra.
+Qed.
+Lemma dot_at_most d t p m :
+  inside (qtri t) p -> (dot d (p1 t) <= m)%Z -> (dot d (p2 t) <= m)%Z -> (dot d (p3 t) <= m)%Z ->
+  qdot d p <= #m.
+Proof.
+  intros I A B C. destruct (inside_dot d _ _ I) as (u & v & w & U & V & W & S & ->).
+  apply mean_le; auto; now apply -> inject_le.
+Qed.
+Lemma dot_at_least d t p m :
+  inside (qtri t) p -> (m <= dot d (p1 t))%Z -> (m <= dot d (p2 t))%Z -> (m <= dot d (p3 t))%Z ->
+  #m <= qdot d p.
+Proof.
+  intros I A B C. destruct (inside_dot d _ _ I) as (u & v & w & U & V & W & S & ->).
+  apply le_mean; auto; now apply -> inject_le.
+Qed.
+
+(** * A direction that separates *)
+Lemma below d a b p :
+  (max3 (dot d (p1 a)) (dot d (p2 a)) (dot d (p3 a)) <
+   min3 (dot d (p1 b)) (dot d (p2 b)) (dot d (p3 b)))%Z ->
+  inside (qtri a) p -> inside (qtri b) p -> False.
+Proof.
+  unfold max3, min3. intros L A B.
+  set (h := Z.max _ _) in *. set (l := Z.min _ _) in *.
+  assert (qdot d p <= #h) by (apply (dot_at_most d a); auto; unfold h; lia).
+  assert (#l <= qdot d p) by (apply (dot_at_least d b); auto; unfold l; lia).
+  apply -> inject_lt in L. lra.
+Qed.
+Lemma separates_sound a b d p :
+  separates a b d = true -> inside (qtri a) p -> inside (qtri b) p -> False.
+Proof.
+  unfold separates. intros H A B. apply orb_prop in H. destruct H; tests.
+  - now apply (below d a b p).
+  - now apply (below d b a p).
+Qed.
+Lemma separated_sound a b p :
+  separated a b = true -> inside (qtri a) p -> inside (qtri b) p -> False.
+Proof.
+  unfold separated. rewrite existsb_exists. intros (d & _ & H). eapply separates_sound, H.
+Qed.
+
+(** * Boxes *)
+Definition unit_x := Vec 1%Z 0%Z 0%Z.
+Definition unit_y := Vec 0%Z 1%Z 0%Z.
+Definition unit_z := Vec 0%Z 0%Z 1%Z.
+Lemma dot_unit_x p : dot unit_x p = x p. Proof. unfold dot, unit_x. cbn [x y z]. ring. Qed.
+Lemma dot_unit_y p : dot unit_y p = y p. Proof. unfold dot, unit_y. cbn [x y z]. ring. Qed.
+Lemma dot_unit_z p : dot unit_z p = z p. Proof. unfold dot, unit_z. cbn [x y z]. ring. Qed.
+Lemma disjoint_boxes a b p :
+  overlap (least a) (greatest a) (least b) (greatest b) = false ->
+  inside (qtri a) p -> inside (qtri b) p -> False.
+Proof.
+  intros O A B.
+  unfold overlap in O. rewrite !andb_false_iff, !Z.leb_gt in O. simpl in O.
+  destruct O as [[[[[O | O] | O] | O] | O] | O].
+  - apply (below unit_x b a p); auto. now rewrite !dot_unit_x.
+  - apply (below unit_x a b p); auto. now rewrite !dot_unit_x.
+  - apply (below unit_y b a p); auto. now rewrite !dot_unit_y.
+  - apply (below unit_y a b p); auto. now rewrite !dot_unit_y.
+  - apply (below unit_z b a p); auto. now rewrite !dot_unit_z.
+  - apply (below unit_z a b p); auto. now rewrite !dot_unit_z.
+Qed.
+
+(** * A common point *)
+(** The point p / m. *)
+Definition over (p : vec Z) (m : Z) : vec Q := Vec (#(x p) / #m) (#(y p) / #m) (#(z p) / #m).
+
+Lemma weigh_inside w t : are_weights w = true -> inside (qtri t) (over (weigh w t) (total w)).
+Proof.
+  unfold are_weights. intros H. tests.
+  assert (M : 0 < #(total w)) by (change 0 with #0; now apply -> inject_lt).
+  assert (N : ~ #(total w) == 0) by lra.
+  exists (#(x w) / #(total w)), (#(y w) / #(total w)), (#(z w) / #(total w)).
+  repeat split.
+  1-3: apply Qle_shift_div_l; [assumption | rewrite Qmult_0_l; change 0 with #0; now apply -> inject_le].
+  - unfold total in *. inject. field. assumption.
+  - unfold over, mix, plus, times, qtri, map_triangle, map_vec, weigh, add, scale. simpl.
+    inject. field. assumption.
+  - unfold over, mix, plus, times, qtri, map_triangle, map_vec, weigh, add, scale. simpl.
+    inject. field. assumption.
+  - unfold over, mix, plus, times, qtri, map_triangle, map_vec, weigh, add, scale. simpl.
+    inject. field. assumption.
+Qed.
+Lemma scaled_over p q m n :
+  (0 < m)%Z -> (0 < n)%Z -> scale n p = scale m q -> same (over p m) (over q n).
+Proof.
+  intros M N E. apply -> inject_lt in M; apply -> inject_lt in N. change #0 with 0 in *.
+  unfold scale in E. inversion E as [[X Y Z]].
+  apply -> inject_eq in X; apply -> inject_eq in Y; apply -> inject_eq in Z. inject.
+  unfold same, over; simpl. repeat split; apply Qmult_inj_r with (z := #m * #n); try nra;
+    field_simplify; try lra; rewrite Qmult_comm.
+  all: try lra.
+Qed.

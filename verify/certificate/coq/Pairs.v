@@ -1,0 +1,212 @@
+(** All pairs whose boxes overlap are among those that the checker decides. *)
+From Coq Require Import ZArith NArith QArith Lqa Lia List Bool Permutation.
+Require Import Spec Checker.
+Import ListNotations.
+Open Scope Z_scope.
+
+(** * Boxes and trees *)
+Lemma overlap_true l h l' h' : overlap l h l' h' = true <->
+  x l <= x h' /\ x l' <= x h /\ y l <= y h' /\ y l' <= y h /\ z l <= z h' /\ z l' <= z h.
+Proof. unfold overlap. rewrite !andb_true_iff, !Z.leb_le. tauto. Qed.
+
+Definition within (r : bounds) (b : item) : Prop :=
+  x (low r) <= x (lo b) /\ y (low r) <= y (lo b) /\ z (low r) <= z (lo b) /\
+  x (hi b) <= x (high r) /\ y (hi b) <= y (high r) /\ z (hi b) <= z (high r) /\ obj b <= last r.
+Fixpoint leaves (t : tree) : list item :=
+  match t with Leaf _ held => held | Node _ one other => leaves one ++ leaves other end.
+Fixpoint sound_tree (t : tree) : Prop :=
+  (forall b, In b (leaves t) -> within (around t) b) /\
+  match t with Leaf _ _ => True | Node _ one other => sound_tree one /\ sound_tree other end.
+
+Definition below (p q : vec Z) : Prop := x p <= x q /\ y p <= y q /\ z p <= z q.
+Lemma fold_down (l : list item) : forall p,
+  below (fold_left (fun p b => down p (lo b)) l p) p /\
+  forall b, In b l -> below (fold_left (fun p b => down p (lo b)) l p) (lo b).
+Proof.
+  induction l as [|a l IH]; intros p; cbn [fold_left].
+  - split; [unfold below; lia | intros b []].
+  - destruct (IH (down p (lo a))) as [D E]. unfold below, down in *. cbn [x y z] in *.
+    split; [lia|]. intros b [<- | B]; [lia | auto].
+Qed.
+Lemma fold_up (l : list item) : forall p,
+  below p (fold_left (fun p b => up p (hi b)) l p) /\
+  forall b, In b l -> below (hi b) (fold_left (fun p b => up p (hi b)) l p).
+Proof.
+  induction l as [|a l IH]; intros p; cbn [fold_left].
+  - split; [unfold below; lia | intros b []].
+  - destruct (IH (up p (hi a))) as [D E]. unfold below, up in *. cbn [x y z] in *.
+    split; [lia|]. intros b [<- | B]; [lia | auto].
+Qed.
+Lemma fold_last (l : list item) : forall n,
+  n <= fold_left (fun n b => Z.max n (obj b)) l n /\
+  forall b, In b l -> obj b <= fold_left (fun n b => Z.max n (obj b)) l n.
+Proof.
+  induction l as [|a l IH]; intros n; cbn [fold_left]; [split; [lia | intros b []]|].
+  destruct (IH (Z.max n (obj a))) as [D E]. split; [lia|]. intros b [<- | B]; [lia | auto].
+Qed.
+Lemma leaf_sound l : sound_tree (leaf l) /\ leaves (leaf l) = l.
+Proof.
+  destruct l as [|a l]; [simpl; tauto|]. unfold leaf. cbn [sound_tree leaves around].
+  split; [|reflexivity]. split; [|exact I]. intros b B.
+  destruct (fold_down (a :: l) (lo a)) as [_ D]. specialize (D _ B).
+  destruct (fold_up (a :: l) (hi a)) as [_ U]. specialize (U _ B).
+  destruct (fold_last (a :: l) (obj a)) as [_ N]. specialize (N _ B).
+  unfold below, within in *. cbn [low high last]. tauto.
+Qed.
+Lemma node_sound s t : sound_tree s -> sound_tree t -> sound_tree (node s t).
+Proof.
+  intros S T. unfold node. cbn [sound_tree leaves around]. split; [|auto].
+  assert (S' : forall b, In b (leaves s) -> within (around s) b) by (destruct s; apply S).
+  assert (T' : forall b, In b (leaves t) -> within (around t) b) by (destruct t; apply T).
+  intros b B. apply in_app_or in B. unfold within, down, up in *. cbn [low high last x y z].
+  destruct B as [B | B]; [specialize (S' b B) | specialize (T' b B)]; lia.
+Qed.
+Lemma divide_all f l : forall yes no yes' no', divide f l yes no = (yes', no') ->
+  forall b, In b yes' \/ In b no' <-> In b l \/ In b yes \/ In b no.
+Proof.
+  induction l as [|a l IH]; intros yes no yes' no' E b; cbn [divide] in E.
+  - injection E as <- <-. simpl. tauto.
+  - destruct (f a); rewrite (IH _ _ _ _ E b); simpl; tauto.
+Qed.
+Lemma build_sound n : forall l, sound_tree (build n l) /\
+  forall b, In b (leaves (build n l)) <-> In b l.
+Proof.
+  assert (L : forall l, sound_tree (leaf l) /\ forall b, In b (leaves (leaf l)) <-> In b l).
+  { intros l. destruct (leaf_sound l) as [S E]. rewrite E. tauto. }
+  induction n as [|n IH]; intros l; [apply L|]. cbn [build].
+  destruct l as [|a [|a2 [|a3 [|a4 [|a5 l]]]]]; try apply L.
+  set (m := a :: a2 :: a3 :: a4 :: a5 :: l).
+  destruct (divide (halve a m) m [] []) as [yes no] eqn:D.
+  pose proof (divide_all _ _ _ _ _ _ D) as A. clearbody m.
+  destruct yes as [|u yes]; [apply L|]. destruct no as [|v no]; [apply L|].
+  destruct (IH (u :: yes)) as [S1 E1], (IH (v :: no)) as [S2 E2].
+  split; [now apply node_sound|]. intros b. unfold node. cbn [leaves].
+  rewrite in_app_iff, E1, E2, A. simpl. tauto.
+Qed.
+
+(** * The search for partners *)
+Lemma pick_all a l : forall found b,
+  In b (pick a l found) <-> In b found \/ (In b l /\ candidate a b = true).
+Proof.
+  induction l as [|c l IH]; intros found b; cbn [pick]; [simpl; tauto|].
+  rewrite IH. destruct (candidate a c) eqn:C; simpl.
+  - split; [intuition (subst; auto) | intuition (subst; auto)].
+  - split; [intuition | intros [F | [[<- | F] E]]; [auto | congruence | auto]].
+Qed.
+Lemma candidate_may_ask a r b : within r b -> candidate a b = true -> may_ask a r = true.
+Proof.
+  unfold candidate, comes_before, may_ask, within.
+  rewrite !andb_true_iff, !orb_true_iff, !andb_true_iff, !overlap_true, !Z.ltb_lt, !Z.eqb_eq.
+  intros W [[A | [[A O] N]] V]; (split; [|lia]); destruct (Z.eq_dec (obj a) (last r)); tauto || lia.
+Qed.
+Lemma query_all a t : sound_tree t -> forall found b,
+  In b (query a t found) <-> In b found \/ (In b (leaves t) /\ candidate a b = true).
+Proof.
+  assert (Q : forall t found b, sound_tree t -> may_ask a (around t) = false ->
+    (In b found <-> In b found \/ (In b (leaves t) /\ candidate a b = true))).
+  { clear. intros t found b S O. split; [auto|]. intros [F | [F C]]; [assumption|]. exfalso.
+    assert (W : within (around t) b) by (destruct t; now apply S).
+    apply (candidate_may_ask _ _ _ W) in C. congruence. }
+  induction t as [r held | r one IH1 other IH2]; intros S found b; cbn [query];
+    destruct (may_ask a (around _)) eqn:O; try (apply Q; assumption).
+  - apply pick_all.
+  - destruct S as (_ & S1 & S2). rewrite (IH1 S1), (IH2 S2). cbn [leaves]. rewrite in_app_iff. tauto.
+Qed.
+Lemma sort_all l b : In b (Sorting.sort l) <-> In b l.
+Proof.
+  pose proof (Sorting.Permuted_sort l) as P.
+  split; apply Permutation_in; [now symmetry | assumption].
+Qed.
+Lemma put_all a l : forall done p, In p (put a l done) <-> In p done \/ exists b, In b l /\ p = (a, b).
+Proof.
+  induction l as [|c l IH]; intros done p; cbn [put].
+  - split; [auto | intros [D | (b & [] & _)]; assumption].
+  - rewrite IH. simpl. split.
+    + intros [[<- | D] | (b & B & ->)]; eauto.
+    + intros [D | (b & [<- | B] & ->)]; eauto.
+Qed.
+Lemma collect_all t l : sound_tree t -> forall done a b,
+  In (a, b) (collect t l done) <->
+  In (a, b) done \/ (In a l /\ In b (leaves t) /\ candidate a b = true).
+Proof.
+  intros S. induction l as [|c l IH]; intros done a b; cbn [collect]; [simpl; tauto|].
+  rewrite IH, put_all. split.
+  - intros [[D | (b' & B & E)] | H]; [auto | | simpl; tauto]. injection E as -> ->.
+    apply sort_all, query_all in B; [|assumption]. destruct B as [[] | B]. simpl. tauto.
+  - intros [D | ([<- | A] & B)]; [auto | | tauto]. left. right. exists b. split; [|reflexivity].
+    apply sort_all, query_all; [assumption | now right].
+Qed.
+Theorem pairs_all s a b : In (a, b) (pairs s) <->
+  In a (items_of s) /\ In b (items_of s) /\ candidate a b = true.
+Proof.
+  unfold pairs. destruct (build_sound 64 (items_of s)) as [S L].
+  rewrite (collect_all _ _ S), L. simpl. tauto.
+Qed.
+
+(** * The triangles *)
+Lemma add_triangles_all e o inner l : forall i done it,
+  In it (add_triangles e o i inner l done) <->
+  In it done \/ exists n t, nth_error l n = Some t /\ it = make_item e o (i + Z.of_nat n) inner t.
+Proof.
+  induction l as [|t l IH]; intros i done it; cbn [add_triangles].
+  - split; [auto|]. intros [D | (n & t & N & _)]; [assumption | destruct n; discriminate].
+  - rewrite IH. split.
+    + intros [[<- | D] | (n & u & N & ->)]; [right | auto | right].
+      * exists O, t. split; [reflexivity|]. f_equal. lia.
+      * exists (S n), u. split; [exact N|]. f_equal. lia.
+    + intros [D | (n & u & N & ->)]; [left; right; assumption|]. destruct n as [|n].
+      * left. left. injection N as ->. f_equal. lia.
+      * right. exists n, u. split; [exact N|]. f_equal. lia.
+Qed.
+Lemma add_objects_all e s : forall o done it,
+  In it (add_objects e o s done) <->
+  In it done \/ exists m ob n t, nth_error s m = Some ob /\ nth_error (triangles ob) n = Some t /\
+                it = make_item e (o + Z.of_nat m) (Z.of_nat n) (self ob) t.
+Proof.
+  induction s as [|ob s IH]; intros o done it; cbn [add_objects].
+  - split; [auto|]. intros [D | (m & ? & ? & ? & N & _)]; [assumption | destruct m; discriminate].
+  - rewrite IH, add_triangles_all. split.
+    + intros [[D | (n & t & N & ->)] | (m & ob' & n & t & M & N & ->)]; [auto | right | right].
+      * exists O, ob, n, t. repeat split; auto. f_equal; lia.
+      * exists (S m), ob', n, t. repeat split; auto. f_equal; lia.
+    + intros [D | (m & ob' & n & t & M & N & ->)]; [auto|]. destruct m as [|m].
+      * left. right. injection M as ->. exists n, t. split; [assumption|]. f_equal; lia.
+      * right. exists m, ob', n, t. repeat split; auto. f_equal; lia.
+Qed.
+Theorem items_all s it : In it (items_of s) <->
+  exists m ob n t, nth_error s m = Some ob /\ nth_error (triangles ob) n = Some t /\
+                   it = make_item (lowest s) (Z.of_nat m) (Z.of_nat n) (self ob) t.
+Proof.
+  unfold items_of. rewrite add_objects_all. simpl. split; [intros [[] | H] | intros H; right]; exact H.
+Qed.
+
+(** * The common power of two *)
+Definition at_most_vec (e : Z) (p : vec double) : Prop :=
+  e <= exponent (x p) /\ e <= exponent (y p) /\ e <= exponent (z p).
+Definition at_most_triangle (e : Z) (t : triangle double) : Prop :=
+  at_most_vec e (p1 t) /\ at_most_vec e (p2 t) /\ at_most_vec e (p3 t).
+Lemma lower_triangle_sound e t : lower_triangle e t <= e /\ at_most_triangle (lower_triangle e t) t.
+Proof.
+  unfold at_most_triangle, at_most_vec, lower_triangle, lower_vec, lower. lia.
+Qed.
+Lemma at_most_less e e' t : e' <= e -> at_most_triangle e t -> at_most_triangle e' t.
+Proof. unfold at_most_triangle, at_most_vec. lia. Qed.
+Lemma lower_list l : forall e, fold_left lower_triangle l e <= e /\
+  forall t, In t l -> at_most_triangle (fold_left lower_triangle l e) t.
+Proof.
+  induction l as [|t l IH]; intros e; cbn [fold_left]; [split; [lia | intros t []]|].
+  destruct (IH (lower_triangle e t)) as [L A], (lower_triangle_sound e t) as [L' A'].
+  split; [lia|]. intros u [<- | U]; [eapply at_most_less, A'; lia | auto].
+Qed.
+Lemma lowest_sound s o i t : is_triangle s o i t -> at_most_triangle (lowest s) t.
+Proof.
+  intros (ob & O & I). apply nth_error_In in O, I. unfold lowest. generalize 0.
+  assert (G : forall s e, fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e <= e /\
+     forall ob, In ob s -> forall t, In t (triangles ob) ->
+       at_most_triangle (fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e) t).
+  { clear. induction s as [|ob s IH]; intros e; cbn [fold_left]; [split; [lia | intros ? []]|].
+    destruct (lower_list (triangles ob) e) as [L A].
+    destruct (IH (fold_left lower_triangle (triangles ob) e)) as [L' A'].
+    split; [lia|]. intros ob' [<- | O] t T; [eapply at_most_less; [apply L' | now apply A] | eauto]. }
+  intros e. now apply (G s e) with (ob := ob).
+Qed.

@@ -1,0 +1,84 @@
+(** What the checker of certificates proves: the question alone. Nothing here is computed.
+    docs/verified.md explains each definition to readers who do not know Coq. *)
+From Coq Require Import ZArith QArith List.
+Open Scope Q_scope.
+
+(** Numbers. A finite double is [mantissa] times 2 to the power [exponent], exactly. *)
+Record double := Double { mantissa : Z; exponent : Z }.
+Definition value (d : double) : Q := inject_Z (mantissa d) * 2 ^ exponent d.
+
+(** Points and triangles; a coordinate is of type C: a double, a rational or an integer. *)
+Record vec (C : Type) := Vec { x : C; y : C; z : C }.
+Arguments Vec {C}. Arguments x {C}. Arguments y {C}. Arguments z {C}.
+Record triangle (C : Type) := Triangle { p1 : vec C; p2 : vec C; p3 : vec C }.
+Arguments Triangle {C}. Arguments p1 {C}. Arguments p2 {C}. Arguments p3 {C}.
+
+Definition map_vec {C D} (f : C -> D) (p : vec C) : vec D := Vec (f (x p)) (f (y p)) (f (z p)).
+Definition map_triangle {C D} (f : C -> D) (t : triangle C) : triangle D :=
+  Triangle (map_vec f (p1 t)) (map_vec f (p2 t)) (map_vec f (p3 t)).
+
+(** Two names of one point: == is equality of rational numbers, so 1/2 == 2/4. *)
+Definition same (p q : vec Q) : Prop := x p == x q /\ y p == y q /\ z p == z q.
+
+Definition plus (p q : vec Q) : vec Q := Vec (x p + x q) (y p + y q) (z p + z q).
+Definition times (k : Q) (p : vec Q) : vec Q := Vec (k * x p) (k * y p) (k * z p).
+
+(** The points of a closed triangle: the convex combinations of its corners. The corners may lie on
+    one line, or be one point. *)
+Definition mix (u v w : Q) (t : triangle Q) : vec Q :=
+  plus (plus (times u (p1 t)) (times v (p2 t))) (times w (p3 t)).
+Definition inside (t : triangle Q) (p : vec Q) : Prop :=
+  exists u v w, 0 <= u /\ 0 <= v /\ 0 <= w /\ u + v + w == 1 /\ same p (mix u v w t).
+
+(** The points of a closed segment from c to d; of c alone if c and d are one point. *)
+Definition on_segment (c d p : vec Q) : Prop :=
+  exists t, 0 <= t /\ t <= 1 /\ same p (plus (times (1 - t) c) (times t d)).
+
+(** The shared part of two triangles: their common corners and the segments between any two. *)
+Definition is_corner (t : triangle Q) (c : vec Q) : Prop :=
+  same c (p1 t) \/ same c (p2 t) \/ same c (p3 t).
+Definition is_shared (a b : triangle Q) (c : vec Q) : Prop := is_corner a c /\ is_corner b c.
+Definition in_shared_part (a b : triangle Q) (p : vec Q) : Prop :=
+  exists c d, is_shared a b c /\ is_shared a b d /\ on_segment c d p.
+
+(** Two triangles meet if they have a common point. Triangles of one object have to have one that is
+    not in their shared part: neighbours in a mesh do not meet because they share an edge. *)
+Definition meet (one_object : Prop) (a b : triangle Q) : Prop :=
+  exists p, inside a p /\ inside b p /\ (one_object -> ~ in_shared_part a b p).
+
+(** A scene is a list of objects. An object is a list of triangles; [self] says whether the question
+    is asked for two triangles of the object as well. *)
+Record object := Object { self : bool; triangles : list (triangle double) }.
+Definition scene := list object.
+
+(** Triangle number i of object number o of the scene; both count from 0. *)
+Definition is_triangle (s : scene) (o i : nat) (t : triangle double) : Prop :=
+  exists ob, nth_error s o = Some ob /\ nth_error (triangles ob) i = Some t.
+
+(** The pairs that are asked for, each in one order only. *)
+Definition asked (s : scene) (o i o' i' : nat) : Prop :=
+  (o < o')%nat \/
+  (o = o' /\ (i < i')%nat /\ exists ob, nth_error s o = Some ob /\ self ob = true).
+
+(** The answer: triangle i of object o and triangle i' of object o' are asked for, and meet. *)
+Definition answer (s : scene) (o i o' i' : nat) : Prop :=
+  asked s o i o' i' /\
+  exists t t', is_triangle s o i t /\ is_triangle s o' i' t' /\
+               meet (o = o') (map_triangle value t) (map_triangle value t').
+
+(** A row of a list of pairs, as farcull writes it. The last column says whether the two triangles
+    are of one object and have a common corner. *)
+Record row := Row { object_a : Z; triangle_a : Z; object_b : Z; triangle_b : Z; neighbours : bool }.
+
+(** The list is right and complete, and so is its last column. *)
+Definition names (r : row) (o i o' i' : nat) : Prop :=
+  object_a r = Z.of_nat o /\ triangle_a r = Z.of_nat i /\
+  object_b r = Z.of_nat o' /\ triangle_b r = Z.of_nat i'.
+Definition are_neighbours (s : scene) (o i o' i' : nat) : Prop :=
+  o = o' /\ exists t t' c, is_triangle s o i t /\ is_triangle s o' i' t' /\
+                         is_shared (map_triangle value t) (map_triangle value t') c.
+Definition right_and_complete (s : scene) (l : list row) : Prop :=
+  forall o i o' i',
+    (answer s o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
+    (forall r, In r l -> names r o i o' i' ->
+               (neighbours r = true <-> are_neighbours s o i o' i')).
