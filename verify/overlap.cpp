@@ -262,9 +262,15 @@ class PieceTest {
 };
 
 /// Whether one of the points is inside; a point of the surface is left to the pieces.
-bool any_inside(const Scene& scene, std::uint32_t object, std::span<const Vec3> points) {
-  return std::ranges::any_of(
-      points, [&](const Vec3& point) { return inside(scene, object, point, true) == Inside::yes; });
+Overlap any_inside(const Scene& scene, std::uint32_t object, std::span<const Vec3> points) {
+  const Surface surface = surface_of(scene, object);
+  Overlap out = Overlap::no;
+  for (const Vec3& point : points) {
+    const Overlap here = overlap_at(scene, object, point, surface);
+    if (here == Overlap::yes) return here;
+    if (here == Overlap::unknown) out = here;
+  }
+  return out;
 }
 
 /// The triangles of the contacts by their first triangle, or by the second one.
@@ -298,8 +304,18 @@ bool plane_divides(const Scene& scene, ObjectPair objects, std::span<const Trian
     const Corners corners = scene.corners(t);
     if (shape(corners) != Shape::triangle) return false;
     const unsigned of_a = sides_of(scene, objects.a, corners);
-    return of_a != 3 && (of_a & sides_of(scene, objects.b, corners)) == 0;
+    if (of_a == 3) return false;
+    const unsigned of_b = sides_of(scene, objects.b, corners);
+    return ((of_a & 1) == 0 && (of_b & 2) == 0) || ((of_a & 2) == 0 && (of_b & 1) == 0);
   });
+}
+
+Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface) {
+  const bool wound = inside(scene, object, point, Surface::oriented) == Inside::yes;
+  if (surface != Surface::oriented &&
+      wound != (inside(scene, object, point, Surface::closed) == Inside::yes))
+    return Overlap::unknown;
+  return wound ? Overlap::yes : Overlap::no;
 }
 
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
@@ -319,8 +335,10 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
       if (answer != Overlap::no) return answer;
     }
   }
-  const bool any = any_inside(scene, objects.b, parts_a) || any_inside(scene, objects.a, parts_b);
-  return any ? Overlap::yes : Overlap::no;
+  const Overlap a = any_inside(scene, objects.b, parts_a);
+  const Overlap b = any_inside(scene, objects.a, parts_b);
+  if (a == Overlap::yes || b == Overlap::yes) return Overlap::yes;
+  return a == Overlap::unknown ? a : b;
 }
 
 }  // namespace farcull

@@ -27,6 +27,7 @@
 #include <span>
 
 #include "core/scene/scene.h"
+#include "verify/inside.h"
 
 namespace farcull {
 
@@ -40,6 +41,11 @@ enum class Overlap : std::uint8_t { no, yes, unknown };
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
                             std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
                             std::span<const Vec3> parts_b, bool closed);
+
+/// Whether a point off the surface of a closed object is inside it: unknown where the parity of a
+/// ray and the winding number disagree on an object whose faces do not all face outward.
+/// surface: that of surface_of().
+Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 /// Whether a plane along the axes, or the plane of a triangle in one of the contacts, has one
 /// object on either side.

@@ -30,7 +30,6 @@ using separation::kU;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 double down(double x) { return std::nextafter(x, -kInf); }
-double up(double x) { return std::nextafter(x, kInf); }
 
 std::vector<Corners> triangles_of(const Scene& scene, std::uint32_t object) {
   const Object& o = scene.objects[object];
@@ -267,7 +266,7 @@ double height_above_faces(const Solid& solid) {
 double hull_error(const Scene& scene, std::uint32_t object, const Solid& solid) {
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : solid.points) centre += p / static_cast<double>(solid.points.size());
-  if (inside(scene, object, centre, true) != Inside::yes) return kInf;
+  if (inside(scene, object, centre) != Inside::yes) return kInf;
   const double rho = distance_below(scene, object, centre);
   const double epsilon = height_above_faces(solid);
   if (!(rho > 2 * epsilon)) return kInf;
@@ -280,7 +279,7 @@ double bound_by_polytope(const Scene& scene, ObjectPair objects, const Solid& a,
                          const Polytope& polytope) {
   const Scene difference = polytope.scene();
   const Vec3 origin = Vec3::Zero();
-  if (!is_closed(difference, 0) || inside(difference, 0, origin, true) != Inside::yes) return 0;
+  if (inside(difference, 0, origin) != Inside::yes) return 0;
   double largest = 0;
   for (const Vec3& p : difference.vertices) largest = std::max(largest, p.norm());
   const double error = hull_error(scene, objects.a, a) + hull_error(scene, objects.b, b) +
@@ -368,7 +367,7 @@ Vec3 deep_point(const Solid& a, const Solid& b, std::vector<Vec3> starts, double
 
 double bound_by_balls(const Scene& scene, ObjectPair objects, const Vec3& p) {
   for (const std::uint32_t object : {objects.a, objects.b}) {
-    if (inside(scene, object, p, true) != Inside::yes) return 0;
+    if (inside(scene, object, p) != Inside::yes) return 0;
   }
   return down(distance_below(scene, objects.a, p) + distance_below(scene, objects.b, p));
 }

@@ -100,8 +100,8 @@ std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
   if (open.empty()) return std::nullopt;
   const double size = (box.hi - box.lo).norm();
   for (int power = -13; power <= -5; ++power) {
-    const double tolerance = std::pow(10.0, power) * size;
-    NearPoints near(tolerance);
+    const double tolerance = std::pow(10.0, power);
+    NearPoints near(tolerance * size);
     std::map<std::uint32_t, std::uint32_t> now;  // ordered, as weld() goes through the vertices
     for (const Edge& edge : open) now[edge[0]] = now[edge[1]] = 0;
     for (auto& [of, to] : now) to = near.number(place[of], of);

@@ -37,7 +37,7 @@ class NearPoints {
 
 struct WeldHint {
   std::uint64_t open_edges = 0;  // edges that belong to an odd number of triangles
-  double tolerance = 0;          // world units; merging corners so far apart closes the object
+  double tolerance = 0;          // of the diagonal; merging corners so far apart closes it
   Vec3 place;                    // the end of an open edge
 };
 /// If the object has open edges, and merging their ends within some power of 10, from 1e-13 to 1e-5

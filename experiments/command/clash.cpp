@@ -30,15 +30,16 @@ constexpr const char* kExamples =
     "  farcull clash robot.json --ignore 'link*:base,hand:cup' --touching report\n"
     "  farcull clash a.obj b.obj --json - | jq '.pairs[0].depth'\n\n"
     "Each pair of parts has a verdict, the most serious first:\n"
-    "  clash      the surfaces cross, or the insides overlap\n"
+    "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
+    "             proved that they touch only\n"
     "  contained  one part, or a piece of it, is inside the other\n"
     "  unknown    would be contained, but the outer part is not closed\n"
     "  touch      they meet, and it is proved that they do not overlap\n"
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
     "depth: bounds of the shortest way by which one part has to move so that closed parts no\n"
-    "longer overlap. curve: length of the curve in which the surfaces cross. All verdicts and\n"
-    "bounds are exact. docs/clash.md has the columns and the proofs.\n\n"
+    "longer overlap; the true one lies between. curve: length of the curve in which the\n"
+    "surfaces cross. docs/clash.md has the columns and the proofs.\n\n"
     "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
     "not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
@@ -141,7 +142,7 @@ int ClashCommand::run() const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = load_scene(files);
+  Scene scene = read_scene(files);
   for (Object& object : scene.objects) object.self = false;
   options.ignored = ignored_objects(scene, ignored());
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());

@@ -109,7 +109,7 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
         },
         row.value);
     if (option != nullptr) option->type_name(row.type)->required(row.need == Need::must);
-    if (row.name != std::string("SCENE")) continue;
+    if (row.name != std::string("SCENE") && row.name != std::string("PARTS")) continue;
     if (auto* const scene = std::get_if<std::vector<std::string>*>(&row.value))
       add_reading_options(*command, **scene);
   }

@@ -36,11 +36,12 @@ class Objects {
   }
 
   const std::vector<Box>& boxes() const { return boxes_; }
-  bool closed(std::uint32_t object) const {
+  Surface surface(std::uint32_t object) const {
     Facts& facts = facts_[object];
-    std::call_once(facts.closed_found, [&] { facts.closed = is_closed(scene_, object); });
-    return facts.closed;
+    std::call_once(facts.surface_found, [&] { facts.surface = surface_of(scene_, object); });
+    return facts.surface;
   }
+  bool closed(std::uint32_t object) const { return surface(object) != Surface::open; }
   const std::vector<Vec3>& parts(std::uint32_t object) const {
     Facts& facts = facts_[object];
     std::call_once(facts.parts_found,
@@ -58,13 +59,16 @@ class Objects {
     for (std::uint32_t k = 0; k < object.triangle_count && !any; ++k)
       any = lies_within(triangle_box(object.first_triangle + k), boxes_[outer]);
     if (!any) return ClashVerdict::clear;
+    ClashVerdict out = ClashVerdict::clear;
     for (const Vec3& p : parts(inner)) {
       if (!lies_within({p, p}, boxes_[outer])) continue;
+      const Overlap in = closed(outer) ? overlap_at(scene_, outer, p, surface(outer)) : Overlap::unknown;
+      if (in == Overlap::no) continue;
       point = p;
-      if (!closed(outer)) return ClashVerdict::unknown;
-      if (inside(scene_, outer, p, true) == Inside::yes) return ClashVerdict::contained;
+      if (in == Overlap::yes) return ClashVerdict::contained;
+      out = ClashVerdict::unknown;
     }
-    return ClashVerdict::clear;
+    return out;
   }
 
   Box triangle_box(std::uint32_t triangle) const {
@@ -74,8 +78,8 @@ class Objects {
 
  private:
   struct Facts {
-    std::once_flag closed_found, parts_found;
-    bool closed = false;
+    std::once_flag surface_found, parts_found;
+    Surface surface = Surface::open;
     std::vector<Vec3> parts;
   };
   static bool lies_within(const Box& inner, const Box& outer) {

@@ -125,7 +125,7 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
     case ClashVerdict::contained:
       return name_of(scene, *row.inner) + " inside";
     case ClashVerdict::unknown:
-      return "the one around " + name_of(scene, *row.inner) + " is not closed";
+      return "the one around " + name_of(scene, *row.inner) + " is not closed, or its faces do not all face outward";
     case ClashVerdict::clash:
       return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
     default:

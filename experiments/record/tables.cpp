@@ -456,7 +456,7 @@ std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& obj
     if (!hint) continue;
     out += fmt::format(
         "hint       {} is not closed: {}, one of them at {:.6g} {:.6g} {:.6g}. Their ends nearly\n"
-        "           coincide; --weld {:.1g} closes it\n",
+        "           coincide; --weld {:.0e}*size closes it\n",
         scene.objects[o].name, counted(hint->open_edges, "open edge", "open edges"),
         hint->place.x(), hint->place.y(), hint->place.z(), hint->tolerance);
     if (++lines == kMostLines) break;

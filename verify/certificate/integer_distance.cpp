@@ -173,7 +173,11 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   return true;
 }
 
+}  // namespace
+
 enum class Mesh : std::uint8_t { open, closed, oriented };
+
+namespace {
 
 /// Is x inside the closed mesh? Empty if x lies on a triangle that the ray crosses.
 std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x, Mesh mesh) {

@@ -39,7 +39,7 @@ edge.obj << v 0 0 0; v 1 0 0; v 0 -1 0; v 0 0 1e-17; v 1 0 -1e-17; v 0 1 0; f 1 
 bad a weld | --weld: '-1' is no tolerance | run edge.obj --self --weld=-1
 bad of a built-in scene | --weld: has no meaning | run two-tori --weld 1
 0 a hint | run cad.obj --self | ^hint +cad is not closed: [0-9]+ open edges, one of them at .* Their ends nearly$
-  | ^ +coincide; --weld [0-9]e-1[0-9] closes it$
+  | ^ +coincide; --weld 1e-[01][0-9][*]size closes it$
 0 no hint | run cad.obj --self --weld 1e-9 | @err merged | ! ^hint | ^colliding +0 pairs
 0 distance hints | distance cad.obj part.obj | ! ^hint
 bad a name | two-sphere: neither .*; did you mean two-spheres\? | run two-sphere
