@@ -1,5 +1,6 @@
-// Looks for near points in the 27 cells around a point of a grid whose cells are as wide as the
-// tolerance. Each cell keeps the points in it that no earlier one replaced.
+// Looks for near points in the 27 cells around a point of a grid whose cells are twice as wide as
+// the tolerance, so that rounding moves no near point beyond them. Each cell keeps the points in it
+// that no earlier one replaced.
 #include "core/scene/near_points.h"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // no -0.0
     // Beyond 2^53 cells neighbours are no other cells, and doubles are farther apart than one.
-    out[k] = tolerance_ > 0 ? std::floor(x / tolerance_) + 0.0 : x;
+    out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
   return out;

@@ -147,16 +147,14 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
                          check_with(arguments.certificate, std::move(of_distances), scene));
     }
     certificate = parse_certificate(text, name);
-    if (arguments.verified && certificate->clearance > 0)
-      throw Error("--verified", "does not go with a clearance", "leave it out");
   }
   const Scene scene = checked_scene(arguments);
-  const int status = write_check(
-      arguments, scene,
-      check_scene_with(clearance_of(arguments, certificate), clean_name(arguments.certificate),
-                       certificate, scene, list,
-                       list ? std::span<const ListedPair>(list->rows)
-                            : std::span<const ListedPair>()));
+  const int status =
+      write_check(arguments, scene,
+                  check_scene_with(clearance_of(arguments, certificate),
+                                   clean_name(arguments.certificate), certificate, scene, list,
+                                   list ? std::span<const ListedPair>(list->rows)
+                                        : std::span<const ListedPair>()));
   return arguments.verified ? check_again(arguments, scene, status) : status;
 }
 
@@ -377,8 +375,8 @@ int CheckCommand::run() {
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);
   require_number(to.certificate, to.frames.has_value());
-  if (to.verified && (to.certificate.empty() || to.frames || pairs_)) {
-    throw Error("--verified", "is for one certificate, without --frames and --pairs",
+  if (to.verified && (to.certificate.empty() || to.frames || pairs_ || clearance_)) {
+    throw Error("--verified", "is for one certificate, without --frames, --pairs and --clearance",
                 "leave it out, or check each frame by its own certificate");
   }
   std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);

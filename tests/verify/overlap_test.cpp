@@ -89,6 +89,41 @@ TEST(Overlap, IsFoundWhereNoTrianglesCross) {
   EXPECT_EQ(answer(rod.scene), Overlap::yes);
 }
 
+// A sheet in a box, with a corner on its wall: the plane of the sheet has the box on both sides.
+TEST(Overlap, NoPlaneDividesASheetFromTheBoxAroundIt) {
+  for (const bool first : {false, true}) {
+    Parts parts;
+    const auto add_sheet = [&] {
+      const std::uint32_t corner = parts.next();
+      parts.vertex(0, 2, 2), parts.vertex(3, 1, 2), parts.vertex(3, 3, 2);
+      parts.triangle(corner, corner + 1, corner + 2);
+      parts.end("sheet");
+    };
+    if (first) add_sheet();
+    parts.add_box("box", {0, 0, 0}, {4, 4, 4});
+    if (!first) add_sheet();
+    const Case of = case_of(parts.scene);
+    ASSERT_FALSE(of.contacts.empty());
+    EXPECT_FALSE(plane_divides(parts.scene, {0, 1}, of.contacts));
+  }
+}
+
+// One face of two shells that overlap is turned over: a box inside both is inside by the winding
+// number and outside by parity. It also touches a wall with another box.
+TEST(Overlap, AFaceTurnedOverHidesNoBoxInTwoShells) {
+  for (const bool turned : {false, true}) {
+    Parts parts;
+    parts.box({0, 0, 0}, {4, 4, 4});
+    parts.box({1, 1, 1}, {5, 5, 5});
+    if (turned) std::swap(parts.scene.triangles[0][0], parts.scene.triangles[0][1]);
+    parts.end("shells");
+    parts.box({2, 2, 2}, {3, 3, 3});
+    parts.box({5, 2, 2}, {6, 3, 3});
+    parts.end("boxes");
+    EXPECT_EQ(answer(parts.scene), turned ? Overlap::unknown : Overlap::yes);
+  }
+}
+
 TEST(Overlap, OverlappingShellsHideNothing) {
   // The first object's boxes overlap; by parity its inside ends where they do.
   Parts parts;

@@ -246,7 +246,7 @@ std::vector<TrianglePair> found_after_frames(Scene& scene, bool tells) {
       for (std::size_t v = 4; v < scene.vertices.size() / 2; v += 4) scene.vertices[v].x() += 0.1;
     moved.update(tells ? scene : told);
     const PairPlan plan = plan_pairs(scene, {}, 2, &workspace.memory);
-    if (frame == 2) EXPECT_FALSE(plan.blocks.kept.empty());
+    EXPECT_TRUE(frame != 2 || !plan.blocks.kept.empty());
     out = find_pairs(scene, plan, *backend, workspace).candidates;
   }
   return out;

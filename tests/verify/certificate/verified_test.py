@@ -15,6 +15,7 @@ import tarfile
 
 BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
             'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
+SPOILED = ['degenerate', 'cloth:8']  # small, so that every change of their certificates is tried
 VERDICT = re.compile(r'(?:verified +)?(proved|refuted|not proved|undecided)\b')
 
 
@@ -85,7 +86,7 @@ def random_scene(number, folder, most=40):
         triangles = [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(1, most))]
         objects.append((draw.random() < 0.7, triangles))
     write_scene(folder, objects)
-    return objects
+    return objects, scale
 
 
 # ---- forged certificates ----
@@ -174,14 +175,12 @@ class Comparison:
             self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
 
     def fuzzed(self, archive, folder):
-        """The inputs of the fuzzer of certificates. Those with a clearance are not for the proved checker."""
+        """The inputs of the fuzzer of certificates."""
         write_scene(folder, FUZZ_SCENE)
         write_words(f'{folder}/words', FUZZ_SCENE)
         with tarfile.open(archive) as inputs:
             for member in filter(tarfile.TarInfo.isfile, inputs.getmembers()):
                 text = inputs.extractfile(member).read()
-                if re.search(rb'"version": *4', text):
-                    continue
                 with open(f'{folder}/certificate.json', 'wb') as file:
                     file.write(text)
                 self.both(f'{folder}/certificate.json', f'{folder}/scene.json', f'{folder}/words', f'fuzz input {member.name}')
@@ -201,10 +200,13 @@ class Comparison:
             self.wrong.append(f'check --verified with a checker that disagrees: {said}')
         os.remove(program)
 
-    def scene(self, name, folder, objects, number, spoil=False):
+    def scene(self, name, folder, objects, number, spoil=False, clearance=None):
         scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
         write_words(words, objects)
-        status, text = output([self.farcull, 'run', scene, '--method', 'exact', '--certificate', certificate])
+        status, text = output([self.farcull, 'run', scene, '--method', 'exact', '--certificate', certificate]
+                              if clearance is None else
+                              [self.farcull, 'run', scene, '--method', 'far-pairs', '--device', 'cpu', '--clearance', repr(clearance),
+                               '--certificate', certificate])
         if status:
             self.wrong.append(f'{name}: no certificate: {text[:300]}')
             return
@@ -230,12 +232,19 @@ def compare(farcull, checker, folder, count):
         if status:
             comparison.wrong.append(f'{name}: {text[:300]}')
             continue
-        comparison.scene(name, place, list(meshes(place)), index, spoil=index % 4 == 0)
+        objects = list(meshes(place))
+        comparison.scene(name, place, objects, index, spoil=name in SPOILED)
+        points = [point for _, triangles in objects for triangle in triangles for point in triangle]
+        size = max(max(axis) - min(axis) for axis in zip(*points))
+        comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
     for number in range(first, first + count):
-        comparison.scene(f'random scene {number}', place, random_scene(number, place), number)
+        objects, scale = random_scene(number, place)
+        comparison.scene(f'random scene {number}', place, objects, number)
+        clearance = scale * random.Random(number).choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
+        comparison.scene(f'random scene {number}, clearance {clearance!r}', place, objects, number, clearance=clearance)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
           f'; the two checkers disagree about {len(comparison.wrong)}')
     print('\n'.join(comparison.wrong[:5]))
@@ -245,10 +254,12 @@ def compare(farcull, checker, folder, count):
 # ---- changes of the checker ----
 
 MUTANTS = [
-    ('max3 a1 a2 a3 <? min3 b1 b2 b3', 'max3 a1 a2 a3 <=? min3 b1 b2 b3'),
-    ('max3 b1 b2 b3 <? min3 a1 a2 a3', 'max3 b1 b2 b3 <=? min3 a1 a2 a3'),
+    ('clearance * clearance * dot d d <? gap * gap', 'clearance * clearance * dot d d <=? gap * gap'),
     ('(0 <=? y w) && (0 <=? z w)', '(y w <=? 0) && (0 <=? z w)'),
     ('(0 <? total w)', '(0 <=? total w)'),
+    ('clearance * clearance * dot d d <? gap * gap', 'gap * gap <=? clearance * clearance * dot d d'),
+    ('(dot w w <=? r * r)', '(r * r <=? dot w w)'),
+    ('(d <=? r)', '(r <=? d)'),
     ('(dot e r <? 0)', '(dot e r <=? 0)'),
     ('(m * dot e e <? dot e r)', '(m * dot e e <=? dot e r)'),
     ('(0 <=? n) && (n <=? l)', '(n <=? 0) && (n <=? l)'),

@@ -11,8 +11,8 @@ Definition lower (e : Z) (d : double) : Z := Z.min e (exponent d).
 Definition lower_vec (e : Z) (p : vec double) : Z := lower (lower (lower e (x p)) (y p)) (z p).
 Definition lower_triangle (e : Z) (t : triangle double) : Z :=
   lower_vec (lower_vec (lower_vec e (p1 t)) (p2 t)) (p3 t).
-Definition lowest (s : scene) : Z :=
-  fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s 0.
+Definition lowest (s : scene) (e : Z) : Z :=
+  fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e.
 (** The integer that is the double divided by 2^e; e is at most its exponent. *)
 Definition scaled (e : Z) (d : double) : Z :=
   mantissa d * Z.of_N (N.shiftl 1 (Z.to_N (exponent d - e))).
@@ -59,12 +59,14 @@ Definition each (f : index -> index -> direction) : list direction :=
 Definition directions : list direction :=
   each Between ++ Normal_a :: Normal_b :: each Edge_edge ++ each Foot_a ++ each Foot_b.
 
-Definition separates (a b : triangle Z) (d : vec Z) : bool :=
+(** The gap along d is longer than the clearance. *)
+Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
   let a1 := dot d (p1 a) in let a2 := dot d (p2 a) in let a3 := dot d (p3 a) in
   let b1 := dot d (p1 b) in let b2 := dot d (p2 b) in let b3 := dot d (p3 b) in
-  (max3 a1 a2 a3 <? min3 b1 b2 b3) || (max3 b1 b2 b3 <? min3 a1 a2 a3).
-Definition separated (a b : triangle Z) : bool :=
-  existsb (fun d => separates a b (vector a b d)) directions.
+  let gap := Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3) in
+  (0 <? gap) && (clearance * clearance * dot d d <? gap * gap).
+Definition separated (clearance : Z) (a b : triangle Z) : bool :=
+  existsb (fun d => separates clearance a b (vector a b d)) directions.
 
 (** * A common point. Three weights stand for the point of a triangle that they make of its corners,
       times their sum. *)
@@ -74,7 +76,8 @@ Definition weigh (w : vec Z) (t : triangle Z) : vec Z :=
 Definition are_weights (w : vec Z) : bool :=
   (0 <=? x w) && (0 <=? y w) && (0 <=? z w) && (0 <? total w).
 Definition is_common (a b : triangle Z) (u v : vec Z) : bool :=
-  are_weights u && are_weights v && equal (scale (total v) (weigh u a)) (scale (total u) (weigh v b)).
+  are_weights u && are_weights v &&
+  equal (scale (total v) (weigh u a)) (scale (total u) (weigh v b)).
 
 (** The point p / m does not lie on the segment from c to d. *)
 Definition off_segment (c d p : vec Z) (m : Z) : bool :=
@@ -124,6 +127,28 @@ Definition shows (good : vec Z -> Z -> bool) (a b : triangle Z) (p : probe) : bo
 (** A common point is found that is good; [good p m] judges the point p / m. *)
 Definition has_common (good : vec Z -> Z -> bool) (a b : triangle Z) : bool :=
   existsb (shows good a b) probes || existsb (shows good b a) probes.
+
+(** * Two points that are not farther apart than the clearance *)
+Definition are_near (clearance : Z) (a b : triangle Z) (u v : vec Z) : bool :=
+  let m := total u in let n := total v in
+  let w := sub (scale n (weigh u a)) (scale m (weigh v b)) in let r := m * n * clearance in
+  are_weights u && are_weights v && (dot w w <=? r * r).
+(** Weights that may make the point of a nearest to corner j of b: a corner, on an edge, inside. *)
+Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
+  let p := corner b j in
+  let on_side i := let e := edge a i in along i (dot (sub p (corner a i)) e) (dot e e) in
+  let n := normal a in let l := dot n n in
+  map (fun i => on_edge i 1 0) indices ++ map on_side indices ++
+  locate a (sub (scale l p) (scale (dot n (sub p (p1 a))) n)) l.
+Definition near_corner (clearance : Z) (a b : triangle Z) : bool :=
+  existsb (fun j =>
+    existsb (fun u => are_near clearance a b u (on_edge j 1 0)) (feet a b j)) indices.
+Definition near_edges (clearance : Z) (a b : triangle Z) : bool :=
+  existsb (fun i => existsb (fun j =>
+    are_near clearance a b (probe_weights a b (Meeting_edges i j))
+                           (probe_weights b a (Meeting_edges j i))) indices) indices.
+Definition has_near (clearance : Z) (a b : triangle Z) : bool :=
+  near_corner clearance a b || near_corner clearance b a || near_edges clearance a b.
 
 (** * Neighbours that have no more in common than their shared part *)
 Definition is_corner_of (t : triangle Z) (c : vec Z) : bool :=
@@ -226,12 +251,15 @@ Fixpoint only_shared (steps : nat) (a b : triangle Z) (shared : list (vec Z)) (l
 (** * The decision of one pair *)
 Inductive kind := Separated | Only_shared | Meeting.
 (** None: neither side could be proved. [first]: a common point is tried first. *)
-Definition decide (first : bool) (shared : list (vec Z)) (a b : triangle Z) : option kind :=
+Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : triangle Z)
+  : option kind :=
   let apart := match shared with
-               | [] => if separated a b then Some Separated else None
+               | [] => if separated clearance a b then Some Separated else None
                | _ => if only_shared 7 a b shared indices indices then Some Only_shared else None
                end in
-  let common (_ : unit) := has_common (off_shared shared) a b in
+  let common (_ : unit) :=
+    match shared with [] => (0 <? clearance) && has_near clearance a b | _ => false end ||
+    has_common (off_shared shared) a b in
   if first then (if common tt then Some Meeting else apart)
   else match apart with
        | Some k => Some k
@@ -291,7 +319,7 @@ Fixpoint add_objects (e o : Z) (s : scene) (done : list item) :=
   | [] => done
   | ob :: rest => add_objects e (o + 1) rest (add_triangles e o 0 (self ob) (triangles ob) done)
   end.
-Definition items_of (s : scene) : list item := add_objects (lowest s) 0 s [].
+Definition items_of (e : Z) (s : scene) : list item := add_objects (lowest s e) 0 s [].
 
 Definition overlap (l h l' h' : vec Z) : bool :=
   (x l <=? x h') && (x l' <=? x h) && (y l <=? y h') && (y l' <=? y h) &&
@@ -300,10 +328,17 @@ Definition comes_before (a b : item) : bool :=
   (obj a <? obj b) || ((obj a =? obj b) && own a && (num a <? num b)).
 Definition candidate (a b : item) : bool :=
   comes_before a b && overlap (lo a) (hi a) (lo b) (hi b).
+(** The item with a box that reaches farther in all directions. *)
+Definition grow (reach : Z) (a : item) : item :=
+  if reach =? 0 then a else
+  let r := Vec reach reach reach in
+  Item (obj a) (num a) (own a) (shape a) (sub (lo a) r) (add (hi a) r) (middle a).
 
 (** * A tree of boxes: any division of the triangles is right, a good one is quick *)
 Record bounds := Bounds { low : vec Z; high : vec Z; last : Z }.  (* last: no object comes later *)
-Inductive tree := Leaf (around : bounds) (held : list item) | Node (around : bounds) (one other : tree).
+Inductive tree :=
+| Leaf (around : bounds) (held : list item)
+| Node (around : bounds) (one other : tree).
 Definition around (t : tree) : bounds := match t with Leaf b _ => b | Node b _ _ => b end.
 
 Definition down (p q : vec Z) : vec Z :=
@@ -378,13 +413,13 @@ Fixpoint put (a : item) (partners : list item) (done : list (item * item)) :=
   | [] => done
   | b :: rest => put a rest ((a, b) :: done)
   end.
-Fixpoint collect (t : tree) (l : list item) (done : list (item * item)) :=
+Fixpoint collect (reach : Z) (t : tree) (l : list item) (done : list (item * item)) :=
   match l with
   | [] => done
-  | a :: rest => collect t rest (put a (Sorting.sort (query a t [])) done)
+  | a :: rest => collect reach t rest (put a (Sorting.sort (query (grow reach a) t [])) done)
   end.
-Definition pairs (s : scene) : list (item * item) :=
-  let l := items_of s in collect (build 64 l) l [].
+Definition pairs (e reach : Z) (s : scene) : list (item * item) :=
+  let l := items_of e s in collect reach (build 64 l) l [].
 
 (** * The check of a certificate *)
 Record claims := Claims {
@@ -397,14 +432,14 @@ Inductive verdict :=
 | Proved (list_of_pairs : list row)
 | Refuted (r : row) (f : finding)
 | Unproved (r : row) (f : finding)
-| Wrong_count | Too_short | Too_long
+| Wrong_count | Too_short | Too_long | Bad_reach
 | Undecided (r : row).
 
 Definition row_of (a b : item) (neighbour : bool) : row :=
   Row (obj a) (num a) (obj b) (num b) neighbour.
 Definition note (o : option (row * finding)) (b : bool) (r : row) (f : finding) :=
   match o with None => if b then Some (r, f) else None | _ => o end.
-Definition count (b : bool) (n : Z) : Z := if b then n + 1 else n.
+Definition count_if (b : bool) (n : Z) : Z := if b then n + 1 else n.
 Definition is_kind (k k' : kind) : bool :=
   match k, k' with
   | Separated, Separated | Only_shared, Only_shared | Meeting, Meeting => true
@@ -413,22 +448,23 @@ Definition is_kind (k k' : kind) : bool :=
 Definition enter (t : tally) (e : evidence) (r : row) (k : kind) (f : finding) : tally :=
   Tally (if is_kind k Meeting then r :: rows t else rows t)
         (note (refuting t) (refutes f) r f) (note (weak t) (negb (is_as_claimed f)) r f)
-        (count (kept e) (n_kept t)) (count (negb (kept e)) (n_culled t))
-        (count (is_kind k Separated) (n_separated t))
-        (count (is_kind k Only_shared) (n_neighbours t))
-        (count (is_kind k Meeting) (n_meeting t)).
+        (count_if (kept e) (n_kept t)) (count_if (negb (kept e)) (n_culled t))
+        (count_if (is_kind k Separated) (n_separated t))
+        (count_if (is_kind k Only_shared) (n_neighbours t))
+        (count_if (is_kind k Meeting) (n_meeting t)).
 
 Definition shared_of (a b : item) : list (vec Z) :=
   if obj a =? obj b then shared_corners (shape a) (shape b) else [].
-Definition judge (a b : item) (e : evidence) : option (kind * finding) :=
+Definition judge (clearance : Z) (a b : item) (e : evidence) : option (kind * finding) :=
   let shared := shared_of a b in
   let neighbour := match shared with [] => false | _ => true end in
   let by_claim := match shared, claimed e with
-                  | [], Direction d => separates (shape a) (shape b) (vector (shape a) (shape b) d)
+                  | [], Direction d =>
+                      separates clearance (shape a) (shape b) (vector (shape a) (shape b) d)
                   | _, _ => false
                   end in
   let first := match claimed e with Meets => true | _ => false end in
-  match (if by_claim then Some Separated else decide first shared (shape a) (shape b)) with
+  match (if by_claim then Some Separated else decide first clearance shared (shape a) (shape b)) with
   | Some k => Some (k, find e by_claim neighbour k)
   | None => None
   end.
@@ -445,8 +481,8 @@ Definition counts_are (c : claims) (s : scene) (t : tally) : bool :=
   (meeting c =? n_meeting t) && (unasked_objects c =? fst (unasked s)) &&
   (unasked_pairs c =? snd (unasked s)).
 
-Fixpoint judge_all (s : scene) (c : claims) (l : list (item * item)) (es : list evidence) (t : tally)
-  : verdict :=
+Fixpoint judge_all (clearance : Z) (s : scene) (c : claims) (l : list (item * item))
+  (es : list evidence) (t : tally) : verdict :=
   match l, es with
   | [], [] =>
       match refuting t, weak t with
@@ -457,10 +493,18 @@ Fixpoint judge_all (s : scene) (c : claims) (l : list (item * item)) (es : list 
   | [], _ :: _ => Too_long
   | _ :: _, [] => Too_short
   | (a, b) :: l', e :: es' =>
-      match judge a b e with
+      match judge clearance a b e with
       | None => Undecided (name_of a b)
-      | Some (k, f) => judge_all s c l' es' (enter t e (name_of a b) k f)
+      | Some (k, f) => judge_all clearance s c l' es' (enter t e (name_of a b) k f)
       end
   end.
-Definition check (s : scene) (c : claims) (es : list evidence) : verdict :=
-  judge_all s c (pairs s) es (Tally [] None None 0 0 0 0 0).
+(** [reach]: boxes that are at most so far apart along each axis are decided; with [less] those that
+    are less far apart. Any reach that is at least the clearance is right. *)
+Definition check (s : scene) (clearance reach : double) (less : bool) (c : claims)
+  (es : list evidence) : verdict :=
+  let e := lower (lower 0 clearance) reach in
+  let f := lowest s e in
+  let d := scaled f clearance in let r := scaled f reach - (if less then 1 else 0) in
+  if (0 <=? d) && (d <=? r)
+  then judge_all d s c (pairs e r s) es (Tally [] None None 0 0 0 0 0)
+  else Bad_reach.

@@ -111,30 +111,74 @@ Proof.
   apply le_mean; auto; now apply -> inject_le.
 Qed.
 
+(** * Distances *)
+Lemma square (a : Q) : 0 <= a * a.
+Proof. destruct (Qlt_le_dec a 0); nra. Qed.
+Lemma squared_distance_same p p' q q' : same p p' -> same q q' ->
+  squared_distance p q == squared_distance p' q'.
+Proof.
+  intros (A & B & C) (D & E & F). unfold squared_distance. now rewrite A, B, C, D, E, F.
+Qed.
+Lemma near_sym D a b : near D a b -> near D b a.
+Proof.
+  intros (p & q & A & B & L). exists q, p. split; [assumption|]. split; [assumption|].
+  unfold squared_distance in *. lra.
+Qed.
+Lemma near_of_common D a b p : inside a p -> inside b p -> near D a b.
+Proof.
+  intros A B. exists p, p. split; [assumption|]. split; [assumption|].
+  pose proof (square D). unfold squared_distance. lra.
+Qed.
+(** Cauchy and Schwarz: no difference of projections is longer than the distance. *)
+Lemma cauchy d p q :
+  (qdot d q - qdot d p) * (qdot d q - qdot d p) <= #(dot d d) * squared_distance p q.
+Proof.
+  unfold qdot, dot, squared_distance. inject.
+  generalize #(x d) #(y d) #(z d). intros a b c.
+  set (u := x p - x q). set (v := y p - y q). set (w := z p - z q).
+  assert (E : a * x q + b * y q + c * z q - (a * x p + b * y p + c * z p) == - (a * u + b * v + c * w))
+    by (unfold u, v, w; ring).
+  rewrite E. clearbody u v w.
+  pose proof (square (a * v - b * u)). pose proof (square (a * w - c * u)).
+  pose proof (square (b * w - c * v)).
+  assert (F : (a * a + b * b + c * c) * (u * u + v * v + w * w) -
+              - (a * u + b * v + c * w) * - (a * u + b * v + c * w) ==
+              (a * v - b * u) * (a * v - b * u) + (a * w - c * u) * (a * w - c * u) +
+              (b * w - c * v) * (b * w - c * v)) by ring.
+  lra.
+Qed.
+
 (** * A direction that separates *)
-Lemma below d a b p :
-  (max3 (dot d (p1 a)) (dot d (p2 a)) (dot d (p3 a)) <
-   min3 (dot d (p1 b)) (dot d (p2 b)) (dot d (p3 b)))%Z ->
-  inside (qtri a) p -> inside (qtri b) p -> False.
+Lemma far_below D d a b g :
+  g = (min3 (dot d (p1 b)) (dot d (p2 b)) (dot d (p3 b)) -
+       max3 (dot d (p1 a)) (dot d (p2 a)) (dot d (p3 a)))%Z ->
+  (0 < g)%Z -> (D * D * dot d d < g * g)%Z -> ~ near #D (qtri a) (qtri b).
 Proof.
-  unfold max3, min3. intros L A B.
-  set (h := Z.max _ _) in *. set (l := Z.min _ _) in *.
+  unfold max3, min3. intros G P L (p & q & A & B & N).
+  set (l := Z.min _ _) in *. set (h := Z.max _ _) in *.
   assert (qdot d p <= #h) by (apply (dot_at_most d a); auto; unfold h; lia).
-  assert (#l <= qdot d p) by (apply (dot_at_least d b); auto; unfold l; lia).
-  apply -> inject_lt in L. lra.
+  assert (#l <= qdot d q) by (apply (dot_at_least d b); auto; unfold l; lia).
+  assert (E : #g == #l - #h) by (rewrite G; inject; reflexivity).
+  apply -> inject_lt in L. apply -> inject_lt in P. change #0 with 0 in P. inject.
+  pose proof (cauchy d p q) as C. set (t := qdot d q - qdot d p) in *.
+  assert (T : #g <= t) by (unfold t; lra). clearbody t.
+  assert (S : #g * #g <= t * t) by nra.
+  assert (DD : 0 <= #(dot d d)).
+  { change 0 with #0. apply -> inject_le. unfold dot. nia. }
+  assert (U : 0 <= #(dot d d) * (#D * #D - squared_distance p q)) by (apply Qmult_le_0_compat; lra).
+  lra.
 Qed.
-Lemma separates_sound a b d p :
-  separates a b d = true -> inside (qtri a) p -> inside (qtri b) p -> False.
+Lemma separates_sound D a b d :
+  separates D a b d = true -> ~ near #D (qtri a) (qtri b).
 Proof.
-  unfold separates. intros H A B. apply orb_prop in H. destruct H; tests.
-  - now apply (below d a b p).
-  - now apply (below d b a p).
+  unfold separates. intros H. tests.
+  set (g1 := (min3 (dot d (p1 b)) _ _ - _)%Z) in *. set (g2 := (min3 (dot d (p1 a)) _ _ - _)%Z) in *.
+  destruct (Z.max_spec g1 g2) as [[_ E] | [_ E]]; rewrite E in *.
+  - intros N. apply near_sym in N. revert N. now apply (far_below D d b a g2).
+  - now apply (far_below D d a b g1).
 Qed.
-Lemma separated_sound a b p :
-  separated a b = true -> inside (qtri a) p -> inside (qtri b) p -> False.
-Proof.
-  unfold separated. rewrite existsb_exists. intros (d & _ & H). eapply separates_sound, H.
-Qed.
+Lemma separated_sound D a b : separated D a b = true -> ~ near #D (qtri a) (qtri b).
+Proof. unfold separated. rewrite existsb_exists. intros (d & _ & H). eapply separates_sound, H. Qed.
 
 (** * Boxes *)
 Definition unit_x := Vec 1%Z 0%Z 0%Z.
@@ -143,19 +187,28 @@ Definition unit_z := Vec 0%Z 0%Z 1%Z.
 Lemma dot_unit_x p : dot unit_x p = x p. Proof. unfold dot, unit_x. cbn [x y z]. ring. Qed.
 Lemma dot_unit_y p : dot unit_y p = y p. Proof. unfold dot, unit_y. cbn [x y z]. ring. Qed.
 Lemma dot_unit_z p : dot unit_z p = z p. Proof. unfold dot, unit_z. cbn [x y z]. ring. Qed.
-Lemma disjoint_boxes a b p :
-  overlap (least a) (greatest a) (least b) (greatest b) = false ->
-  inside (qtri a) p -> inside (qtri b) p -> False.
+Lemma far_boxes D r a b : (0 <= D)%Z -> (D <= r)%Z ->
+  overlap (sub (least a) (Vec r r r)) (add (greatest a) (Vec r r r)) (least b) (greatest b) = false ->
+  ~ near #D (qtri a) (qtri b).
 Proof.
-  intros O A B.
-  unfold overlap in O. rewrite !andb_false_iff, !Z.leb_gt in O. simpl in O.
+  intros P R O.
+  assert (S : forall u g, (dot u u = 1)%Z -> (r < g)%Z -> (0 < g)%Z /\ (D * D * dot u u < g * g)%Z)
+    by (intros u g -> G; nia).
+  assert (X : dot unit_x unit_x = 1%Z) by reflexivity.
+  assert (Y : dot unit_y unit_y = 1%Z) by reflexivity.
+  assert (Z : dot unit_z unit_z = 1%Z) by reflexivity.
+  unfold overlap in O. rewrite !andb_false_iff, !Z.leb_gt in O.
+  unfold sub, add, least, greatest in O. cbn [x y z] in O.
   destruct O as [[[[[O | O] | O] | O] | O] | O].
-  - apply (below unit_x b a p); auto. now rewrite !dot_unit_x.
-  - apply (below unit_x a b p); auto. now rewrite !dot_unit_x.
-  - apply (below unit_y b a p); auto. now rewrite !dot_unit_y.
-  - apply (below unit_y a b p); auto. now rewrite !dot_unit_y.
-  - apply (below unit_z b a p); auto. now rewrite !dot_unit_z.
-  - apply (below unit_z a b p); auto. now rewrite !dot_unit_z.
+  - intros N. apply near_sym in N. revert N. eapply (far_below D unit_x b a); [reflexivity| |];
+      apply (S unit_x); auto; rewrite !dot_unit_x; lia.
+  - eapply (far_below D unit_x a b); [reflexivity| |]; apply (S unit_x); auto; rewrite !dot_unit_x; lia.
+  - intros N. apply near_sym in N. revert N. eapply (far_below D unit_y b a); [reflexivity| |];
+      apply (S unit_y); auto; rewrite !dot_unit_y; lia.
+  - eapply (far_below D unit_y a b); [reflexivity| |]; apply (S unit_y); auto; rewrite !dot_unit_y; lia.
+  - intros N. apply near_sym in N. revert N. eapply (far_below D unit_z b a); [reflexivity| |];
+      apply (S unit_z); auto; rewrite !dot_unit_z; lia.
+  - eapply (far_below D unit_z a b); [reflexivity| |]; apply (S unit_z); auto; rewrite !dot_unit_z; lia.
 Qed.
 
 (** * A common point *)

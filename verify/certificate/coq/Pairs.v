@@ -125,9 +125,9 @@ Proof.
     + intros [[<- | D] | (b & B & ->)]; eauto.
     + intros [D | (b & [<- | B] & ->)]; eauto.
 Qed.
-Lemma collect_all t l : sound_tree t -> forall done a b,
-  In (a, b) (collect t l done) <->
-  In (a, b) done \/ (In a l /\ In b (leaves t) /\ candidate a b = true).
+Lemma collect_all r t l : sound_tree t -> forall done a b,
+  In (a, b) (collect r t l done) <->
+  In (a, b) done \/ (In a l /\ In b (leaves t) /\ candidate (grow r a) b = true).
 Proof.
   intros S. induction l as [|c l IH]; intros done a b; cbn [collect]; [simpl; tauto|].
   rewrite IH, put_all. split.
@@ -136,11 +136,19 @@ Proof.
   - intros [D | ([<- | A] & B)]; [auto | | tauto]. left. right. exists b. split; [|reflexivity].
     apply sort_all, query_all; [assumption | now right].
 Qed.
-Theorem pairs_all s a b : In (a, b) (pairs s) <->
-  In a (items_of s) /\ In b (items_of s) /\ candidate a b = true.
+Theorem pairs_all e r s a b : In (a, b) (pairs e r s) <->
+  In a (items_of e s) /\ In b (items_of e s) /\ candidate (grow r a) b = true.
 Proof.
-  unfold pairs. destruct (build_sound 64 (items_of s)) as [S L].
-  rewrite (collect_all _ _ S), L. simpl. tauto.
+  unfold pairs. destruct (build_sound 64 (items_of e s)) as [S L].
+  rewrite (collect_all _ _ _ S), L. simpl. tauto.
+Qed.
+Lemma grow_candidate r a b : candidate (grow r a) b = true <->
+  comes_before a b = true /\
+  overlap (sub (lo a) (Vec r r r)) (add (hi a) (Vec r r r)) (lo b) (hi b) = true.
+Proof.
+  unfold candidate, grow. rewrite andb_true_iff. destruct (Z.eqb_spec r 0) as [-> | _].
+  - rewrite !overlap_true. unfold sub, add. cbn [x y z]. rewrite !Z.sub_0_r, !Z.add_0_r. tauto.
+  - reflexivity.
 Qed.
 
 (** * The triangles *)
@@ -173,9 +181,9 @@ Proof.
       * left. right. injection M as ->. exists n, t. split; [assumption|]. f_equal; lia.
       * right. exists m, ob', n, t. repeat split; auto. f_equal; lia.
 Qed.
-Theorem items_all s it : In it (items_of s) <->
+Theorem items_all e s it : In it (items_of e s) <->
   exists m ob n t, nth_error s m = Some ob /\ nth_error (triangles ob) n = Some t /\
-                   it = make_item (lowest s) (Z.of_nat m) (Z.of_nat n) (self ob) t.
+                   it = make_item (lowest s e) (Z.of_nat m) (Z.of_nat n) (self ob) t.
 Proof.
   unfold items_of. rewrite add_objects_all. simpl. split; [intros [[] | H] | intros H; right]; exact H.
 Qed.
@@ -198,15 +206,15 @@ Proof.
   destruct (IH (lower_triangle e t)) as [L A], (lower_triangle_sound e t) as [L' A'].
   split; [lia|]. intros u [<- | U]; [eapply at_most_less, A'; lia | auto].
 Qed.
-Lemma lowest_sound s o i t : is_triangle s o i t -> at_most_triangle (lowest s) t.
+Lemma lowest_all s : forall e, lowest s e <= e /\
+  forall ob, In ob s -> forall t, In t (triangles ob) -> at_most_triangle (lowest s e) t.
 Proof.
-  intros (ob & O & I). apply nth_error_In in O, I. unfold lowest. generalize 0.
-  assert (G : forall s e, fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e <= e /\
-     forall ob, In ob s -> forall t, In t (triangles ob) ->
-       at_most_triangle (fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e) t).
-  { clear. induction s as [|ob s IH]; intros e; cbn [fold_left]; [split; [lia | intros ? []]|].
-    destruct (lower_list (triangles ob) e) as [L A].
-    destruct (IH (fold_left lower_triangle (triangles ob) e)) as [L' A'].
-    split; [lia|]. intros ob' [<- | O] t T; [eapply at_most_less; [apply L' | now apply A] | eauto]. }
-  intros e. now apply (G s e) with (ob := ob).
+  unfold lowest. induction s as [|ob s IH]; intros e; cbn [fold_left]; [split; [lia | intros ? []]|].
+  destruct (lower_list (triangles ob) e) as [L A].
+  destruct (IH (fold_left lower_triangle (triangles ob) e)) as [L' A'].
+  split; [lia|]. intros ob' [<- | O] t T; [eapply at_most_less; [apply L' | now apply A] | eauto].
+Qed.
+Lemma lowest_sound s e o i t : is_triangle s o i t -> at_most_triangle (lowest s e) t.
+Proof.
+  intros (ob & O & I). apply nth_error_In in O, I. now apply (proj2 (lowest_all s e) ob).
 Qed.

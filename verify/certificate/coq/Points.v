@@ -35,6 +35,36 @@ Proof.
     destruct H as (q & m & M & G & A & B); exists q, m; auto.
 Qed.
 
+Lemma are_near_sound D a b u v :
+  are_near D a b u v = true -> near #D (qtri a) (qtri b).
+Proof.
+  unfold are_near. intros H. apply andb_prop in H. destruct H as [H N].
+  apply andb_prop in H. destruct H as [U V]. apply Z.leb_le in N.
+  exists (over (weigh u a) (total u)), (over (weigh v b) (total v)).
+  split; [now apply weigh_inside|]. split; [now apply weigh_inside|].
+  apply are_weights_total in U, V. apply -> inject_lt in U. apply -> inject_lt in V.
+  apply -> inject_le in N. change #0 with 0 in *. unfold squared_distance, over. cbn [x y z].
+  unfold dot, sub, scale in N. cbn [x y z] in N. inject.
+  set (m := #(total u)) in *. set (n := #(total v)) in *.
+  assert (M' : ~ m == 0) by lra. assert (N' : ~ n == 0) by lra.
+  assert (MN : 0 < m * n) by nra. assert (S : 0 < (m * n) * (m * n)) by nra.
+  apply (Qmult_lt_0_le_reg_r _ _ _ S). clear S MN U V.
+  match goal with |- ?l <= _ =>
+    match type of N with ?k <= _ => setoid_replace l with k by (field; split; assumption) end end.
+  lra.
+Qed.
+Lemma has_near_sound D a b : has_near D a b = true -> near #D (qtri a) (qtri b).
+Proof.
+  assert (C : forall a b, near_corner D a b = true -> near #D (qtri a) (qtri b)).
+  { clear. unfold near_corner. intros a b H. apply existsb_exists in H. destruct H as (j & _ & H).
+    apply existsb_exists in H. destruct H as (u & _ & H). eapply are_near_sound, H. }
+  unfold has_near. rewrite !orb_true_iff. intros [[H | H] | H].
+  - auto.
+  - apply near_sym. auto.
+  - unfold near_edges in H. apply existsb_exists in H. destruct H as (i & _ & H).
+    apply existsb_exists in H. destruct H as (j & _ & H). eapply are_near_sound, H.
+Qed.
+
 (** * Points of a segment *)
 Lemma on_segment_same c d p q : same p q -> on_segment c d p -> on_segment c d q.
 Proof.

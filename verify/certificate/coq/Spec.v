@@ -46,6 +46,15 @@ Definition in_shared_part (a b : triangle Q) (p : vec Q) : Prop :=
 Definition meet (one_object : Prop) (a b : triangle Q) : Prop :=
   exists p, inside a p /\ inside b p /\ (one_object -> ~ in_shared_part a b p).
 
+(** With a clearance, triangles count as well that are not farther apart than it; but not neighbours,
+    whose distance is 0. With the clearance 0 those count that meet, and no others. *)
+Definition squared_distance (p q : vec Q) : Q :=
+  (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q).
+Definition near (clearance : Q) (a b : triangle Q) : Prop :=
+  exists p q, inside a p /\ inside b q /\ squared_distance p q <= clearance * clearance.
+Definition count (clearance : Q) (one_object : Prop) (a b : triangle Q) : Prop :=
+  meet one_object a b \/ (near clearance a b /\ ~ (one_object /\ exists c, is_shared a b c)).
+
 (** A scene is a list of objects. An object is a list of triangles; [self] says whether the question
     is asked for two triangles of the object as well. *)
 Record object := Object { self : bool; triangles : list (triangle double) }.
@@ -60,11 +69,11 @@ Definition asked (s : scene) (o i o' i' : nat) : Prop :=
   (o < o')%nat \/
   (o = o' /\ (i < i')%nat /\ exists ob, nth_error s o = Some ob /\ self ob = true).
 
-(** The answer: triangle i of object o and triangle i' of object o' are asked for, and meet. *)
-Definition answer (s : scene) (o i o' i' : nat) : Prop :=
+(** The answer: triangle i of object o and triangle i' of object o' are asked for, and count. *)
+Definition answer (s : scene) (clearance : double) (o i o' i' : nat) : Prop :=
   asked s o i o' i' /\
   exists t t', is_triangle s o i t /\ is_triangle s o' i' t' /\
-               meet (o = o') (map_triangle value t) (map_triangle value t').
+               count (value clearance) (o = o') (map_triangle value t) (map_triangle value t').
 
 (** A row of a list of pairs, as farcull writes it. The last column says whether the two triangles
     are of one object and have a common corner. *)
@@ -77,8 +86,8 @@ Definition names (r : row) (o i o' i' : nat) : Prop :=
 Definition are_neighbours (s : scene) (o i o' i' : nat) : Prop :=
   o = o' /\ exists t t' c, is_triangle s o i t /\ is_triangle s o' i' t' /\
                          is_shared (map_triangle value t) (map_triangle value t') c.
-Definition right_and_complete (s : scene) (l : list row) : Prop :=
+Definition right_and_complete (s : scene) (clearance : double) (l : list row) : Prop :=
   forall o i o' i',
-    (answer s o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
+    (answer s clearance o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
     (forall r, In r l -> names r o i o' i' ->
                (neighbours r = true <-> are_neighbours s o i o' i')).

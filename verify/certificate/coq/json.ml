@@ -154,7 +154,6 @@ let has keys = function
     if List.length members <> List.length keys then bad "a key is unknown"
   | _ -> bad "an object is missing"
 let every test = function Array l -> List.iter test l | _ -> bad "an array is missing"
-let anything _ = ()
 
 let base64 v =
   let s = text v in
@@ -180,13 +179,20 @@ let base64 v =
   done;
   Bytes.sub_string out 0 size
 
+let clearance root = match member "version" root with
+  | Number "4" -> (match member "clearance" root with Number s -> float_of_string s | _ -> 0.)
+  | _ -> 0.
+
 let certificate text_of_file =
   let root = parse text_of_file in
   if text (member "format" root) <> "farcull-certificate" then bad "format is not farcull-certificate";
-  if member "version" root <> Number "3" then bad "version is not 3 (4, with a clearance, is not proved yet)";
+  let near = member "version" root = Number "4" in
+  if not near && member "version" root <> Number "3" then bad "version is not 3 or 4";
+  let is_clearance v = is_length v; if clearance root = 0. then bad "clearance is 0" in
   let counts keys = has (List.map (fun key -> (key, is_count)) keys) in
   let texts keys = has (List.map (fun key -> (key, is_text)) keys) in
-  has [ "format", is_text; "version", is_count;
+  has ((if near then [ "clearance", is_clearance ] else []) @ [
+        "format", is_text; "version", is_count;
         "scene", has [ "name", is_text; "objects", is_count; "triangles", is_count; "hash", is_hex 16 ];
         "not_asked", counts [ "objects"; "pairs" ];
         "claims", counts [ "box_pairs"; "kept"; "culled"; "separated"; "neighbours"; "meeting" ];
@@ -197,5 +203,5 @@ let certificate text_of_file =
                                 "radius_px", is_length ]);
           "device", (function Null -> () | v -> texts [ "vendor"; "renderer"; "version"; "glsl" ] v);
           "assumptions", every is_text ];
-        "evidence", (fun v -> ignore (base64 v)) ] root;
+        "evidence", (fun v -> ignore (base64 v)) ]) root;
   root

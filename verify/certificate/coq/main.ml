@@ -85,6 +85,19 @@ let double_of word =
     let zeros = Z.trailing_zeros whole in
     { mantissa = Z.shift_right whole zeros; exponent = Z.of_int (exponent - 53 + zeros) }
 
+(* Up to which difference boxes count as near. farcull rounds the difference of two doubles, and
+   compares it with the clearance. The rounded one is at most the clearance if the exact one is at
+   most half way to the next double; if the last bit of the clearance is 1, half way rounds up. Any
+   reach that is not below the clearance is right; this one gives the pairs that the bytes are for. *)
+let reach_of clearance =
+  if clearance = 0. then ({ mantissa = Z.zero; exponent = Z.zero }, false)
+  else
+    let bits = Int64.bits_of_float clearance in
+    let exponent = max 1 (Int64.to_int (Int64.shift_right_logical bits 52)) - 1075 in
+    let whole = Z.of_float (Float.ldexp clearance (- exponent)) in
+    ({ mantissa = Z.succ (Z.mul (Z.of_int 2) whole); exponent = Z.of_int (exponent - 1) },
+     Z.is_odd whole)
+
 let scene_of bytes =
   let at = ref 0 in
   let word () =
@@ -116,7 +129,7 @@ let scene_of bytes =
 
 (* ---- the certificate ---- *)
 
-let count of_ key = Json.whole (Json.member key of_)
+let number_of of_ key = Json.whole (Json.member key of_)
 
 let index = [| I1; I2; I3 |]
 let evidence_of byte =
@@ -136,10 +149,10 @@ let evidence_of byte =
 
 let claims_of root =
   let claims = Json.member "claims" root and unasked = Json.member "not_asked" root in
-  { box_pairs = count claims "box_pairs"; kept_pairs = count claims "kept";
-    culled = count claims "culled"; separated_pairs = count claims "separated";
-    neighbour_pairs = count claims "neighbours"; meeting = count claims "meeting";
-    unasked_objects = count unasked "objects"; unasked_pairs = count unasked "pairs" }
+  { box_pairs = number_of claims "box_pairs"; kept_pairs = number_of claims "kept";
+    culled = number_of claims "culled"; separated_pairs = number_of claims "separated";
+    neighbour_pairs = number_of claims "neighbours"; meeting = number_of claims "meeting";
+    unasked_objects = number_of unasked "objects"; unasked_pairs = number_of unasked "pairs" }
 
 (* ---- the verdict ---- *)
 
@@ -162,9 +175,9 @@ let reason = function
   | Wrong_direction -> "the direction does not separate the pair, which is disjoint"
   | Not_neighbours -> "the byte does not say that these neighbours share only vertices or an edge"
   | No_evidence -> "the byte is no evidence"
-  | Culled_meets -> "the pair is called culled, and it meets"
-  | Said_disjoint -> "the pair is called disjoint, and it meets"
-  | Said_to_meet -> "the pair is said to meet, and it does not"
+  | Culled_meets -> "the pair is called culled, and it counts"
+  | Said_disjoint -> "the pair is called disjoint, and it counts"
+  | Said_to_meet -> "the pair is said to count, and it does not"
 
 let check_files certificate scene =
   let text = read_file certificate and words = read_file scene in
@@ -176,19 +189,22 @@ let check_files certificate scene =
   let key = Json.member "scene" root in
   let triangles = List.fold_left (fun n ob -> n + List.length ob.triangles) 0 s in
   let not_proved text = Printf.printf "verified   not proved: %s\n" text; 1 in
-  if not (Z.equal (count key "objects") (Z.of_int (List.length s)))
-  || not (Z.equal (count key "triangles") (Z.of_int triangles))
+  if not (Z.equal (number_of key "objects") (Z.of_int (List.length s)))
+  || not (Z.equal (number_of key "triangles") (Z.of_int triangles))
   || Json.text (Json.member "hash" key) <> fnv1a words
   then not_proved "the certificate is of another scene"
   else
     let evidence =
       let rec from i found = if i < 0 then found else from (i - 1) (evidence_of (Char.code bytes.[i]) :: found) in
       from (String.length bytes - 1) [] in
-    match check s (claims_of root) evidence with
+    let clearance = Json.clearance root in
+    let reach, less = reach_of clearance in
+    match check s (double_of (Int64.bits_of_float clearance)) reach less (claims_of root) evidence with
     | Refuted (r, f) -> Printf.printf "verified   refuted: %s: %s\n" (reason f) (pair r); 1
     | Unproved (r, f) -> not_proved (reason f ^ ": " ^ pair r)
     | Wrong_count -> not_proved "a count is wrong"
     | Too_short -> not_proved "the evidence is too short"
+    | Bad_reach -> bad "the clearance is negative or not finite"
     | Too_long -> not_proved "the evidence is too long"
     | Undecided r -> Printf.printf "verified   undecided: %s\n" (pair r); 3
     | Proved rows ->

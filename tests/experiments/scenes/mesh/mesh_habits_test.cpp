@@ -200,6 +200,15 @@ TEST(Weld, GivesEachVertexTheNearestThatIsKept) {
   }
 }
 
+// The points are as far apart as the tolerance once their distance is rounded, and lie on either
+// side of 0, where a cell of a grid ends.
+TEST(Weld, RoundingAtTheBorderOfACellHidesNoPoint) {
+  Mesh mesh;
+  mesh.vertices = {{-1e-20, 0, 0}, {0.1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_EQ(weld(mesh, {.value = 0.1}), 1u);
+}
+
 TEST(Weld, HintNamesATolerancThatCloses) {
   Mesh mesh = shapes::sphere(2);
   std::vector<Vec3> points;  // every triangle has its own corners, which differ by rounding
@@ -222,7 +231,7 @@ TEST(Weld, HintNamesATolerancThatCloses) {
   ASSERT_TRUE(hint);
   EXPECT_GT(hint->open_edges, 100u);
   EXPECT_LT(hint->tolerance, 1e-9);
-  EXPECT_GT(weld(apart, {.value = hint->tolerance}), 0u);
+  EXPECT_GT(weld(apart, {.value = hint->tolerance, .relative = true}), 0u);
   SceneBuilder again("m", "m");
   again.add(apart, "welded");
   const Scene welded = again.finish();
