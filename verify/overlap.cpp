@@ -196,6 +196,34 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
   return out;
 }
 
+/// Whether a ray from the point along an axis meets no triangle of the object. A ray that may meet
+/// an edge is taken for one that does.
+bool sees_out(const Scene& scene, std::uint32_t object, const Vec3& point) {
+  const Q3 p = exact(point);
+  unsigned free = 0x3f;  // two bits for each axis: forward, backward
+  for_triangles(scene, object, [&](const Corners& t) {
+    const Box box = box_of(t);
+    for (int axis = 0; axis < 3; ++axis) {
+      const unsigned ways =
+          (box.hi[axis] >= point[axis] ? 1u : 0u) | (box.lo[axis] <= point[axis] ? 2u : 0u);
+      if ((free >> 2 * axis & ways) == 0) continue;
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      if (point[u] < box.lo[u] || point[u] > box.hi[u] || point[v] < box.lo[v] ||
+          point[v] > box.hi[v])
+        continue;
+      bool left = false, right = false;
+      for (int i = 0; i < 3; ++i) {
+        const Q3 a = exact(t[i]), b = exact(t[(i + 1) % 3]);
+        const int side = sgn(Q((b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u])));
+        left = left || side > 0;
+        right = right || side < 0;
+      }
+      if (!left || !right) free &= ~(ways << 2 * axis);
+    }
+  });
+  return free != 0;
+}
+
 class PieceTest {
  public:
   PieceTest(const Scene& scene, ObjectPair objects)
@@ -311,11 +339,9 @@ bool plane_divides(const Scene& scene, ObjectPair objects, std::span<const Trian
 }
 
 Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface) {
-  const bool wound = inside(scene, object, point, Surface::oriented) == Inside::yes;
-  if (surface != Surface::oriented &&
-      wound != (inside(scene, object, point, Surface::closed) == Inside::yes))
-    return Overlap::unknown;
-  return wound ? Overlap::yes : Overlap::no;
+  if (inside(scene, object, point, surface) == Inside::yes) return Overlap::yes;
+  return surface == Surface::oriented || sees_out(scene, object, point) ? Overlap::no
+                                                                        : Overlap::unknown;
 }
 
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,

@@ -42,8 +42,9 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
                             std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
                             std::span<const Vec3> parts_b, bool closed);
 
-/// Whether a point off the surface of a closed object is inside it: unknown where the parity of a
-/// ray and the winding number disagree on an object whose faces do not all face outward.
+/// Whether a point off the surface of a closed object is inside it (verify/inside.h). Where the
+/// object is not oriented, an even number of crossings does not tell a place outside from one
+/// inside two shells: no is the answer only if a ray along an axis meets nothing, and else unknown.
 /// surface: that of surface_of().
 Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 

@@ -19,10 +19,10 @@
 #include <numeric>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/base/uninitialized.h"
 #include "core/boxes/join.h"
 #include "core/boxes/lanes-inl.h"
+#include "core/boxes/portions.h"
 #include "core/scene/pair_sort.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -242,6 +242,21 @@ bool are_few(std::span<const std::uint32_t> owners) {
   return changes < kWide;
 }
 
+// Sorts numbers below 64 * marks.size(), each of which is there once. Many of them are sorted by
+// marks, one bit for each number, which are left empty.
+void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
+  if (numbers.size() < marks.size() / 8) {
+    std::ranges::sort(numbers);
+    return;
+  }
+  for (const std::uint32_t number : numbers) marks[number / 64] |= std::uint64_t{1} << number % 64;
+  std::size_t next = 0;
+  for (std::uint32_t word = 0; word < marks.size(); ++word) {
+    for (; marks[word] != 0; marks[word] &= marks[word] - 1)
+      numbers[next++] = 64 * word + static_cast<std::uint32_t>(std::countr_zero(marks[word]));
+  }
+}
+
 }  // namespace
 
 // Drops items whose boxes meet the box of no other owner: such an item has no pair, since that box
@@ -285,25 +300,6 @@ void OrderedPairs::plant(std::vector<Box> boxes) {
   blocks_.resize(blocks_of_tree(leaves.size()));
   tree_ = make_tree<double>(leaves, blocks_, 0);
 }
-
-namespace {
-
-// Sorts numbers below 64 * marks.size(), each of which is there once. Many of them are sorted by
-// marks, one bit for each number, which are left empty.
-void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
-  if (numbers.size() < marks.size() / 8) {
-    std::ranges::sort(numbers);
-    return;
-  }
-  for (const std::uint32_t number : numbers) marks[number / 64] |= std::uint64_t{1} << number % 64;
-  std::size_t next = 0;
-  for (std::uint32_t word = 0; word < marks.size(); ++word) {
-    for (; marks[word] != 0; marks[word] &= marks[word] - 1)
-      numbers[next++] = 64 * word + static_cast<std::uint32_t>(std::countr_zero(marks[word]));
-  }
-}
-
-}  // namespace
 
 // Replaces part.found by the items of the leaves from `least` on whose boxes overlap that of the
 // leaf.
@@ -359,42 +355,6 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   if (pairs.size() > most) pairs.resize(most + 1);
   return pairs;
 }
-
-namespace {
-
-// Calls find(begin, end, memory, flush) for portions of the numbers 0 .. count - 1 in turn. Each
-// thread has a Memory, to whose `pairs` find appends; flush() gives them to `take` if there are
-// many. All are given in the end. Returns their number.
-template <class Memory, class Find>
-std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
-                            const TakePairs& take, const Find& find) {
-  constexpr std::size_t kMany = std::size_t{1} << 14;
-  std::atomic<std::uint64_t> next = 0, given = 0;
-  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
-    Memory memory;
-    const auto give = [&](std::size_t least) {
-      if (memory.pairs.size() < least) return;
-      given += memory.pairs.size();
-      take(memory.pairs);
-      memory.pairs.clear();
-    };
-    try {
-      for (;;) {
-        stop_point();
-        const std::uint64_t begin = next.fetch_add(portion);
-        if (begin >= count) break;
-        find(begin, std::min(count, begin + portion), memory, [&] { give(kMany); });
-      }
-      give(1);
-    } catch (...) {
-      next = count;  // the other threads end early too
-      throw;
-    }
-  });
-  return given;
-}
-
-}  // namespace
 
 std::uint64_t OrderedPairs::give(const TakePairs& take) {
   constexpr std::uint32_t kLeaves = 64;  // that a thread asks about at a time

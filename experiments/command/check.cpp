@@ -386,6 +386,10 @@ int CheckCommand::run() {
   }
   if (pairs_) inputs.push_back({"--pairs", *pairs_});
   to.json = checked({.json = json_}, inputs).json.value_or("");
+  if (to.verified && to.json == "-") {
+    throw Error("--verified", "prints lines of its own, which would stand among the JSON",
+                "write the JSON to a file");
+  }
   return run_check(to);
 }
 

@@ -131,9 +131,10 @@ std::vector<ClashVerdict> ClashCommand::failing(bool touches) const {
 int ClashCommand::run() const {
   ClashOptions options;
   if (clearance_) options.clearance = parse_clearance(*clearance_);
-  const bool touches = word_of("--touching", touching_, {"allow", "report"}, "no choice",
-                               "give allow or report") == 1;
-  const std::vector<ClashVerdict> failing = this->failing(touches);
+  const bool reported = word_of("--touching", touching_, {"allow", "report"}, "no choice",
+                                "give allow or report") == 1;
+  const std::vector<ClashVerdict> failing = this->failing(reported);
+  const bool touches = reported || std::ranges::find(failing, ClashVerdict::touch) != failing.end();
   check_scene(scene_);
   const std::vector<std::string> files = parts();
   std::vector<NamedFile> inputs = scene_files(files);

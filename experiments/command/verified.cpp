@@ -79,7 +79,13 @@ int run_verified_checker(const std::string& certificate, const Scene& scene) {
   }
   std::fclose(file);
   if (error != 0) refuse(std::string("cannot be run: ") + std::strerror(error));
-  if (!WIFEXITED(status) || WEXITSTATUS(status) > 2) refuse("ended without a verdict");
+  constexpr int kUndecided = 3;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kUndecided) {
+    throw Error(kProgram, "could not decide the pair that it names",
+                "leave --verified out, and report the scene: docs/verified.md says why this should "
+                "not happen");
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) > kUndecided) refuse("ended without a verdict");
   return WEXITSTATUS(status);
 }
 

@@ -125,7 +125,8 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
     case ClashVerdict::contained:
       return name_of(scene, *row.inner) + " inside";
     case ClashVerdict::unknown:
-      return "the one around " + name_of(scene, *row.inner) + " is not closed, or its faces do not all face outward";
+      return "the one around " + name_of(scene, *row.inner) +
+             " is not closed, or its faces do not all face outward";
     case ClashVerdict::clash:
       return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
     default:
@@ -143,7 +144,10 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
       fmt::format("{}: {}, {}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
                   counted(scene.triangles.size(), "triangle", "triangles"));
   out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
-                     counted(record.asked, "pair", "pairs"), is_clean(record) ? ": clean" : "");
+                     counted(record.asked, "pair", "pairs"),
+                     is_clean(record) && !(table.touches && record.count(ClashVerdict::touch) > 0)
+                         ? ": clean"
+                         : "");
   out += "verdicts   " + counts_text(record) + "\n";
   if (record.ignored > 0) {
     out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),

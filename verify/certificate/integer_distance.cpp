@@ -175,12 +175,13 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
 
 }  // namespace
 
-enum class Mesh : std::uint8_t { open, closed, oriented };
+enum class IntegerSurface : std::uint8_t { open, closed, oriented };
 
 namespace {
 
 /// Is x inside the closed mesh? Empty if x lies on a triangle that the ray crosses.
-std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x, Mesh mesh) {
+std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x,
+                              IntegerSurface mesh) {
   std::int64_t winding = 0, count = 0;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
@@ -198,12 +199,12 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
     winding += side;
     ++count;
   }
-  return mesh == Mesh::oriented ? winding != 0 : count % 2 != 0;
+  return mesh == IntegerSurface::oriented ? winding != 0 : count % 2 != 0;
 }
 
 using Place = std::array<double, 3>;
 
-Mesh mesh_of(const Scene& scene, const Object& object) {
+IntegerSurface mesh_of(const Scene& scene, const Object& object) {
   std::vector<Place> places;  // each once
   const auto place_of = [](const Vec3& p) {
     return Place{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};  // no -0.0
@@ -239,10 +240,10 @@ Mesh mesh_of(const Scene& scene, const Object& object) {
       ++count;
       upwards += std::get<2>(edges[i]) ? 1 : 0;
     }
-    if (count % 2 != 0) return Mesh::open;
+    if (count % 2 != 0) return IntegerSurface::open;
     oriented = oriented && 2 * upwards == count;
   }
-  return oriented ? Mesh::oriented : Mesh::closed;
+  return oriented ? IntegerSurface::oriented : IntegerSurface::closed;
 }
 
 /// One corner of each connected part of the mesh: triangles that share a vertex index, directly or
@@ -278,7 +279,7 @@ std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) 
 struct IntegerInside::OfObject {
   Box box = Box::empty();
   std::once_flag closed_found, corners_found;
-  Mesh mesh = Mesh::open;
+  IntegerSurface mesh = IntegerSurface::open;
   std::vector<Vec3> corners;  // one of each part
 };
 
@@ -300,7 +301,7 @@ IntegerInside::Answer IntegerInside::contains(std::uint32_t outer, std::uint32_t
   if ((x_box.lo.array() < y_box.lo.array()).any() || (x_box.hi.array() > y_box.hi.array()).any())
     return Answer::no;
   std::call_once(out.closed_found, [&] { out.mesh = mesh_of(scene_, scene_.objects[outer]); });
-  if (out.mesh == Mesh::open) return Answer::not_closed;
+  if (out.mesh == IntegerSurface::open) return Answer::not_closed;
   std::call_once(in.corners_found,
                  [&] { in.corners = corner_of_each_part(scene_, scene_.objects[inner]); });
   for (const Vec3& x : in.corners) {

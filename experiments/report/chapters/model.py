@@ -53,9 +53,9 @@ def figure_of(rows):
         panel = Panel(title, log("predicted missed pairs", True), log("missed pairs (mean)", True))
         for way, track in by(of, "way"):
             panel.series.append(Series(way, list(track.expected), list(track.measured), "points"))
-        for factor in (1 / FACTOR, 1, FACTOR):
-            name = "equal" if factor == 1 else f"a factor of {FACTOR}"
-            panel.series.append(Series(name, [1, top], [factor, factor * top], "lines", factor == 1))
+        panel.series.append(Series("equal", [1, top], [1, top], "lines", True))
+        panel.series.append(Series(f"a factor of {FACTOR}", [1, top, NONE, 1, top],
+                                   [FACTOR, FACTOR * top, NONE, 1 / FACTOR, top / FACTOR], "lines"))
         out.panels.append(panel)
     return out
 

@@ -147,7 +147,7 @@ def test_plans_are_those_of_the_program():
     out, _ = program("plan", "two-tori", "--method", "far", "--resolution", "64", "--device", "cpu")
     assert str(made) == out
     out, _ = program("plan", "two-tori", "--method=far", "--resolution=64", "--device=cpu", "--json=-")
-    assert set(made.stages) == set(json.loads(out))
+    assert set(made.stages) == set(json.loads(out)) - {"misses"}  # the program alone predicts misses
     assert error_of(farcull.plan, "two-tori").where == "scene"
 
 

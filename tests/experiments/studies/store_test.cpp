@@ -364,7 +364,8 @@ TEST(Counts, AreStoredUnderTheirNamesInOrder) {
   EXPECT_EQ(stored({.counts = run}).counts->dump(),
             R"({"colliding":7,"missed":0,"missed_penetrating":0,"colliding_triangles":0,)"
             R"("missed_triangles":0,"candidates":0,"kept_triangles":0,"kept_objects":0,)"
-            R"("triangles":0,"objects":0,"promises":true,"scene_hash":"h","queries":1,"draws":2,)"
+            R"("triangles":0,"objects":0,"promises":true,"scene_hash":"h","left_by_boxes":0,)"
+            R"("views_used":0,"queries":1,"draws":2,)"
             R"("queries_saved":3,"draws_saved":4,"fragments":5,"tests":6,"views":3})");
   // A revoked verdict of the device is said, and hides no miss.
   run.missed = 1;
