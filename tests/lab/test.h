@@ -28,12 +28,12 @@ inline std::uint64_t nth_seed(std::uint64_t i, std::uint64_t n) {
   return i < n / 2 ? i : seed_of_day(i);
 }
 
-/// n random cases, or a sixteenth of them (at least `least`) where the address sanitizer makes every
+/// n random cases, or an eighth of them (at least `least`) where the address sanitizer makes every
 /// case several times slower: it looks for faults of memory, which a few cases of each kind show,
 /// and all n cases are tried without it.
 constexpr int trials(int n, [[maybe_unused]] int least = 1) {
 #ifdef __SANITIZE_ADDRESS__
-  return n / 16 > least ? n / 16 : least;
+  return n / 8 > least ? n / 8 : least;
 #else
   return n;
 #endif
