@@ -62,7 +62,8 @@ class Objects {
     ClashVerdict out = ClashVerdict::clear;
     for (const Vec3& p : parts(inner)) {
       if (!lies_within({p, p}, boxes_[outer])) continue;
-      const Overlap in = closed(outer) ? overlap_at(scene_, outer, p, surface(outer)) : Overlap::unknown;
+      const Overlap in =
+          closed(outer) ? overlap_at(scene_, outer, p, surface(outer)) : Overlap::unknown;
       if (in == Overlap::no) continue;
       point = p;
       if (in == Overlap::yes) return ClashVerdict::contained;

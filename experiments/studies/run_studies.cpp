@@ -305,18 +305,21 @@ class Runner {
     }
   }
 
+  // The row that the point has, or one with the counts that another study has of it, or with those
+  // of a run now. Empty if the run did not end.
+  std::optional<Measurement> row_without_times(const At& at) {
+    if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
+      return own->second;
+    if (const Measurement* counts = counted(at)) return *counts;
+    show(at, "");
+    const std::optional<PointResult> result = measure(at);
+    return result ? std::optional(stored(*result)) : std::nullopt;
+  }
+
   void take_times(const At& at, const Measurement& known) {
     const Stopwatch watch;
     const std::size_t before = visits_left(*at.task, at.position);
-    std::optional<Measurement> row;
-    if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end()) {
-      row = own->second;
-    } else if (const Measurement* counts = counted(at)) {
-      row = *counts;
-    } else {
-      show(at, "");
-      if (const std::optional<PointResult> result = measure(at)) row = stored(*result);
-    }
+    std::optional<Measurement> row = row_without_times(at);
     if (row && row->left_out.empty()) row->times = known.times;
     if (row) put(at, std::move(*row));
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
@@ -369,15 +372,7 @@ class Runner {
   void count_point(Task& task, std::size_t position) {
     const At at{&task, position};
     const Stopwatch watch;
-    std::optional<Measurement> row;
-    if (const auto own = task.rows.find(position); own != task.rows.end()) {
-      row = own->second;
-    } else if (const Measurement* counts = counted(at)) {
-      row = *counts;
-    } else {
-      show(at, "");
-      if (const std::optional<PointResult> result = measure(at)) row = stored(*result);
-    }
+    std::optional<Measurement> row = row_without_times(at);
     if (row && row->left_out.empty() && is_timed(at.point())) {
       Json rounds = row->times->value("rounds", Json::array());
       row->times = Json{{"rounds", std::move(rounds)}, {"no_times", true}};

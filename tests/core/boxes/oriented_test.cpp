@@ -88,7 +88,8 @@ Scene sharing_tips(std::uint32_t count) {
   scene.triangles.insert(scene.triangles.end(), above.begin(), above.end());
   scene.source_face.resize(2 * count);
   for (const std::uint32_t first : {0u, count})
-    scene.objects.push_back({.first_triangle = first, .triangle_count = count, .self = true});
+    scene.objects.push_back(
+        {.name = {}, .first_triangle = first, .triangle_count = count, .self = true});
   return scene;
 }
 
