@@ -1,15 +1,18 @@
 # Writes OUT with the commit of SOURCE, only if it changed. If tracked files differ from the commit, "-dirty-" and a hash of
-# the difference follow, so that two such trees have different names.
-execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
+# the difference follow, so that two such trees have different names. Pages of results do not count: a store of results goes on
+# after its page was written.
+execute_process(COMMAND git -C ${SOURCE} describe --always --abbrev=12 --exclude=*
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-if(NOT commit)
+if(commit)
+  execute_process(COMMAND git -C ${SOURCE} diff --no-ext-diff HEAD -- . ":(exclude)docs/results"
+                  OUTPUT_VARIABLE change ERROR_QUIET)
+  if(change)
+    string(SHA1 hash "${change}")
+    string(SUBSTRING ${hash} 0 8 hash)
+    string(APPEND commit "-dirty-${hash}")
+  endif()
+else()
   set(commit "unknown")
-endif()
-if(commit MATCHES "-dirty$")
-  execute_process(COMMAND git -C ${SOURCE} diff --no-ext-diff HEAD OUTPUT_VARIABLE change ERROR_QUIET)
-  string(SHA1 hash "${change}")
-  string(SUBSTRING ${hash} 0 8 hash)
-  string(APPEND commit "-${hash}")
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${commit}\"\n")
 
