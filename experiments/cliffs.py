@@ -112,7 +112,7 @@ def built_in(name, count):
     if each:
         name += f":{min(max(int(count / each), least), most)}"
     scene = farcull.Scene(name)
-    return scene.vertices, scene.triangles.astype(np.int64), scene.objects, len(scene.objects) == 1
+    return scene.vertices, scene.triangles.astype(np.int64), scene.object_starts, len(scene.object_starts) == 1
 
 
 # ---- Deformations: functions of the scene and random numbers ----
@@ -265,7 +265,10 @@ def make(recipe, count, started={}):
         scene = soup(np.random.default_rng(recipe["seed"]), count, recipe["start"])
     else:  # in a process of its own, since it may start threads
         if key not in started:
-            started[key] = part(in_process(lambda: built_in(recipe["start"], count), 60)[1], count)
+            state, whole, *_ = in_process(lambda: built_in(recipe["start"], count), 60)
+            if state != "done":
+                raise RuntimeError(f"the scene {recipe['start']} could not be made: {state}")
+            started[key] = part(whole, count)
         scene = started[key]
     with np.errstate(all="ignore"):
         for step, seed in recipe["steps"]:
