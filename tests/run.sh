@@ -4,8 +4,8 @@
 # example: bash tests/run.sh -R Scene
 # If the first argument is --sanitize, the tests that need no GL run a second time, built with the
 # address and undefined behaviour sanitizers. If CI is set, only those of core, offsets, verify, the
-# library and scenes, and the fuzz targets on their corpus: half of the time, and what handles memory
-# by numbers or reads the files of strangers.
+# library and scenes, and the fuzz targets on their corpus, without those that repeat arithmetic on
+# numbers: a third of the time, and what handles memory by numbers or reads the files of strangers.
 # If the first argument is --long, the campaigns of docs/tests.md run one after the other instead: hours. Those that passed at
 # this commit are not run again, and words behind --long choose some: bash tests/run.sh --long polygons odr
 # Exit status: 0 every test passed, and there was at least one; 2 the tests did not start; otherwise
