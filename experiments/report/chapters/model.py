@@ -51,9 +51,9 @@ def figure_of(rows):
             continue
         top = float(max(of.measured.max(), of.expected.max()))
         panel = Panel(title, log("predicted missed pairs", True), log("missed pairs (mean)", True))
-        for way, track in by(of, "way"):
+        for way, track in by(of.assign(way=of.way.str.replace(r" \(.*\)", "", regex=True)), "way"):
             panel.series.append(Series(way, list(track.expected), list(track.measured), "points"))
-        panel.series.append(Series("equal", [1, top], [1, top], "lines", True))
+        panel.series.append(Series("equal", [1, top], [1, top], "lines"))
         panel.series.append(Series(f"a factor of {FACTOR}", [1, top, NONE, 1, top],
                                    [FACTOR, FACTOR * top, NONE, 1 / FACTOR, top / FACTOR], "lines"))
         out.panels.append(panel)
@@ -94,15 +94,6 @@ def table_of(rows):
         out.rows.append([way, grouped(len(some)), grouped(right(some)), grouped(len(part)), grouped(right(part)),
                          rounded(typical_error(part)), grouped(total(of, "positions")), grouped(total(of, "outside"))])
     return out
-
-
-def all_table(rows):
-    return table_of_rows(
-        "model-all", "Every scene, method and resolution: missed pairs of the positions, and the prediction with its "
-        "interval", rows,
-        {"scene": "=scene", "method": "=way", "px": lambda row: str(row.resolution), "colliding": "colliding",
-         "missed (mean)": "~measured", "fewest": "missed_least", "most": "missed_most", "predicted": "~expected",
-         "from": "~low", "to": "~high"})
 
 
 def add_share(chapter, rows, words):
@@ -152,4 +143,4 @@ def fill(chapter, study):
         "pixels."]
     add_gaps(chapter, study)
     chapter.figures = [figure for figure in (figure_of(rows), resolution_figure(rows)) if figure.panels]
-    chapter.tables = [table_of(rows), all_table(rows)]
+    chapter.tables = [table_of(rows)]

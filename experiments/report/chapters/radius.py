@@ -2,8 +2,7 @@
 the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
 from frame import *  # noqa: F403
 
-CLOSE = 0.96  # the second row of panels shows CLOSE to 2 - CLOSE
-NAMED = 3     # number of generators with a line of their own
+CLOSE = 0.96  # the second panel shows CLOSE to 2 - CLOSE
 SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
 
 
@@ -62,24 +61,13 @@ def panel_of(title, label):
                  marks=[Mark(1, "budget radius")])
 
 
-def hardest_generators(lines):
-    """Generators whose points are violated at the largest factors, on any surface; of equal ones first those with the
-    larger share there."""
-    at = {}
-    for of in lines.values():
-        for name, line in of.items():
-            at[name] = max([at.get(name, (-1, 0))] + [(factor, violated(rows)) for factor, rows in line.at.items()
-                                                      if total(rows, "violations")])
-    return sorted(sorted(at), key=lambda name: at[name], reverse=True)[:NAMED]
-
-
-def envelope_of(lines):
+def envelope_of(surface, lines):
     """The largest share of a generator at each factor."""
     most = {}
     for line in lines.values():
         for factor, rows in line.at.items():
             most[factor] = max(most.get(factor, 0.0), violated(rows))
-    return Series("largest of all generators", sorted(most), [most[f] for f in sorted(most)], "lines", True)
+    return Series(surface, sorted(most), [most[f] for f in sorted(most)], emphasis=surface == "fragment depth")
 
 
 def published_series(name, lines, factor, of):
@@ -89,24 +77,19 @@ def published_series(name, lines, factor, of):
 
 
 def lemma_figure(generators, points):
-    out, named = Figure("radius", "Points whose pixel lacks a sample or a bound, against the radius"), \
-        hardest_generators(generators)
+    panel = panel_of("all radii", "violated points (%)")
     for surface, lines in generators.items():
-        panel = panel_of(surface, "violated points (%)")
-        panel.series = [line.series(name, violated, "lines") for name, line in lines.items() if name in named]
-        panel.series.append(envelope_of(lines))
-        panel.series += published_series("published radius, each generator", lines,
+        panel.series.append(envelope_of(surface, lines))
+        panel.series += published_series(f"{surface}, published radius", lines,
                                          lambda line: line.published.factor.iloc[-1], violated)
-        out.panels.append(panel)
-    for panel in list(out.panels):  # the same again, close to the published radius
-        out.panels.append(Panel("the same, close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
-                                [Series(**vars(s)) for s in panel.series], panel.marks))
-    count = max(len(lines) for lines in generators.values())
-    out.caption = (f"Lemmas 1 and 2 at {grouped(points)} points of triangles that aim at trouble, drawn by {count} "
-                   "generators. The thick line is the largest share of any generator; those that fail at the largest "
-                   "factors are named. On the worst canvas a pixel has a fragment only where every device that keeps "
-                   "the assumptions gives it one.")
-    return out
+    close = Panel("close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
+                  [Series(**vars(s)) for s in panel.series], panel.marks)
+    return Figure(
+        "radius", "Points whose pixel lacks a sample or a bound, against the radius",
+        f"Lemmas 1 and 2 at {grouped(points)} points of triangles that aim at trouble, drawn by "
+        f"{max(len(lines) for lines in generators.values())} generators. A line is the largest share of any generator; of "
+        "the published radius each generator is a point. On the worst canvas a pixel has a fragment only where every "
+        "device that keeps the assumptions gives it one.", [panel, close])
 
 
 def miss_figure(depths, runs):
@@ -139,9 +122,9 @@ def farthest(rows):
     return max(0.0, column(rows, "largest_px").fillna(math.inf).max())
 
 
-def lemma_table(name, caption, lines):
-    out = Table(name, "Violated points at the published and at the budget radius, and the least factor on the budget "
-                "from which on none is" + caption,
+def lemma_table(lines):
+    out = Table("radius", "Violated points at the published and at the budget radius, and the least factor on the budget "
+                "from which on none is, of every generator",
                 columns(["depth", "generator"], ["points", "published", "budget", "least factor",
                                                  "published: farthest outside (px)"]))
     for surface, generators in lines.items():
@@ -174,35 +157,13 @@ def add_lemmas(chapter, lemmas):
 
 def add_published(chapter, generators):
     for surface, lines in generators.items():
-        known = {name: line.published for name, line in lines.items() if len(line.published)}
-        if not known:
-            continue
-        rows = pd.concat(list(known.values()))
-        factors = [of.factor.iloc[-1] for of in known.values()]
-        least, most = min(factors), max(factors)
-        radius = f"{least:.4f}" if least == most else f"{least:.4f} to {most:.4f}"
-        failing = [f"{name} ({of_rows(of, 'violations', 'points')})" for name, of in known.items()
-                   if total(of, "violations")]
-        if failing:
-            far = farthest(rows)
-            outside = f", others up to {rounded(far)} px outside their bounds" if far > 0 else ""
-            chapter.find(f"The published radius, {radius} of the budget, fails, {surface}: "
-                         f"{of_rows(rows, 'violations', 'points')} points, {grouped(total(rows, 'no_sample'))} of them "
-                         f"without a sample{outside}; on {listed(failing)}.")
-        else:
-            chapter.find(f"The published radius, {radius} of the budget, violates none of "
-                         f"{grouped(total(rows, 'points'))} points, {surface}.")
-
-
-def add_misses(chapter, depths):
-    for depth, lines in depths.items():
-        for scene, line in lines.items():
-            worst = max((f for f, rows in line.at.items() if total(rows, "missed")), default=None)
-            words = (f"{scene}, {depth}: no factor misses a pair" if worst is None else
-                     f"{scene}, {depth}: pairs are missed up to the factor {worst:.4g}")
-            if len(line.published):
-                words += f"; the published radius misses {of_rows(line.published, 'missed', 'colliding')}"
-            chapter.find(words + ".")
+        known = [line.published for line in lines.values() if len(line.published)]
+        if known:
+            rows = pd.concat(known)
+            low, high = (f"{end(rows.factor):.4f}" for end in (min, max))
+            chapter.find(f"The published radius, {low if low == high else low + ' to ' + high} of the budget, {surface}: "
+                         f"{of_rows(rows, 'violations', 'points')} points are violated, "
+                         f"{grouped(total(rows, 'no_sample'))} of them without a sample.")
 
 
 # ---- placements
@@ -269,6 +230,7 @@ def placement_figure(placements):
     bits = usual(placements, "bits")
     rows = placements[(placements.bits == bits) & np.isfinite(placements.factor)]
     panel = panel_of("", "placements with a miss (%)")
+    panel.x.low = 0.45
     for side, here in groups(rows, "side"):
         series = Series(f"sides of {side:.4g} px")
         for factor, of in groups(here, "factor"):
@@ -292,18 +254,16 @@ def placement_figure(placements):
         "other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
-def placement_table(rows):
+def placement_table(placements):
     out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
-                "collides", columns(["radius", "patches", "contact"], [
-                    "side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
-                    "largest miss (px)"]))
-    for row in rows.itertuples():
+                "collides, of both kinds of patches and of contacts together",
+                columns(["radius"], ["side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
+                                     "largest miss (px)"]))
+    for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
-            row.radius, row.patches, row.contact, rounded(row.side), str(row.bits) if row.bits else "not snapped",
-            str(row.resolution), count_cell(row, "placements"),
-            rate_text(number(row, "missed_placements"), number(row, "colliding_placements")),
-            of_all(number(row, "missed"), number(row, "colliding")),
-            rounded(value(row, "largest_miss_px")) if number(row, "missed") else "-"])
+            radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
+            rate_of_rows(rows), of_rows(rows, "missed", "colliding"),
+            rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out
 
 
@@ -318,7 +278,6 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_lemmas(chapter, lemmas)
     add_published(chapter, generators)
-    add_misses(chapter, misses)
     chapter.limits = [
         "The points are drawn to find violations, so a share of violated points is no probability in a scene.",
         "Placements are of patches of eight triangles alone, which meet by construction. A rate over them is no rate "
@@ -333,22 +292,9 @@ def fill(chapter, study):
     add_gaps(chapter, study)
     if len(lemmas):
         chapter.figures.append(lemma_figure(generators, total(lemmas, "points")))
-        together = lines_of(lemmas.assign(generator="all generators"), "generator")
-        chapter.tables += [lemma_table("radius", "", together),
-                           lemma_table("radius-generators", ", of every generator", generators)]
-        chapter.tables[-1].in_text = False
+        chapter.tables.append(lemma_table(generators))
     if len(runs):
         chapter.figures.append(miss_figure(misses, runs))
     if len(placements):
-        figure = placement_figure(placements)
-        chapter.figures += [figure] if figure.panels else []
+        chapter.figures += [figure for figure in [placement_figure(placements)] if figure.panels]
         chapter.tables.append(placement_table(placements))
-    if len(lemmas):
-        chapter.tables.append(table_of_rows("radius-all", "All points of the lemmas", lemmas, {
-            "generator": "=generator", "depth": "=surface", "radius": "=radius",
-            "radius px": lambda row: rounded(value(row, "radius_px"), 6), "points": "points", "no sample": "no_sample",
-            "not bounding": "not_bounding", "rounded": "rounded", "farthest outside (px)": "~largest_px"}))
-    if len(runs):
-        chapter.tables.append(table_of_rows("radius-missed", "Missed pairs of FAR at every radius", runs, {
-            "scene": "=scene", "depth": "=surface", "radius": "=radius", "colliding": "colliding", "missed": "missed",
-            "kept triangles": "kept_triangles"}))
