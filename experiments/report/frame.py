@@ -25,7 +25,7 @@ chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` ad
 further devices to any chapter; others are pairs of a device's name and its Study. A figure's
 Panel.strip has Series without y, each a row of its own below the panel.
 
-chapters/stability.py is a short example. A figure should have at most six series a panel; its `n`
+chapters/offsets.py is a short example. A figure should have at most six series a panel; its `n`
 states the size of its sample, and its caption and title say what it shows. Zeros on a logarithmic
 axis need Axis(..., zero=True), and are then drawn at zero.
 """
