@@ -146,8 +146,7 @@ def time_figure(rows):
     """A row for each contestant, first those that err least."""
     out, points = Figure(
         "libraries-time", "Wrong answers, and the time of a question, by contestant",
-        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean "
-        "time of a "
+        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean time of a "
         "question as the contestant's own process measured it. Neighbours are asked of those alone that know them. n = "
         f"{grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
     for name, of in by(rows, "method"):
@@ -155,11 +154,9 @@ def time_figure(rows):
         if said and timed:
             points.append((name, *(1e6 * total(of, fault) / said for fault in ("missed", "wrong")), 1e6 * ms / timed))
     points.sort(key=lambda point: (point[1] + point[2], point[3]))
-    for at, (title, axis) in enumerate(() if not points else (("missed", log("per million", zero=True)),
-                                                              ("false alarms", log("per million", zero=True)),
-                                                              ("time", log("ns a pair")))):
-        out.panels.append(Panel(title, axis, strip=[
-            Series(point[0], [point[at + 1]], style="points") for point in points]))
+    out.panels = [Panel(title, axis, strip=[Series(point[0], [point[at + 1]], style="points") for point in points])
+                  for at, (title, axis) in enumerate((("missed", log("per million", zero=True)), (
+                      "false alarms", log("per million", zero=True)), ("time", log("ns a pair"))))] * bool(points)
     return out
 
 

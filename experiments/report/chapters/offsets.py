@@ -8,12 +8,10 @@ MEASURES = {"kept triangles": "kept_triangles", "false pos. / colliding": "false
 CAPTION = (
     "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one "
     "than they collide with, FAR pairs those that are in a candidate pair. False positives: pairs handed to exact "
-    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle "
-    "is stored "
-    "or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
-    "each "
-    "triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with their "
-    "intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
+    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle is "
+    "stored or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
+    "each triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with "
+    "their intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
 
 
 def figure_of(rows):

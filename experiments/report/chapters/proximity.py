@@ -110,9 +110,9 @@ def lost_figure(scenes):
     scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
     return Figure(
         "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
-        "An object is lost if none of its nearest neighbours is in its set. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
-        "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost "
-        f"are in the table. {objects_text(scenes)}.",
+        "An object is lost if none of its nearest neighbours is in its set. clusters:R has clusters whose sides are 1/R of "
+        "that of the scene. Not widened: the reliable form without the half diagonal of a cell that its proof asks for. "
+        f"Scenes of which nothing is lost are in the table. {objects_text(scenes)}.",
         [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
             series for method in DIAGRAMS if (series := lost_series(scene, method)).x])
          for scene in scenes])
@@ -121,9 +121,8 @@ def lost_figure(scenes):
 def lost_table(scenes, sizes):
     return Table(
         "proximity-lost",
-        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the "
-        "diagram was left out or not asked "
-        "for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
+        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the diagram "
+        "was left out or not asked for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
         [[scene.base, method, grouped(of.with_nearest.iloc[0])] +
          ["-" if count != count else grouped(count) for count in of.missed.reindex(sizes)]
          for scene in scenes for method in DIAGRAMS if len(of := scene.of(method))])
