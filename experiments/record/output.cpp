@@ -465,11 +465,12 @@ Json plan_json(const Scene& scene, const Plan& plan, const std::optional<MissPre
           {"method_reason", method_reason(plan.options)},
           {"form", form_text(plan.options)},
           {"full", plan.options.full},
-          {"steps", json_list(plan.stages(), [](const Stage& stage) {
-             return Json{{"step", name_of(stage)},
-                         {"decision", decision_of(stage)},
-                         {"reason", reason_of(stage)}};
-           })},
+          {"steps", json_list(plan.stages(),
+                              [](const Stage& stage) {
+                                return Json{{"step", name_of(stage)},
+                                            {"decision", decision_of(stage)},
+                                            {"reason", reason_of(stage)}};
+                              })},
           {"misses", missed}};
 }
 
