@@ -117,6 +117,7 @@ class Table:
 class Picture:
     """arguments: words of `farcull picture`, without -o."""
     name: str
+    title: str
     caption: str
     arguments: list
 

@@ -93,7 +93,7 @@ class Html:
     def picture(label, drawn, caption):
         name = drawn.picture.name
         return (f'<figure id="pic-{name}">\n<img src="data:image/png;base64,{base64.b64encode(drawn.png).decode()}" '
-                f'alt="{html_text(drawn.picture.caption)}">\n<figcaption><strong>{label}</strong> {html_prose(caption)} '
+                f'alt="{html_text(drawn.picture.title)}">\n<figcaption><strong>{label}</strong> {html_prose(caption)} '
                 f'<span class="files"><a href="pictures/{name}.png">PNG</a></span></figcaption>\n</figure>\n')
 
     @staticmethod
@@ -157,7 +157,7 @@ class Markdown:
 
     @staticmethod
     def picture(label, drawn, caption):
-        alt, name = markdown_prose(drawn.picture.caption), drawn.picture.name
+        alt, name = markdown_prose(drawn.picture.title), drawn.picture.name
         return f"![{alt}](pictures/{name}.png)\n\n**{label}** {markdown_prose(caption)}\n\n"
 
     @staticmethod
@@ -187,7 +187,8 @@ def section(form, number, drawn, count):
                             "tables are of these.")
     out += form.items("What it shows", [printed(finding) for finding in chapter.findings])
     for p in drawn.pictures:
-        out += (form.picture(label("Figure"), p, f"{sentence(p.picture.caption)} Drawn by `{p.command}`.") if p.png else
+        caption = f"{sentence(p.picture.caption)} Drawn by `{p.command}`."
+        out += (form.picture(label("Figure", p.picture.title), p, caption) if p.png else
                 form.left_out(sentence(f"A picture (`{p.command}`) is left out: {p.left_out}")))
     for f, svg in zip(chapter.figures, drawn.svgs):
         out += form.figure(label("Figure", f.title), f, svg, f"{sentence(f.caption)} Measured by `{chapter.command}`.")

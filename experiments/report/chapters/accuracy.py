@@ -142,11 +142,11 @@ def pictures_of(rows):
         fars[["scene", "resolution", "missed"]], on=["scene", "resolution"], suffixes=("", "_far"))
     both = both.assign(rank=~both.scene.str.startswith("two-bunnies")).sort_values(["rank", "resolution"], kind="stable")
     return [Picture(
-        "accuracy-compare",
-        f"CULLIDE and FAR on {row.scene} at {row.resolution} px, where CULLIDE misses "
-        f"{of_all(row.missed, row.colliding)} colliding pairs and FAR {grouped(row.missed_far)}. Missed pairs are drawn in "
-        "the colour that nothing else has. What collides and was found is coloured, what was kept and does not collide is "
-        "faint. With `--html FILE` the command makes a page in which one can look around.",
+        "accuracy-compare", "What CULLIDE misses, and FAR beside it",
+        f"Both on {row.scene} at {row.resolution} px, where CULLIDE misses {of_all(row.missed, row.colliding)} colliding "
+        f"pairs and FAR {grouped(row.missed_far)}. Missed pairs are drawn in the colour that nothing else has. What collides "
+        "and was found is coloured, what was kept and does not collide is faint. With `--html FILE` the command makes a page "
+        "in which one can look around.",
         [row.scene, "--compare", f"cullide:{row.resolution},far:{row.resolution}", "--size", "900x760"])
         for row in both.head(1).itertuples()]
 

@@ -190,8 +190,8 @@ def figure_of(groups):
         "Points: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
         "median time from triangles to pairs, with its interval as a bar. Lines follow the resolution. Rows, on "
         "the same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
-        "the others are in the CSV of all rows. CULLIDE (strict): one round, conservative rasterization, all views have to clear "
-        "a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
+        "the others are in the CSV of all rows. CULLIDE (strict): one round, conservative rasterization, all views have to "
+        "clear a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
         "seeds, the sum of the errors and the median of the times.", error_panels(titles, labels, points))
     if summary:
         error.caption += (

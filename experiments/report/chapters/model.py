@@ -97,7 +97,8 @@ def table_of(rows):
     for (way, held), of in rows.groupby(["way", "held"], sort=False):
         some = judged(of)
         part = some[some.share < 0.9]
-        out.rows.append([way, "others" if held else "looked at", grouped(len(some)), grouped(right(some)), grouped(len(part)), grouped(right(part)),
+        out.rows.append([way, "others" if held else "looked at",
+                         *map(grouped, (len(some), right(some), len(part), right(part))),
                          rounded(typical_error(part)), grouped(total(of, "positions")), grouped(total(of, "outside"))])
     return out
 
