@@ -17,7 +17,7 @@ import pandas as pd  # noqa: E402
 from matplotlib import font_manager, pyplot, textpath, ticker, transforms  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
-from estimates import grouped, listed, sentence  # noqa: E402
+from estimates import grouped, sentence  # noqa: E402
 
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
@@ -341,7 +341,7 @@ def inline_svg(svg, prefix):
     return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, svg[svg.index("<svg"):])
 
 
-# ---- which parts of a figure to draw
+# ---- what a figure and its caption are before they are drawn
 
 LONGEST_NAME = 85  # characters that fit into the key
 SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is logarithmic."
@@ -375,28 +375,7 @@ def merge_series(figure):
                     series.name, series.emphasis = name, thick
 
 
-def drop_panels(figure):
-    """Replaces panels without a difference by a sentence of the caption."""
-    kept, constant, empty = [], {}, []
-    for panel in figure.panels:
-        values = finite(y for s in panel.series for y in s.y)
-        if panel.strip or len(set(values)) > 1:
-            kept.append(panel)
-        elif values:
-            constant.setdefault(tick_label(values[0]), []).append(panel.title)
-        else:
-            empty.append(panel.title)
-    if not kept:
-        return
-    figure.panels, figure.caption = kept, sentence(figure.caption)
-    for value, titles in constant.items():
-        figure.caption += f" Not drawn, since every value is {value}: {listed(titles)}."
-    if empty:
-        figure.caption += f" Not drawn, since there is no value: {listed(empty)}."
-
-
 def legible(figure):
-    drop_panels(figure)
     merge_series(figure)
     if not re.search(r"\bn( =|:)", figure.caption):
         points = sum(len(finite(s.y)) for panel in figure.panels for s in panel.series)

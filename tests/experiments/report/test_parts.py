@@ -170,17 +170,6 @@ def test_series_that_agree_are_one():
     assert names_in(about)[0] == ["Quick-CULLIDE", "FAR (OBB) = CULLIDE"]
 
 
-def test_panels_without_a_difference_become_a_sentence():
-    figure = two_panels()
-    for series in figure.panels[0].series:
-        series.y = [3, 3]
-    figure.panels.append(Panel("third", series=[Series("a", [1], [math.nan])]))
-    legible(figure)
-    assert [p.title for p in figure.panels] == ["second"]
-    assert figure.caption == ("c. Not drawn, since every value is 3: first. Not drawn, since there is no value: third. "
-                              "n = 4 drawn points.")
-
-
 def test_a_method_looks_the_same_in_every_figure():
     looks = draw.looks_of(two_panels())
     assert looks["FAR (OBB)"].colour == draw.looks_of(Figure("g", "t", "", [Panel("", series=[
