@@ -177,6 +177,19 @@ def check_kit():
                     if not os.path.exists(os.path.join(os.path.dirname(page), path)))
 
 
+def check_claims():
+    """Each claim has all its cells, its figures and tables are those of a chapter, and no other page has a table of claims."""
+    chapters = ''.join(map(read, glob.glob('experiments/report/chapters/*.py')))
+    for line in re.findall(r'^\| (?!claim ).*', read('docs/claims.md').split('\n## ')[0], re.MULTILINE):
+        cells = [cell.strip() for cell in line.strip('|').split('|')]
+        if len(cells) != 6 or not all(cells) or not cells[2].isdigit():
+            yield f'docs/claims.md: a claim lacks a cell: {cells[0]}'
+        yield from (f'docs/claims.md: no chapter has {name}' for name in re.findall(r'[a-z-]+', re.sub(r'\(?\[.*?\)+', '', cells[4]))
+                    if name not in 'figures tables and its output' and f'"{name}"' not in chapters)
+    yield from (f'{page}: has claims of its own' for page in glob.glob('docs/**/*.md', recursive=True)
+                if page != 'docs/claims.md' and '| claim |' in read(page))
+
+
 def publish():
     """What is still open before a release."""
     said = [f'{path}: the authors are still a placeholder, "{PLACEHOLDER}"' for path in KIT if PLACEHOLDER in read(path)]
@@ -186,7 +199,7 @@ def publish():
 def check():
     texts = list(referring())
     said = [*check_labels(), *check_references(texts), *check_sections(texts), *check_tests(), *check_citations(),
-            *check_symbols(), *check_proofs(), *check_map(), *check_kit()]
+            *check_symbols(), *check_proofs(), *check_map(), *check_kit(), *check_claims()]
     return '\n'.join(said) or f'docs: {len(labels())} numbered statements, and what refers to them', bool(said)
 
 
@@ -216,6 +229,9 @@ BROKEN = [
     ('a script that is gone, in the recipe', 'docs/Containerfile', 'experiments/meshes.sh', 'experiments/mesh.sh',
      'mesh.sh is not there'),
     ('a script that is gone, in a claim', 'docs/claims.md', 'tests/mutants.sh', 'tests/mutant.sh', 'mutant.sh is not there'),
+    ('a claim without minutes', 'docs/claims.md', r'\| 110 \|', '| hours |', 'lacks a cell: The tests notice faults'),
+    ('a figure that no chapter draws', 'docs/claims.md', 'figure error-time,', 'figure errors,', 'no chapter has errors'),
+    ('a second table of claims', 'docs/results/README.md', r'^\| page \|', '| claim |', 'has claims of its own'),
     ('a page that is gone, in a claim', 'docs/claims.md', r'\(paper\.md\)', '(papers.md)', 'papers.md is not there'),
     ('a lemma without assumptions', TWO, r'\*Assumes:\* lemmas 16 and 17\.', '', 'does not say what it assumes')]
 

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "commit.h"
 #include "core/base/error.h"
@@ -84,39 +83,20 @@ void check_store_outside(const std::string& folder) {
   }
 }
 
-// For each scene of the study "scenes", by its name: the studies that use it, in the order of
-// studies().
-Json users_of_scenes(const Declaration& scenes) {
-  std::set<std::string> names;
-  for (const PointKey& point : scenes.points) names.insert(point.scene);
-  Json out = Json::object();
-  for (const Study& study : studies_of_all()) {
-    if (study.name == "scenes") continue;
-    std::set<std::string> seen;
-    for (const PointKey& point : keys_of(study.grid(scenes.choice))) {
-      if (names.contains(point.scene) && seen.insert(point.scene).second)
-        out[point.scene].push_back(study.name);
-    }
-  }
-  return out;
-}
-
 // The JSON that tells the Python program about this one.
-std::string context_for(const Store& store) {
+std::string context_for_python() {
   Json known = Json::array(), scenes = Json::object();
   for (const Study& study : studies())
     known.push_back({{"name", study.name}, {"title", study.title}, {"question", study.question}});
   for (const BuiltinScene& scene : builtin_scenes()) {
-    scenes[scene.name] = {{"description", scene.description}, {"needs_meshes", scene.needs_meshes}};
+    scenes[scene.name] = {{"needs_meshes", scene.needs_meshes}};
     if (scene.seed) scenes[scene.name]["seed"] = *scene.seed;
   }
-  const std::optional<Declaration> declared = store.declaration("scenes");
   const Json constants = {
       {"few_triangles", kFewTriangles},
       {"depth_rounding", {{"24", depth_rounding(24)}, {"32", depth_rounding(32)}}},
       {"scene_resolution", kSceneResolution},
-      {"scenes", std::move(scenes)},
-      {"users", declared ? users_of_scenes(*declared) : Json::object()}};
+      {"scenes", std::move(scenes)}};
   return Json({{"program", fs::read_symlink("/proc/self/exe").string()},
                {"commit", FARCULL_COMMIT},
                {"studies", std::move(known)},
@@ -157,8 +137,8 @@ int ReportCommand::run() {
       if (store.declaration(name)->of > 1)
         throw Error(store.path(), "holds a shard of " + name, "farcull merge " + folder_);
     }
-    words.push_back(context_for(store));
   }
+  words.push_back(context_for_python());
   if (no_pictures_) words.push_back("--no-pictures");
   if (device_) words.push_back("--device=" + *device_);
   std::vector<char*> arguments;

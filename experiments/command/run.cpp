@@ -304,21 +304,9 @@ int RunCommand::plan(const RunOptions& options) const {
   RunOptions all = options;
   all.ignored = left_out(scene);
   const Plan planned = farcull::plan(scene, all);
-  const MissOutlook outlook = look_ahead(scene, planned);
-  if (outputs.json) {
-    auto json = plan_json(scene, planned);
-    json["misses"] = nullptr;
-    if (const auto& of = outlook.forecast) {
-      json["misses"] = {{"colliding", of->colliding},
-                        {"expected", of->missed},
-                        {"low", of->low()},
-                        {"high", of->high()}};
-    }
-    write_json(json, *outputs.json);
-  }
-  if (!outputs.to_stdout()) {
-    write_output("-", plan_table(scene, planned) + outlook_line(outlook));
-  }
+  const MissesOfPlan misses = misses_of(scene, planned);
+  if (outputs.json) write_json(plan_json(scene, planned, misses.predicted), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", plan_table(scene, planned) + misses_line(misses));
   return kExitDone;
 }
 

@@ -397,11 +397,11 @@ class Equations {
 
 // The model is off by a factor of 1.2 in what is missed; where nearly all is missed, by one of 1.5
 // in what is found.
-double MissForecast::low() const {
+double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
 }
-double MissForecast::high() const {
+double MissPrediction::high() const {
   const auto all = static_cast<double>(colliding);
   return std::min(std::min(missed * 1.2, all - (all - missed) / 1.5) + 2 * deviation, all);
 }
@@ -419,7 +419,7 @@ double centre_probability(double area, double width, double height, double radiu
   return disc + rest * std::pow(sum, -1 / sharpness);
 }
 
-std::string unforeseen(const RunOptions& options) {
+std::string why_unpredicted(const RunOptions& options) {
   if (!takes_boxes(options.method)) return "the method does not draw objects against each other";
   if (promises(options)) return "the method misses nothing";
   if (options.conservative) return "conservative rasterization";
@@ -430,34 +430,35 @@ std::string unforeseen(const RunOptions& options) {
   return "";
 }
 
-MissOutlook look_ahead(const Scene& scene, const Plan& plan) {
+MissesOfPlan misses_of(const Scene& scene, const Plan& plan) {
   const auto* work = std::get_if<DrawPlan>(&plan.work);
   if (work == nullptr || promises(plan.options)) return {};
-  std::string why_not =
-      has_self(scene) ? "objects are tested against themselves" : unforeseen(plan.options);
-  if (!why_not.empty()) return {.forecast = {}, .why_not = std::move(why_not)};
+  MissesOfPlan out;
+  out.why_not =
+      has_self(scene) ? "objects are tested against themselves" : why_unpredicted(plan.options);
+  if (!out.why_not.empty()) return out;
   const ExactResult exact = all_colliding_pairs(scene, {}, plan.options.ignored);
-  auto forecast = forecast_misses(scene, *work, plan.options, exact.pairs);
-  if (!forecast) why_not = "the images of too many triangles overlap";
-  return {.forecast = forecast, .why_not = std::move(why_not)};
+  out.predicted = predict_misses(scene, *work, plan.options, exact.pairs);
+  if (!out.predicted) out.why_not = "the images of too many triangles overlap";
+  return out;
 }
 
-std::string outlook_line(const MissOutlook& outlook) {
+std::string misses_line(const MissesOfPlan& misses) {
   constexpr const char* kName = "misses     ";
-  if (!outlook.why_not.empty()) return kName + ("not predicted: " + outlook.why_not) + "\n";
-  if (!outlook.forecast) return "";
-  const MissForecast& of = *outlook.forecast;
+  if (!misses.why_not.empty()) return kName + ("not predicted: " + misses.why_not) + "\n";
+  if (!misses.predicted) return "";
+  const MissPrediction& of = *misses.predicted;
   const auto whole = [](double x) { return std::to_string(std::llround(x)); };
   return kName + whole(of.missed) + " of " + std::to_string(of.colliding) +
          " colliding pairs expected, " + whole(of.low()) + " to " + whole(of.high()) + "\n";
 }
 
-std::optional<MissForecast> forecast_misses(const Scene& scene, const DrawPlan& work,
-                                            const RunOptions& options,
-                                            std::span<const TrianglePair> colliding,
-                                            double sharpness) {
+std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan& work,
+                                             const RunOptions& options,
+                                             std::span<const TrianglePair> colliding,
+                                             double sharpness) {
   const bool fat = fattens(options.method);
-  MissForecast out{.colliding = colliding.size()};
+  MissPrediction out{.colliding = colliding.size()};
   std::vector<ViewOfParts> views;
   for (const View& view : work.settings.views) {
     if (work.regions.places.empty()) break;

@@ -13,7 +13,7 @@
 namespace farcull {
 
 /// Missed pairs, over all positions that the grid of pixels may have below the scene.
-struct MissForecast {
+struct MissPrediction {
   std::uint64_t colliding = 0;  // pairs
   double missed = 0;            // on average
   double deviation = 0;         // standard deviation of one position from that average
@@ -25,18 +25,19 @@ struct MissForecast {
 
 /// Why there is no prediction for a method with these options; empty if there is one. A method that
 /// promises misses nothing and needs none.
-std::string unforeseen(const RunOptions& options);
+std::string why_unpredicted(const RunOptions& options);
 
-/// Finds the colliding pairs by exact tests, and predicts the misses of the plan. A method that
-/// promises to miss nothing gets neither a prediction nor a reason.
-struct MissOutlook {
-  std::optional<MissForecast> forecast;
-  std::string why_not;  // empty if there is a forecast, or if the method promises
+/// The misses of a plan, or why they are not predicted. A method that promises to miss nothing has
+/// neither.
+struct MissesOfPlan {
+  std::optional<MissPrediction> predicted;
+  std::string why_not;
 };
-MissOutlook look_ahead(const Scene& scene, const Plan& plan);
-/// A line for people: "misses     46 of 203 colliding pairs expected, 30 to 70"; empty if nothing
-/// is to be said.
-std::string outlook_line(const MissOutlook& outlook);
+/// Finds the colliding pairs by exact tests, and predicts the misses.
+MissesOfPlan misses_of(const Scene& scene, const Plan& plan);
+/// A line for people: "misses     46 of 203 colliding pairs expected, 30 to 70"; empty for a method
+/// that promises.
+std::string misses_line(const MissesOfPlan& misses);
 
 /// How sharply a region with an area, a width and a height above one pixel is sure to hold a pixel
 /// centre. Fitted to random triangles on random grids, not to any scene.
@@ -49,10 +50,10 @@ double centre_probability(double area, double width, double height, double radiu
 
 /// The prediction for a plan; empty if too many images of triangles overlap to go through them.
 /// colliding: the colliding pairs of the scene, without ignored ones. Precondition:
-/// unforeseen(options) is empty and no object is tested against itself.
-std::optional<MissForecast> forecast_misses(const Scene& scene, const DrawPlan& work,
-                                            const RunOptions& options,
-                                            std::span<const TrianglePair> colliding,
-                                            double sharpness = kMissSharpness);
+/// why_unpredicted(options) is empty and no object is tested against itself.
+std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan& work,
+                                             const RunOptions& options,
+                                             std::span<const TrianglePair> colliding,
+                                             double sharpness = kMissSharpness);
 
 }  // namespace farcull

@@ -76,9 +76,7 @@ std::string clash_page(const Scene& scene, const ClashRecord& record, const std:
              {"idlePart", 1},
              {"through", 0},
              {"objects", json(8, {60, 120, 216})}}}});
-  std::string out = embedded::clash_html;
-  put_parts(out, blocks, about, embedded::clash_js);
-  return out;
+  return framed_page("Clashes by farcull", embedded::clash_html, blocks, about, embedded::clash_js);
 }
 
 }  // namespace farcull

@@ -14,6 +14,7 @@
 #include "commit.h"
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "embedded/frame_html.h"
 #include "embedded/page_css.h"
 #include "embedded/page_html.h"
 #include "embedded/page_js.h"
@@ -152,15 +153,23 @@ void add_page_triangles(const Scene& scene, PageBlocks& blocks, json& frame) {
   frame["corners"] = blocks.add(packed_numbers(flat));
 }
 
+namespace {
+
+// Replaces the first occurrence of `mark` in the page.
 void put(std::string& page, const std::string& mark, std::string_view text) {
   const std::size_t at = page.find(mark);
   if (at == std::string::npos) throw std::logic_error("page without " + mark);
   page.replace(at, mark.size(), text);
 }
 
-void put_parts(std::string& page, const PageBlocks& blocks, const json& about,
-               std::string_view script) {
+}  // namespace
+
+std::string framed_page(std::string_view title, std::string_view body, const PageBlocks& blocks,
+                        const json& about, std::string_view script) {
   const ThreeJs three = three_js();
+  std::string page = embedded::frame_html;
+  put(page, "<!--TITLE-->", title);
+  put(page, "<!--BODY-->", body);
   put(page, "/*STYLE*/", embedded::page_css);
   put(page, "<!--BLOCKS-->", blocks.text());
   put(page, "<!--LICENCE-->", three.licence);
@@ -169,6 +178,7 @@ void put_parts(std::string& page, const PageBlocks& blocks, const json& about,
   put(page, "/*VIEW*/", embedded::page_view_js);
   put(page, "/*PAGE*/", script);
   put(page, "{/*ABOUT*/}", for_script(about));
+  return page;
 }
 
 namespace {
@@ -237,9 +247,9 @@ class PageMaker {
     about.update(page_box(box_));
     PageResult out;
     out.steps = results_;
-    out.html = embedded::page_html;
-    put(out.html, "FLAT", "data:image/png;base64," + base64_of(to_png(flat.image, flat.texts)));
-    put_parts(out.html, blocks_, about, embedded::page_js);
+    std::string body = embedded::page_html;
+    put(body, "FLAT", "data:image/png;base64," + base64_of(to_png(flat.image, flat.texts)));
+    out.html = framed_page("Collisions by farcull", body, blocks_, about, embedded::page_js);
     return out;
   }
 

@@ -33,10 +33,9 @@ nlohmann::json page_vertices(const Scene& scene, const Box& box, PageBlocks& blo
 /// Adds the objects and the triangles to page_vertices().
 void add_page_triangles(const Scene& scene, PageBlocks& blocks, nlohmann::json& frame);
 
-/// Replaces the only occurrence of `mark` in the page.
-void put(std::string& page, const std::string& mark, std::string_view text);
-/// Puts the style, the blocks, three.js, page_view.js, the page's own script and its data in place.
-void put_parts(std::string& page, const PageBlocks& blocks, const nlohmann::json& about,
-               std::string_view script);
+/// A page: web/frame.html with the title, the body, the style, the blocks, three.js, page_view.js,
+/// the page's own script and its data.
+std::string framed_page(std::string_view title, std::string_view body, const PageBlocks& blocks,
+                        const nlohmann::json& about, std::string_view script);
 
 }  // namespace farcull

@@ -246,7 +246,9 @@ py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned thr
     const RunOptions options = options_of(given, ignore, limit);
     require_pairs(*kept.scene);
     const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
-    return std::pair(plan_json(*kept.scene, planned).dump(), plan_table(*kept.scene, planned));
+    const MissesOfPlan misses = misses_of(*kept.scene, planned);
+    return std::pair(plan_json(*kept.scene, planned, misses.predicted).dump(),
+                     plan_table(*kept.scene, planned) + misses_line(misses));
   });
   return py::make_tuple(json, table);
 }

@@ -449,7 +449,14 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
                      default_method_line(options) + tested + not_asked_line(scene), table.text());
 }
 
-Json plan_json(const Scene& scene, const Plan& plan) {
+Json plan_json(const Scene& scene, const Plan& plan, const std::optional<MissPrediction>& misses) {
+  Json missed = nullptr;
+  if (misses) {
+    missed = {{"colliding", misses->colliding},
+              {"expected", misses->missed},
+              {"low", misses->low()},
+              {"high", misses->high()}};
+  }
   return {{"scene", scene.name},
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
@@ -458,11 +465,13 @@ Json plan_json(const Scene& scene, const Plan& plan) {
           {"method_reason", method_reason(plan.options)},
           {"form", form_text(plan.options)},
           {"full", plan.options.full},
-          {"steps", json_list(plan.stages(), [](const Stage& stage) {
-             return Json{{"step", name_of(stage)},
-                         {"decision", decision_of(stage)},
-                         {"reason", reason_of(stage)}};
-           })}};
+          {"steps", json_list(plan.stages(),
+                              [](const Stage& stage) {
+                                return Json{{"step", name_of(stage)},
+                                            {"decision", decision_of(stage)},
+                                            {"reason", reason_of(stage)}};
+                              })},
+          {"misses", missed}};
 }
 
 }  // namespace farcull

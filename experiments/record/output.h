@@ -13,6 +13,7 @@
 
 #include "core/base/fields.h"
 #include "experiments/method/distances.h"
+#include "experiments/method/misses.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
 #include "experiments/system/output_file.h"
@@ -150,8 +151,9 @@ Certificate certificate_of(const Scene& scene, const Record& record);
 
 /// One line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
-/// The plan as JSON (docs/record.md, "Plans").
-nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan);
+/// The plan as JSON (docs/record.md, "Plans"). misses: what the method is predicted to miss.
+nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
+                                 const std::optional<MissPrediction>& misses = {});
 
 /// What the plan says about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);

@@ -5,27 +5,22 @@ The folder appears whole or not at all, in place of an earlier report; another f
 status: 0 done; 1 a promise is broken, and the report says so; 2 nothing was made, and a line says why.
 """
 import argparse
-import ctypes
 import datetime
-import errno
 import fcntl
 import importlib
 import json
 import logging
 import os
 import pathlib
-import re
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 
 # A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
 FIRST, LAST = ["error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
-PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # px; the reader of a picture's page can choose among them
 
 
 class Refusal(Exception):
@@ -48,7 +43,7 @@ try:
     import tables
     from chapters import devices
     from draw import legible
-    from estimates import counted, grouped, listed, of_all, sentence
+    from estimates import counted
     from frame import Chapter, Damaged, command_of, describe, promising, value
     from store import Store, other_devices
 except ImportError as error:
@@ -59,108 +54,62 @@ except ImportError as error:
 
 # ---- the folder of the report
 
-def is_report(folder):
-    try:
-        return pages.MARK in (folder / "index.html").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return False
-
-
 def check_place(place):
     """An earlier report may be replaced, nothing else."""
     if not os.path.lexists(place):
         return
-    folder = place.is_dir() and not place.is_symlink()
-    if not folder or (any(place.iterdir()) and not is_report(place)):
+    try:
+        known = pages.MARK in (place / "index.html").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        known = place.is_dir() and not any(place.iterdir())
+    if not known or place.is_symlink():
         raise Refusal(place, "is there and no report of this program", "move it away")
 
 
-def locked(folder):
-    """Locks a folder and returns its descriptor; None if another process has it. The lock ends with its process."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return descriptor
-    except OSError:
-        os.close(descriptor)
-        return None
-
-
-def remove_leftovers(place):
-    """Removes what killed reports left beside the place: folders of reports, whole or not, that nobody has locked."""
-    for path in sorted(place.parent.glob(place.name + ".part-????????")):
-        known = (path / "figures").is_dir() and not path.is_symlink()
-        if known and (lock := locked(path)) is not None:
-            shutil.rmtree(path, ignore_errors=True)
-            os.close(lock)
-
-
-def exchange(path, place):
-    """Puts a folder in place in one step; an earlier report is then at `path`."""
-    if place.exists():
-        libc = ctypes.CDLL(None, use_errno=True)
-        if libc.renameat2(-100, os.fsencode(path), -100, os.fsencode(place), 2) == 0:  # RENAME_EXCHANGE
-            return
-        if ctypes.get_errno() not in (errno.EINVAL, errno.ENOSYS):
-            raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
-        shutil.rmtree(place)  # the file system cannot exchange
-    os.rename(path, place)
-
-
 class Unfinished:
-    """A folder beside the report, in which the new report is made. Removed unless publish() puts it in place."""
+    """The folder .report-unfinished, in which a report is made. Removed in the end; publish() puts it in place before.
+    While its results are locked, no other report of them is made, so that what a killed one left can be removed."""
 
-    def __init__(self, place):
-        self.place, self.lock, self.path = place, None, None
+    def __init__(self, results):
+        self.place, self.path, self.old = (results / name for name in ("report", ".report-unfinished", ".report-old"))
+        self.lock = os.open(results, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)  # ends with the process
 
     def __enter__(self):
-        remove_leftovers(self.place)
         try:
-            self.path = pathlib.Path(tempfile.mkdtemp(prefix=self.place.name + ".part-", dir=self.place.parent))
-            self.lock = locked(self.path)  # before it has the folders by which others know it as a report's
-            mask = os.umask(0)
-            os.umask(mask)
-            self.path.chmod(0o777 & ~mask)
-            for name in ("figures", "tables"):
-                (self.path / name).mkdir()
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
+            raise Refusal(self.place, "is made by another process", "wait for its end") from error
+        try:
             self.__exit__()
+            for name in ("figures", "tables"):
+                (self.path / name).mkdir(parents=True)
+        except OSError as error:
             raise Refusal(self.place, f"cannot be made: {error.strerror}",
                           "use a folder with room that you may write to") from error
         return self
 
     def publish(self):
         try:
-            exchange(self.path, self.place)
+            if self.place.exists():
+                self.place.rename(self.old)
+            self.path.rename(self.place)
         except OSError as error:
             raise Refusal(self.place, f"cannot be put in place: {error.strerror}",
                           "see who may write to the folder") from error
 
     def __exit__(self, *_):
-        if self.path:
-            shutil.rmtree(self.path, ignore_errors=True)
-        if self.lock is not None:
-            os.close(self.lock)
+        if self.old.exists() and not self.place.exists():  # killed between the two steps of publish()
+            self.old.rename(self.place)
+        for path in (self.path, self.old):
+            shutil.rmtree(path, ignore_errors=True)
 
 
 # ---- contents of the report
 
-def png_texts(png):
-    """The texts that `farcull picture` puts into its PNG, by their names."""
-    out, at = {}, 8
-    while at + 8 <= len(png):
-        size, kind = int.from_bytes(png[at:at + 4], "big"), png[at + 4:at + 8]
-        if kind in (b"tEXt", b"iTXt"):
-            name, _, text = png[at + 8:at + 8 + size].partition(b"\0")
-            out[name.decode("latin-1")] = text.lstrip(b"\0").decode("utf-8", "replace")
-        at += size + 12
-    return out
-
-
 class Reporter:
     def __init__(self, arguments, context, store):
         self.arguments, self.context, self.store = arguments, context, store
-        self.broken, self.notes, self.counts = [], [], dict.fromkeys(("figure", "table", "picture", "page"), 0)
+        self.broken, self.notes, self.counts = [], [], dict.fromkeys(("figure", "table", "picture"), 0)
         self.others, notes = other_devices(arguments.folder, store)
         self.notes += notes
         now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -210,34 +159,30 @@ class Reporter:
         write(root / "tables" / (chapter.study + "-rows.csv"), tables.rows_csv(drawn.study))
         for name, text in chapter.files.items():
             write(root / name, text)
-        drawn.pictures = [self.picture(picture, chapter, root) for picture in chapter.pictures]
-        chapter.findings.sort(key=lambda finding: not finding[0])
+        drawn.pictures = [self.picture(picture, root) for picture in chapter.pictures]
         self.counts["figure"] += len(chapter.figures)
         self.counts["table"] += len(chapter.tables)
 
-    # Adds a picture. Promises that it breaks become findings of the chapter.
-    def picture(self, picture, chapter, root):
+    def picture(self, picture, root):
+        """Adds a picture, and the promises that are broken in it."""
         self.say("picture " + picture.name)
         out, path = pages.DrawnPicture(picture), root / "pictures" / (picture.name + ".png")
         try:
             if self.arguments.no_pictures:
                 raise Refusal("--no-pictures", "was given", "leave it out")
             path.parent.mkdir(exist_ok=True)
-            broken = self.run_picture(picture, ["-o", path])
+            self.broken += [f"in the picture {picture.name}, {line}" for line in self.run_picture(picture, path)]
             out.png = path.read_bytes()
+            self.counts["picture"] += 1
         except Refusal as error:
             out.left_out = f"{error.where} {error.reason}"
             self.notes.append(f"picture {picture.name} is left out: {out.left_out}")
-            return out
-        self.counts["picture"] += 1
-        self.add_counts(picture, chapter, png_texts(out.png), bool(broken))
-        out.page = self.make_page(picture, root / "pages" / (picture.name + ".html"))
         return out
 
-    def run_picture(self, picture, more):
+    def run_picture(self, picture, path):
         """Runs `farcull picture`; returns its text about broken promises."""
         device = ["--device", self.arguments.device] if self.arguments.device is not None else []
-        done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, *more],
+        done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, "-o", path],
                               capture_output=True, stdin=subprocess.DEVNULL, text=True, errors="replace")
         lines = [line.removeprefix("farcull: ") for line in done.stderr.splitlines()]
         if done.returncode not in (0, 1):
@@ -245,53 +190,13 @@ class Reporter:
             raise Refusal(where, reason.split("; ")[0], "")
         return lines if done.returncode == 1 else []
 
-    def add_counts(self, picture, chapter, texts, broken):
-        """Writes the counts of the drawn panels into the caption, and reports where the rows differ. broken: the
-        program says that a method that promises missed something."""
-        said, stored = [], []
-        for i, (method, *known) in enumerate(picture.panels):
-            text = texts[f"Panel {i + 1}"]
-            missed, colliding = (int(re.search(name + r" (\d+)", text).group(1)) for name in ("missed", "colliding"))
-            said.append(f"{method} misses {of_all(missed, colliding)} colliding pairs")
-            if known[:2] != [missed, colliding]:
-                words = ["an unknown number" if n is None or n != n else grouped(n) for n in known[:2]]
-                stored.append(f"{words[0]} of {words[1]} by {method}")
-            if broken and missed and method.startswith("FAR"):
-                text = (f"in the picture {picture.name}, {method} misses {of_all(missed, colliding)} colliding pairs, "
-                        "and promises to miss none.")
-                chapter.find_broken(text)
-                self.broken.append("BROKEN: " + text)
-        picture.caption = f"{sentence(picture.caption)} Here {listed(said)}."
-        if stored:
-            picture.caption += (" The rows of the study, measured before, say otherwise: "
-                                f"{listed(stored)} missed.")
-
-    def make_page(self, picture, path):
-        """Makes a page where every panel of the picture steps through resolutions; returns whether there is one."""
-        self.say("page " + picture.name)
-        own = [int(n) for word in picture.arguments for n in re.findall(r":(\d+)", word)]
-        steps = ",".join(str(n) for n in sorted({*PAGE_RESOLUTIONS, *own}))
-        plain = [re.sub(r"(?<=[a-z]):\d+", "", word) for word in picture.arguments]
-        try:
-            path.parent.mkdir(exist_ok=True)
-            plain = type(picture)(picture.name, "", plain, [])
-            said = self.run_picture(plain, ["--html", path, "--resolutions", steps])
-        except Refusal as error:
-            self.notes.append(f"the page of picture {picture.name} is left out: {error.where} {error.reason}")
-            return False
-        self.broken += [f"in the page of the picture {picture.name}, {line}" for line in said]
-        self.counts["page"] += 1
-        return True
-
     def write_pages(self, root):
-        write(root / "index.html", pages.HtmlPage(self.page).text())
+        write(root / "index.html", pages.page_html(self.page))
         write(root / "results.md", pages.page_markdown(self.page))
-        write(root / "report.tex", pages.page_latex(self.page))
 
     def tell(self):
-        many = {"figure": "figures", "table": "tables", "picture": "pictures", "page": "pages"}
         counts = [counted(len(self.page.chapters), "study", "studies")]
-        counts += [counted(n, one, many[one]) for one, n in self.counts.items()]
+        counts += [counted(n, one, one + "s") for one, n in self.counts.items()]
         print("".join(note + "\n" for note in self.notes) + ", ".join(counts) +
               f"\n{self.arguments.folder}/report/index.html", flush=True)
         for broken in self.broken:
@@ -316,15 +221,12 @@ def report(arguments):
     store = Store(arguments.folder)
     order = [*FIRST, *(known["name"] for known in context["studies"])]
     names = sorted(store.names, key=lambda name: (name in LAST, order.index(name) if name in order else len(order)))
-    shard = store.read("SELECT study FROM studies WHERE shards > 1").study
-    if len(shard):
-        raise Refusal(store.path, f"holds a shard of {shard[0]}", f"farcull merge {arguments.folder}")
     studies = [store.study(name, context["constants"]) for name in names]
     if not any(len(study.all_rows) for study in studies):
         raise Refusal(store.path, "holds no row yet", "measure first, as in farcull experiment all --quick")
-    place = pathlib.Path(arguments.folder, "report")
-    check_place(place)
-    with Unfinished(place) as unfinished:
+    results = pathlib.Path(arguments.folder)
+    check_place(results / "report")
+    with Unfinished(results) as unfinished:
         reporter = Reporter(arguments, context, store)
         for study in studies:
             reporter.fill(study)

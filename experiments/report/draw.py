@@ -17,7 +17,7 @@ import pandas as pd  # noqa: E402
 from matplotlib import font_manager, pyplot, textpath, ticker, transforms  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
-from estimates import grouped, listed, sentence  # noqa: E402
+from estimates import grouped, sentence  # noqa: E402
 
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
@@ -27,12 +27,13 @@ DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DASHES = ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
 MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank marks a hollow one
 KNOWN = [  # the first entry whose words are in a name applies
-    ("far pairs", "#009e73", 0, "^"), ("interval", "#009e73", 0, "^"),
+    ("far pairs", "#009e73", 0, "^"), ("farcull", "#009e73", 0, "o"), ("interval", "#009e73", 0, "^"),
     ("far exact", "#56b4e9", 0, "s"), ("exact offset", "#56b4e9", 0, "s"),
     ("far", "#0072b2", 0, "o"), ("obb union", "#0072b2", 0, "o"),
     ("quick cullide", "#e69f00", 1, "^ "), ("s cullide", "#cc79a7", 3, "D "),
     ("cullide", "#d55e00", 1, "o "), ("i collide", "#777777", 3, "s "),
     ("cgal", "#882255", 2, "v "), ("fcl", "#aa7744", 2, "D"), ("embree", "#999933", 2, "v"),
+    ("fragment", "#0072b2", 0, "o"), ("fixed function", "#d55e00", 1, "s "), ("worst canvas", "#000000", 2, "^ "),
     ("exact", "#000000", 2, "+"), ("colliding", "#000000", 2, "+"), ("ode", "#661100", 2, "x")]
 FREE = ["#332288", "#117733", "#cc6677", "#44aa99", "#aa4499", "#888800", "#661100", "#6699cc", "#555555", "#dd8800"]
 ENDS = ("x_low", "x_high", "y_low", "y_high")
@@ -208,11 +209,8 @@ class Drawer:
         self.key = self.handles()
         widest = max([0] + [text_width(line.get_label()) for line in self.key])
         single = len(panels) == 1 and not panels[0].strip
-        self.direct = single and widest < 0.35 * DOUBLE and self.can_label(panels[0])
-        figure.narrow = single and not self.direct and widest + 34 < SINGLE - 8
+        figure.narrow = single and widest + 34 < SINGLE - 8
         self.width = SINGLE if figure.narrow else DOUBLE
-        if self.direct:
-            self.key = []
         self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
         if len(panels) > 2 * columns:
             self.high = min(self.high, 105.0) - 20 * bool(panels[0].strip)
@@ -250,11 +248,6 @@ class Drawer:
         marks = dict.fromkeys(m.name for panel in self.figure.panels for m in panel.marks if m.name)
         return out + [Line2D([], [], label=name, **mark_look(self.figure, name)) for name in marks]
 
-    def can_label(self, panel):
-        """Whether the names are drawn at the ends of their lines instead of in a key."""
-        return not panel.marks and 0 < len(self.key) <= 6 and all(
-            "lines" in s.style and len(s.x) > 1 for s in panel.series)
-
     def panel(self, panel, cells, strip, labelled, first):
         if panel.strip and not panel.series:
             ax = self.strip(None, panel, cells[1], strip, first or not same_rows(self.figure))
@@ -273,8 +266,6 @@ class Drawer:
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center", va="center", color="#666666")
-        if self.direct:
-            self.label_lines(ax, panel)
         lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
@@ -319,25 +310,6 @@ class Drawer:
             ax.plot(s.x, [i] * len(s.x), **self.looks[s.name].of("points"), clip_on=False, in_layout=False)
         return ax
 
-    def label_lines(self, ax, panel):
-        """Draws the name of each series beside its last point, and moves names apart that would overlap."""
-        place, (low, high) = ax.yaxis.get_transform().transform, ax.get_ylim()
-        ends = []
-        for s in panel.series:
-            known = [v for v in s.y if v is not None and math.isfinite(v) and (v > 0 or ax.get_yscale() != "log")]
-            if known:
-                bottom, top, at = (float(place([v])[0]) for v in (low, high, known[-1]))
-                ends.append([(at - bottom) / (top - bottom), s.name])
-        ends.sort()
-        step, over = LINE / self.high, 0.0
-        for i in range(1, len(ends)):
-            ends[i][0] = max(ends[i][0], ends[i - 1][0] + step)
-        for end in reversed(ends):  # moves names down again if the last ones left the panel
-            end[0] = min(end[0], 1 - over)
-            over = 1 - end[0] + step
-        for y, name in ends:
-            ax.text(1.01, y, name, transform=ax.transAxes, va="center", color=self.looks[name].colour)
-
 
 def numbers_of(figure):
     """The CSV of a figure: the drawn values, as they were measured."""
@@ -369,7 +341,7 @@ def inline_svg(svg, prefix):
     return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, svg[svg.index("<svg"):])
 
 
-# ---- which parts of a figure to draw
+# ---- what a figure and its caption are before they are drawn
 
 LONGEST_NAME = 85  # characters that fit into the key
 SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is logarithmic."
@@ -403,28 +375,7 @@ def merge_series(figure):
                     series.name, series.emphasis = name, thick
 
 
-def drop_panels(figure):
-    """Replaces panels without a difference by a sentence of the caption."""
-    kept, constant, empty = [], {}, []
-    for panel in figure.panels:
-        values = finite(y for s in panel.series for y in s.y)
-        if panel.strip or len(set(values)) > 1:
-            kept.append(panel)
-        elif values:
-            constant.setdefault(tick_label(values[0]), []).append(panel.title)
-        else:
-            empty.append(panel.title)
-    if not kept:
-        return
-    figure.panels, figure.caption = kept, sentence(figure.caption)
-    for value, titles in constant.items():
-        figure.caption += f" Not drawn, since every value is {value}: {listed(titles)}."
-    if empty:
-        figure.caption += f" Not drawn, since there is no value: {listed(empty)}."
-
-
 def legible(figure):
-    drop_panels(figure)
     merge_series(figure)
     if not re.search(r"\bn( =|:)", figure.caption):
         points = sum(len(finite(s.y)) for panel in figure.panels for s in panel.series)

@@ -121,12 +121,6 @@ def distance(build, scene, each):
     return summary(f"{scene}, {DISTANCES[scene]}", totals)
 
 
-def counters():
-    """What the machine tells about its processor."""
-    said = subprocess.run(["perf", "stat", "-x,", "-e", "cycles", "true"], capture_output=True, text=True).stderr
-    return "none are given here" if "<not" in said or "," not in said else "given here, but no part of this page"
-
-
 def main():
     build, page, *scenes = sys.argv[1:]
     scenes = scenes or SCENES
@@ -140,15 +134,16 @@ def main():
     lines = [
         "# `far-pairs` beside the least that the machine must do", "",
         "Made again by `bash experiments/results.sh profile`, which writes this page.", "",
-        f"- **Device:** {os.cpu_count()} cores, no GPU. Counters of the processor (`perf stat`): {counters()}.",
+        f"- **Device:** {os.cpu_count()} cores, no GPU.",
         f"- **Commit:** {version}.",
         f"- **Load:** {os.getloadavg()[0]:.1f} at the end; medians of {REPEAT} runs in turn in one process for each scene "
         "and number of threads.", "",
         "All times are in ms; a number behind *floor* is the number of threads. A *floor* is the number of items that the run "
         "itself counts, times the time of one kernel for one item, divided by the threads. Kernels run in one thread on "
         "a part of the scene, again and again, so that it stays in the caches and the processor foresees the branches; only "
-        f"reading goes through the whole scene. The least of three times counts. *Fastest peer* is the fastest of {PEERS.replace(',', ', ')}, with the same exact tests of its own "
-        "candidates. A peer whose first run takes more than a second is not asked again ([bench](../bench.md)).", "",
+        "reading goes through the whole scene. The least of three times counts. *Fastest peer* is the fastest of "
+        f"{PEERS.replace(',', ', ')}, with the same exact tests of its own candidates. A peer whose first run takes more than a "
+        "second is not asked again ([bench](../bench.md)).", "",
         *head, *rows, "",
         "## Distances", "",
         "The floor is to read every triangle once. The peers are those of `farcull bench --distances`; the fastest one "

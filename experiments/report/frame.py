@@ -25,7 +25,7 @@ chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` ad
 further devices to any chapter; others are pairs of a device's name and its Study. A figure's
 Panel.strip has Series without y, each a row of its own below the panel.
 
-chapters/stability.py is a short example. A figure should have at most six series a panel; its `n`
+chapters/offsets.py is a short example. A figure should have at most six series a panel; its `n`
 states the size of its sample, and its caption and title say what it shows. Zeros on a logarithmic
 axis need Axis(..., zero=True), and are then drawn at zero.
 """
@@ -39,8 +39,8 @@ import numpy as np
 import pandas as pd
 
 from estimates import *  # noqa: F401,F403: chapters take numbers from here
-from estimates import (NONE, Estimate, counted, estimate_text, grouped, interval_text, listed, median_estimate,
-                       of_all, rounded, share)
+from estimates import (FEWEST_FOR_INTERVAL, NONE, Estimate, counted, estimate_text, exponent_of, exponent_text, grouped,
+                       interval_text, listed, median_estimate, of_all, rounded, share)
 
 
 class Damaged(ValueError):
@@ -111,17 +111,15 @@ class Table:
     caption: str
     columns: list
     rows: list = field(default_factory=list)  # lists of texts as shown
-    in_text: bool = True  # False: too long, so only linked as CSV
 
 
 @dataclass
 class Picture:
-    """arguments: words of `farcull picture`, without -o. panels: from the left, the method in
-    words, and the missed and colliding pairs of its row (None: unknown)."""
+    """arguments: words of `farcull picture`, without -o."""
     name: str
+    title: str
     caption: str
     arguments: list
-    panels: list
 
 
 @dataclass
@@ -371,7 +369,7 @@ def count_cell(row, name):
 
 
 def table_of_rows(name, caption, rows, cells):
-    """A long table. cells: the value of each column by its name: a function of the row, or the
+    """A table with a line for each row. cells: the value of each column by its name: a function of the row, or the
     name of a count (its digits are grouped), `~NAME` (rounded) or `=NAME` (a text)."""
     def filled(row, cell):
         if callable(cell):
@@ -382,17 +380,30 @@ def table_of_rows(name, caption, rows, cells):
 
     sides = ["l" if isinstance(cell, str) and cell[0] == "=" else "r" for cell in cells.values()]
     return Table(name, caption, list(zip(cells, sides)), [[filled(row, cell) for cell in cells.values()] for row in
-                                                          rows.itertuples()], in_text=False)
-
-
-def resolution_cell(none):
-    """A cell of table_of_rows(): the resolution, or `none` where the point has none."""
-    return lambda row: str(row.resolution) if row.resolution > 0 else none
+                                                          rows.itertuples()])
 
 
 def estimate_cell(row):
     """A cell of table_of_rows(): the time with its interval."""
     return estimate_text(estimate(row))
+
+
+def exponents_table(name, x):
+    return Table(
+        name, f"Exponent b of time = a x^b over {x}, by least squares in logarithms over the whole range, with its 95 % "
+        f"interval (Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
+        columns(["x", "method"], ["from", "to", "points", "exponent"]))
+
+
+def times_panel(title, axis, x, methods, exponents, plot):
+    """A panel of times over the column x. methods: for each name, whether it is emphasised, and its rows. Adds the
+    exponents to the table."""
+    out = Panel(title, log(axis, zero=True), log("time (ms)"))
+    for name, (emphasis, rows) in methods.items():
+        out.series.append(times_of(name, rows, x, emphasis=emphasis))
+        if e := exponent_of(out.series[-1].x, out.series[-1].y):
+            exponents.rows.append([plot, name, rounded(e.first), rounded(e.last), grouped(e.points), exponent_text(e)])
+    return out
 
 
 # ---- findings that every chapter has

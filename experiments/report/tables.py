@@ -67,8 +67,8 @@ def table_latex(table):
 
 def rows_csv(study):
     """Everything that the store holds of the study: the axes, all counts and times by their names, the times of the
-    runs, the device, the run, and why nothing was measured."""
-    rows = study.all_rows.drop(columns=["counts", "times", "contestant"])
+    runs, the device, the run, why nothing was measured, and the method as figures name it."""
+    rows = study.all_rows.drop(columns=["counts", "times"])
     rows = rows.assign(runs=[" ".join(map(repr, runs)) for runs in rows.runs],
                        **{name: rows[name].astype(object).replace(none, "") for name, none in (
                            ("resolution", 0), ("frame", -1), ("seed", 0))})

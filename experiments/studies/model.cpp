@@ -54,14 +54,14 @@ PointResult measure_model(const Point& point, Lab& lab) {
   const Plan planned = plan(scene, options);
   const auto& work = std::get<DrawPlan>(planned.work);
   PointResult out{.device = "none", .left_out = "the images of too many triangles overlap"};
-  const std::optional<MissForecast> forecast = forecast_misses(scene, work, options, truth.pairs);
-  if (!forecast) return out;
+  const std::optional<MissPrediction> predicted = predict_misses(scene, work, options, truth.pairs);
+  if (!predicted) return out;
   out.left_out = "";
   ForecastCounts counts{.colliding = truth.pairs.size(),
                         .positions = kPositions,
-                        .expected = forecast->missed,
-                        .low = forecast->low(),
-                        .high = forecast->high(),
+                        .expected = predicted->missed,
+                        .low = predicted->low(),
+                        .high = predicted->high(),
                         .triangles = scene.triangles.size(),
                         .scene_hash = scene_hash(scene)};
   shapes::Random random(1);

@@ -50,7 +50,7 @@ def figure_of(rows):
     return out
 
 
-def tables_of(rows, best):
+def table_of(best):
     out = Table(
         "culling",
         "Pairs that collide, pairs whose boxes overlap, and candidates for each pair that collides: of boxes, of FCL's "
@@ -68,10 +68,7 @@ def tables_of(rows, best):
             if way in (ONE_VIEW, THREE_VIEWS):
                 cells.append(str(ways[way].resolution) if way in ways else "-")
         out.rows.append(cells)
-    return [out, table_of_rows(
-        "culling-all", "Every scene, way to cull and resolution, without neighbours", rows,
-        {"scene": "=scene", "culled by": "=way", "px": resolution_cell("-"), "colliding": "pairs", "candidates": "left",
-         "candidates/colliding": "~left_each"})]
+    return out
 
 
 def add_choice(chapter, best):
@@ -90,15 +87,6 @@ def add_choice(chapter, best):
 
 def add_views(chapter, rows, best):
     """Adds how many candidates views leave if they are requested."""
-    def told(scene):
-        views, boxes = best[scene][THREE_VIEWS], best[scene][BOXES]
-        return (f"{rounded(views.left_each)} candidates for each pair that collides on {scene} (at {views.resolution} "
-                f"px), where boxes leave {rounded(boxes.left_each)}")
-
-    gains = {scene: ways[BOXES].left / ways[THREE_VIEWS].left for scene, ways in best.items()
-             if BOXES in ways and THREE_VIEWS in ways and ways[THREE_VIEWS].left > 0}
-    if gains and (most := max(gains, key=gains.get)) != (least := min(gains, key=gains.get)):
-        chapter.find(f"Three views leave {told(most)}, and {told(least)}.")
     better = [ways[THREE_VIEWS].left < ways[ORIENTED].left for ways in best.values()
               if ORIENTED in ways and THREE_VIEWS in ways]
     if better:
@@ -124,4 +112,4 @@ def fill(chapter, study):
         "Inside an object FAR pairs leaves neighbours to the predicates as well. They are not counted here."]
     add_gaps(chapter, study)
     if len(rows):
-        chapter.figures, chapter.tables = [figure_of(rows)], tables_of(rows, best)
+        chapter.figures, chapter.tables = [figure_of(rows)], [table_of(best)]

@@ -4,8 +4,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 
 METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "FAR pairs", "I-COLLIDE"]
 OBB, EXACT, PLAIN, QUICK, PAIRS, BOXES = METHODS
-NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidates", "triangles", "queries", "draws",
-         "colliding", "missed", "total_ms", "there"]
+NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidates", "queries", "draws", "there"]
 
 
 def frames_of(rows):
@@ -21,18 +20,13 @@ def measured(frames, method):
     return frames.there[method].any()
 
 
-def common(frames, methods):
-    """The frames of which each of these methods has a row. Methods without any row do not count."""
-    return frames[frames.there[[m for m in methods if measured(frames, m)]].notna().all(axis=1)]
-
-
 def factors(frames, method, name, what="kept_triangles"):
     """For each frame in which the method keeps something, count `name` of I-COLLIDE over count `what` of the method."""
     kept = frames[what][method]
     return tuple((frames[name][BOXES] / kept)[kept > 0].dropna())
 
 
-def figures_of(scenes):
+def figure_of(scenes):
     counts = sorted({len(frames) for frames in scenes.values()})
     n = (f"n = {'' if len(counts) == 1 else f'{counts[0]} to '}{counted(counts[-1], 'frame', 'frames')} of each scene, "
          "each run once.")
@@ -41,7 +35,7 @@ def figures_of(scenes):
     def line(name, values, **look):
         return Series(name, list(values.index), list(values), **look)
 
-    kept = Figure(
+    return Figure(
         "efficiency", "Triangles that are left to exact tests, frame by frame",
         "I-COLLIDE as published ends with the objects whose boxes meet (all their triangles), ours goes on to boxes of "
         f"triangles. FAR is drawn with both offsets. No method can leave fewer than the triangles that collide. {n}",
@@ -52,56 +46,18 @@ def figures_of(scenes):
                 for method in (OBB, EXACT, PAIRS) if measured(frames, method)] + [
                     line("colliding triangles", frames.colliding_triangles[BOXES], style="lines")])
          for scene, frames in scenes.items()])
-    quick = Figure(
-        "efficiency-quick", "What Quick-CULLIDE asks and draws over what CULLIDE does, frame by frame",
-        "Each runs until a round changes nothing. Below 1 Quick-CULLIDE does less. Both miss pairs, so they do not "
-        f"have the same answer. {n}",
-        [Panel(what, axis, Axis("Quick-CULLIDE / CULLIDE", low=0), [
-            line(scene, (frames[what][QUICK] / frames[what][PLAIN]).where(frames[what][PLAIN] > 0))
-            for scene, frames in scenes.items() if measured(frames, QUICK)], [Mark(1, "as many", vertical=False)])
-         for what in ("queries", "draws")])
-    return [kept, quick]
 
 
-def cell(count):
-    return "-" if count != count else grouped(count)
-
-
-def quick_row(scene, frames):
-    over = common(frames, [QUICK, PLAIN, BOXES, OBB, EXACT])
-    sums = over.sum(min_count=1)
-    missed = sums.missed
-    return ([scene, grouped(len(over))] +
-            [rounded(sums[what][QUICK] / sums[what][PLAIN]) for what in ("queries", "draws")] +
-            [cell(count) for count in (sums.colliding[BOXES], missed[PLAIN], missed[QUICK],
-                                       missed[[OBB, EXACT]].sum(min_count=1))])
-
-
-def tables_of(scenes):
-    ends = "with the least and the largest"
-    return [
-        Table("efficiency-factors",
-              "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles "
-              f"whose boxes meet, and pairs of them; median of the frames in which FAR keeps something, {ends}",
-              columns(["scene", "offset"], ["frames", "objects", "triangles", "pairs"]),
-              [[scene, offset, grouped(len(factors(frames, method, "object_triangles"))),
-                spread(factors(frames, method, "object_triangles")),
-                spread(factors(frames, method, "kept_triangles")),
-                spread(factors(frames, method, "candidates", "candidates"))]
-               for scene, frames in scenes.items() for method, offset in ((OBB, "OBB"), (EXACT, "exact"))
-               if measured(frames, method)]),
-        Table("efficiency-quick",
-              "Quick-CULLIDE against CULLIDE, summed over the frames that all of them have: queries and draws as a "
-              "part of CULLIDE's, and the colliding pairs that each misses; a pair counts once in each frame",
-              columns(["scene"], ["frames", "queries", "draws", "colliding", "CULLIDE misses", "Quick-CULLIDE misses",
-                                  "FAR misses"]),
-              [quick_row(scene, frames) for scene, frames in scenes.items() if measured(frames, QUICK)]),
-        Table("efficiency-times",
-              "Time in ms from moved vertices to exact pairs: median of the frames that all methods of the scene have, "
-              f"{ends}; each frame is run once", columns(["scene"], ["triangles", "frames"] + METHODS),
-              [[scene, cell(frames.triangles[BOXES].iloc[0]), grouped(len(over))] +
-               [spread(over.total_ms[method].dropna()) for method in METHODS]
-               for scene, frames in scenes.items() for over in [common(frames, METHODS)]])]
+def table_of(scenes):
+    return Table(
+        "efficiency-factors",
+        "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles whose boxes "
+        "meet, and pairs of them; median of the frames in which FAR keeps something, with the least and the largest",
+        columns(["scene", "offset"], ["frames", "objects", "triangles", "pairs"]),
+        [[scene, offset, grouped(len(objects)), spread(objects), spread(factors(frames, method, "kept_triangles")),
+          spread(factors(frames, method, "candidates", "candidates"))]
+         for scene, frames in scenes.items() for method, offset in ((OBB, "OBB"), (EXACT, "exact"))
+         if measured(frames, method) for objects in [factors(frames, method, "object_triangles")]])
 
 
 def add_factors(chapter, scenes):
@@ -155,4 +111,4 @@ def fill(chapter, study):
         "carry over."]
     add_gaps(chapter, study)
     if scenes:
-        chapter.figures, chapter.tables = figures_of(scenes), tables_of(scenes)
+        chapter.figures, chapter.tables = [figure_of(scenes)], [table_of(scenes)]

@@ -1,5 +1,7 @@
 """Errors against time with a row for each method that is never wrong, the Pareto front of each scene, and CULLIDE in
 the time that FAR takes."""
+from collections import Counter
+
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "FAR pairs")
@@ -46,8 +48,8 @@ class Group:
 
     @property
     def title(self):
-        words = [self.kind] * bool(self.kind) + [f"{self.seeds} seeds"] * (self.seeds > 1)
-        return self.name + (f" ({', '.join(words)})" if words else "")
+        words = f"{self.seeds} seeds" if self.seeds > 1 else self.kind
+        return self.name + (f" ({words})" if words else "")
 
     def front(self):
         """The Pareto front: no other entry is as good in both time and error, and better in one. Fastest first; of
@@ -79,7 +81,7 @@ def entry_of(rows):
 
 def kind_of(scene):
     """scene: the entry of the program for it."""
-    return "scan" if scene.get("needs_meshes") else "random" if "seed" in scene else "smooth" if scene else ""
+    return "scan" if scene.get("needs_meshes") else "smooth" if scene and "seed" not in scene else ""
 
 
 def groups_of(rows, scenes):
@@ -188,8 +190,8 @@ def figure_of(groups):
         "Points: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
         "median time from triangles to pairs, with its interval as a bar. Lines follow the resolution. Rows, on "
         "the same time axis: the methods that made no error in this scene, FAR (OBB) at every second resolution; "
-        "the others are in the table. CULLIDE (strict): one round, conservative rasterization, all views have to clear "
-        "a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
+        "the others are in the CSV of all rows. CULLIDE (strict): one round, conservative rasterization, all views have to "
+        "clear a triangle. On one object, CULLIDE is S-CULLIDE. Of scenes that are drawn with several "
         "seeds, the sum of the errors and the median of the times.", error_panels(titles, labels, points))
     if summary:
         error.caption += (
@@ -205,10 +207,10 @@ def figure_of(groups):
 def front_table(groups):
     out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are medians "
                 f"of the ratios of runs in the same turn, with their intervals. {sample_of(groups)}",
-                columns(["scene", "method"], ["time over that of exact", "missed", "wrong", "colliding"]))
+                columns(["scene", "method"], ["ms", "time over that of exact", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()
-        out.rows += [[group.name, e.words, times_as_long(e, peer) if peer else "-", grouped(e.missed),
+        out.rows += [[group.name, e.words, rounded(e.ms), times_as_long(e, peer) if peer else "-", grouped(e.missed),
                       grouped(e.wrong), grouped(e.colliding)] for e in group.front()]
     return out
 
@@ -235,22 +237,10 @@ def equal_table(groups):
     return out
 
 
-def all_table(rows):
-    def ms(name):
-        return lambda row: rounded(value(row, name))
-
-    return table_of_rows("error-time-all", "All points; times are medians with the fastest and slowest run", rows, {
-        "scene": "=scene", "method": "=contestant", "resolution": resolution_cell("-"), "ms": ms("total_ms"),
-        "fastest": lambda row: rounded(min(row.runs, default=None)),
-        "slowest": lambda row: rounded(max(row.runs, default=None)), "missed": "missed",
-        "wrong": lambda row: grouped(number(row, "wrong")), "candidates": "candidates", "colliding": "colliding",
-        "false positives": lambda row: rounded(false_positives(row))})
-
-
 # ---- findings
 
 def add_equal_times(chapter, groups):
-    """Adds, for each scene, the fastest FAR and the best CULLIDE of the same time."""
+    """Adds in how many cases the best CULLIDE of the same time as FAR misses pairs; the table names each."""
     cases = [best for group in groups for _, best in equal_times(group)]
     if not cases:
         return
@@ -258,29 +248,13 @@ def add_equal_times(chapter, groups):
     chapter.find("In the time that FAR (OBB) takes, the best CULLIDE (of all forms and resolutions that were measured) "
                  f"misses pairs in {of_all(missing, len(cases))} cases of scene and resolution of FAR" +
                  (f", and no CULLIDE is as fast in {grouped(slower)}." if slower else "."))
-    for group in groups:
-        far, best = min(equal_times(group), key=lambda pair: pair[0].ms, default=(None, None))
-        if best:
-            chapter.find(f"{group.name}: FAR (OBB) is fastest at {far.pixels} px ({rounded(far.ms)} ms, "
-                         f"{of_all(far.missed, far.colliding)} missed); within that time {best.words} misses the "
-                         f"fewest, {of_all(best.missed, best.colliding)} ({rounded(best.ms)} ms).")
 
 
-def add_front(chapter, group):
-    """Adds the fastest method without an error, the next one, and methods that are faster with errors."""
-    right = sorted((e for e in group.entries if e.error == 0), key=lambda e: e.ms)
-    if not group.entries:
-        return
-    if not right:
-        chapter.find(f"No method is without an error on {group.name}.")
-        return
-    best, after = right[0], next((e for e in right if e.name != right[0].name), None)
-    chapter.find(f"Fastest method without an error on {group.title}: {best.words}, {rounded(best.ms)} ms" +
-                 (f"; the next method, {after.words}, takes {times_as_long(after, best)} times as long." if after
-                  else "."))
-    faster = [f"{e.words} ({of_all(e.error, e.colliding)} wrong, {rounded(e.ms)} ms)" for e in group.front() if e.error]
-    if faster:
-        chapter.find(f"Faster on {group.name}, with errors: {listed(faster)}.")
+def add_fastest(chapter, groups):
+    """Adds which methods are the fastest without an error."""
+    right = [min((e for e in group.entries if e.error == 0), key=lambda e: e.ms, default=None) for group in groups]
+    times = Counter(entry.name if entry else "no method" for entry in right).most_common()
+    chapter.find(f"Fastest without an error: {listed(f'{name} on {of_all(n, len(groups))} scenes' for name, n in times)}.")
 
 
 def fill(chapter, study):
@@ -288,8 +262,8 @@ def fill(chapter, study):
     groups = groups_of(rows, study.constants["scenes"])
     add_promises(chapter, study)
     add_equal_times(chapter, groups)
-    for group in groups:
-        add_front(chapter, group)
+    if groups:
+        add_fastest(chapter, groups)
     for name in ("fcl-float", "fcl-double", "ode-trimesh"):  # libraries with a test of triangles of their own
         of = rows[rows.method == name]
         if len(of):
@@ -310,5 +284,4 @@ def fill(chapter, study):
     add_gaps(chapter, study)
     if groups:
         chapter.figures = [figure_of(groups)]
-        chapter.tables = [t for t in (front_table(groups), equal_table(groups), all_table(rows))
-                          if t.rows or t.name != "error-time-equal"]
+        chapter.tables = [table for table in (front_table(groups), equal_table(groups)) if table.rows]

@@ -6,17 +6,11 @@ second are the parts of one answer about a mesh.
 from dataclasses import dataclass
 
 from frame import *  # noqa: F403: a chapter uses most of it
+from tables import table_csv
 
-REFERENCE = "far-pairs"  # of equals the one that is drawn
 # The counts of a score, in the order of peers/score.cpp.
 SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
-# Panels of figures: contestants by the first word of their library; the last panel has all others.
-GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet and ODE": ["Bullet", "ODE"],
-          "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"], "tests of papers, others": []}
-PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
-              "far-away": "distance from the origin, in sizes"}
-WRONG = "wrong answers per million"
 FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
@@ -25,14 +19,12 @@ KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "copla
 # ---- rows and their sums
 
 def with_families(rows):
-    """The rows with the columns family (`pairs/random` for `small/pairs/random`), pairs (False: of meshes), group (the
-    panel of figures), and the columns of text without gaps."""
-    rows = rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], **{
+    """The rows with the columns family (`pairs/random` for `small/pairs/random`) and pairs (False: of meshes), and the
+    columns of text without gaps."""
+    return rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], pairs=rows.scene.str.match(
+        "[^/]*/pairs/"), **{
         name: [text(row, name) for row in rows.itertuples()]
-        for name in ("library", "means", "call", "says", "source", "use", "scores", "reason")})
-    title_of = {word: title for title, words in GROUPS.items() for word in words}
-    return rows.assign(pairs=rows.scene.str.match("[^/]*/pairs/"),
-                       group=[title_of.get(library.split(" ")[0], list(GROUPS)[-1]) for library in rows.library])
+        for name in ("library", "means", "call", "says", "source", "use", "scores")})
 
 
 def totals(rows, *names):
@@ -63,17 +55,18 @@ def answers(rows, pairs, own):
     return missed, asked, false, asked if pairs else asked - missed + false
 
 
-def scores_of(rows):
-    """The scores of all rows, with contestant, family, parameter, kind and counts."""
+def rates_of_kinds(rows):
+    """Wrong answers per million by contestant and kind, from the scores of the rows."""
     out = []
     for row in rows.itertuples():
         for score in row.scores.split(";") if row.scores else []:
             words = score.partition("|")[0].split()
             if "|" not in score or len(words) != len(SCORE) + 3:
                 raise Damaged(f"'{score}' is no score of this version of farcull")
-            out.append([row.method, row.family, abs(float(words[0])), words[1]] + [int(word) for word in words[2:-1]])
-    names = ["contestant", "family", "parameter", "kind"]
-    return pd.DataFrame(out, columns=names + SCORE).astype({name: int for name in SCORE})
+            out.append([row.method, words[1], *map(int, words[2:-1])])
+    counts = pd.DataFrame(out, columns=["contestant", "kind", *SCORE]).astype({name: int for name in SCORE})
+    sums = counts.groupby(["contestant", "kind"]).sum()
+    return {row.Index: per_million(row.missed + row.wrong, row.answered) for row in sums.itertuples()}
 
 
 # ---- tables
@@ -111,15 +104,13 @@ def overview(rows, pairs):
     return out
 
 
-def kinds_table(scores, contestants):
-    sums = scores.groupby(["contestant", "kind"])[SCORE].sum()
-    sums = sums.reindex(pd.MultiIndex.from_product([contestants, KINDS]), fill_value=0)
-    rates = [per_million(row.missed + row.wrong, row.answered) for row in sums.itertuples()]
+def kinds_table(rows):
+    rates = rates_of_kinds(rows)
     return Table(
         "libraries-kinds",
         "Wrong answers (missed or false alarms) per million answers about pairs of each kind of contact, degenerate "
         "triangles among them; -: none was asked", columns(["contestant"], KINDS),
-        [[name] + rates[i * len(KINDS):][:len(KINDS)] for i, name in enumerate(contestants)])
+        [[name] + [rates.get((name, kind), "-") for kind in KINDS] for name in rows.method.unique()])
 
 
 def calls_table(rows):
@@ -146,17 +137,7 @@ def families_table(rows):
         "Missed / false alarms per million answers and refused / deaths per million pairs that were asked, of each "
         "family, by closed triangles; of meshes the counts", columns(["contestant"] + families, []),
         [[contestant] + [cell(of[of.family == family]) for family in families]
-         for contestant, of in by(rows, "method")], in_text=False)
-
-
-def all_table(rows):
-    return table_of_rows(
-        "libraries-all", "Every contestant on every family and mesh; of a mesh, asked are its colliding pairs", rows,
-        {"scene": "=scene", "contestant": "=method", "asked": "asked", "missed, own": "own_missed",
-         "false, own": "own_wrong", "missed": "missed", "false": "wrong", "refused": "refused",
-         "unanswered": "unanswered", "crashed": "crashed", "hung": "hung", "no memory": "no_memory",
-         "first missed": "first_missed", "first false": "first_wrong", "first death": "first_death",
-         "first reason": "=reason"})
+         for contestant, of in by(rows, "method")])
 
 
 # ---- figures
@@ -165,8 +146,7 @@ def time_figure(rows):
     """A row for each contestant, first those that err least."""
     out, points = Figure(
         "libraries-time", "Wrong answers, and the time of a question, by contestant",
-        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean "
-        "time of a "
+        "Of closed triangles: missed pairs and false alarms, per million pairs that were answered, and the mean time of a "
         "question as the contestant's own process measured it. Neighbours are asked of those alone that know them. n = "
         f"{grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
     for name, of in by(rows, "method"):
@@ -174,37 +154,9 @@ def time_figure(rows):
         if said and timed:
             points.append((name, *(1e6 * total(of, fault) / said for fault in ("missed", "wrong")), 1e6 * ms / timed))
     points.sort(key=lambda point: (point[1] + point[2], point[3]))
-    for at, (title, axis) in enumerate(() if not points else (("missed", log("per million", zero=True)),
-                                                              ("false alarms", log("per million", zero=True)),
-                                                              ("time", log("ns a pair")))):
-        out.panels.append(Panel(title, axis, strip=[
-            Series(point[0], [point[at + 1]], style="points") for point in points]))
-    return out
-
-
-def parameter_figure(chapter, scores, groups):
-    """The best contestant of each kind over the parameter of a family. Adds all of them to the chapter as a table."""
-    table = Table("libraries-parameters", "Wrong answers per million, by the parameter of a family, without its sign",
-                  columns(["family", "contestant"], ["parameter", WRONG, "answered"]), in_text=False)
-    out, best = Figure("libraries-parameters", "Wrong answers of the best contestant of each kind, by parameter"), []
-    for family, label in PARAMETERS.items():
-        sums = scores[(scores.family == "pairs/" + family) & (scores.answered > 0)].groupby(
-            ["contestant", "parameter"])[SCORE].sum()
-        rates = 1e6 * (sums.missed + sums.wrong) / sums.answered
-        table.rows += [[family, name, rounded(at), rounded(rate), grouped(sums.answered[name, at])]
-                       for (name, at), rate in rates.items()]
-        panel = Panel(family, log(label, zero=True), log(WRONG, zero=True, high=1e6))
-        for title in GROUPS:
-            here = [name for name in groups if groups[name] == title and name in rates.index.unique(0)]
-            if here:
-                name = min(here, key=lambda name: (rates[name].mean(), name != REFERENCE))
-                of = rates[name]
-                panel.series.append(Series(title, list(of.index), list(of), emphasis=title == "farcull"))
-                best.append(f"{family}, {title}: {name}")
-        out.panels += [panel] * bool(panel.series)
-    out.caption = ("Missed or false alarms, of those pairs of the family with that parameter, without its sign. Of "
-                   f"each kind the contestant with the least mean: {'; '.join(best)}. All are in {table.name}.csv.")
-    chapter.tables += [table] * bool(table.rows)
+    out.panels = [Panel(title, axis, strip=[Series(point[0], [point[at + 1]], style="points") for point in points])
+                  for at, (title, axis) in enumerate((("missed", log("per million", zero=True)), (
+                      "false alarms", log("per million", zero=True)), ("time", log("ns a pair"))))] * bool(points)
     return out
 
 
@@ -232,42 +184,22 @@ def add_ours(chapter, rows):
             chapter.find(f"{name} missed none and reported none wrongly {', and '.join(what)}.")
 
 
-def own_errors(rows, pairs):
-    """The share of answers that are wrong by the contestant's own documentation, NaN if that promises none of them; and
-    the share in words."""
-    missed, asked, false, reported = answers(rows, pairs, True)
-    whole = asked if pairs else asked + false  # pairs that collide or were reported
-    return (missed + false) / whole if whole else NONE, of_all(missed + false, asked) if pairs else \
-        f"{of_all(missed, asked)}, {of_all(false, reported)}"
-
-
 def add_others(chapter, rows, pairs):
-    """Adds the contestants that do not promise: those right by their own documentation, the others, those that died."""
-    right, wrong, published, changing, dead = [], [], [], [], []
-    for name, of in by(rows, "method"):
-        if flag(next(of.itertuples()), "promises"):
-            continue
-        if of.library.iloc[0] == "farcull":
-            published.append(f"{name} ({of_rows(of, 'missed', 'answered')})")
-            continue
-        dead += [f"{name} ({grouped(deaths(of))})"] * bool(deaths(of))
-        changing += [f"{name} ({differing(of)})"] * bool(total(of, "differing"))
-        part, words = own_errors(of, pairs)
-        right += [name] * (part == 0)
-        wrong += [(part, f"{name} ({words})")] * (part > 0)
-    wrong.sort(key=lambda one: -one[0])
-    of_all_such = ("wrong answers to questions of which their documentation promises the answer, of all such that were "
-                   "answered" if pairs else
-                   "wrong answers where their documentation promises the answer (first the missed pairs of those that "
-                   "collide, then the false alarms of those that were reported)")
-    for start, who in (
-            ("these gave no wrong answer by their own documentation", right),
-            (of_all_such, [words for _, words in wrong]),
-            ("missed by methods as they were published, which promise nothing below the size of a pixel", published),
-            ("answered otherwise when they were asked again", changing),
-            ("questions at which the process crashed, hung or ran out of memory", dead)):
-        if who:
-            chapter.find(f"Of {'pairs of triangles' if pairs else 'meshes'}, {start}: {listed(who)}.")
+    """Adds which libraries and tests are right by their own documentation; of the others those that err most and least."""
+    right, wrong, what = [], [], "pairs of triangles" if pairs else "meshes"
+    for name, of in by(rows[rows.library != "farcull"], "method"):
+        missed, asked, false, reported = answers(of, pairs, True)
+        words = of_all(missed + false, asked) if pairs else \
+            f"{of_all(missed, asked)} missed, {of_all(false, reported)} false"
+        if missed + false:
+            wrong.append(((missed + false) / (asked if pairs else asked + false), f"{name} ({words})"))
+        elif asked:
+            right.append(name)
+    if right:
+        chapter.find(f"Of {what}, these gave no wrong answer by their own documentation: {listed(right)}.")
+    if wrong:
+        chapter.find(f"Of {what}, {of_all(len(wrong), len(wrong) + len(right))} libraries and tests gave wrong answers where "
+                     f"their documentation promises the answer: most often {max(wrong)[1]}, least often {min(wrong)[1]}.")
 
 
 # ---- the smallest pair of each kind of fault of each library, as a table and in the format of the suite
@@ -345,11 +277,10 @@ def fill(chapter, study):
         "for meshes looks slow on pairs."]
     add_gaps(chapter, study)
     if len(pairs):
-        scores, groups = scores_of(pairs), dict(pairs.drop_duplicates("method")[["method", "group"]].values)
-        chapter.tables = [overview(pairs, True), kinds_table(scores, list(groups))]
+        chapter.tables = [overview(pairs, True), kinds_table(pairs)]
         add_examples(chapter, pairs[pairs.library != "farcull"])
-        figures = [time_figure(pairs), parameter_figure(chapter, scores, groups)]
-        chapter.figures += [figure for figure in figures if figure.panels]
+        chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
     chapter.tables += [overview(meshes, False)] * bool(len(meshes))
     if len(rows):
-        chapter.tables += [calls_table(rows), families_table(rows), all_table(rows)]
+        chapter.tables.append(calls_table(rows))
+        chapter.files["tables/libraries-families.csv"] = table_csv(families_table(rows))

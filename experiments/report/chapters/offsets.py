@@ -8,12 +8,10 @@ MEASURES = {"kept triangles": "kept_triangles", "false pos. / colliding": "false
 CAPTION = (
     "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one "
     "than they collide with, FAR pairs those that are in a candidate pair. False positives: pairs handed to exact "
-    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle "
-    "is stored "
-    "or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
-    "each "
-    "triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with their "
-    "intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
+    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle is "
+    "stored or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
+    "each triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with "
+    "their intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
 
 
 def figure_of(rows):
@@ -21,21 +19,20 @@ def figure_of(rows):
     return Figure("offsets", "Triangles and candidates that are left, fragments, and time, by resolution",
                   f"{CAPTION} {sample_text(rows)}.", [
                       Panel(scene if at == 0 else "", log("resolution (px)"), log(label, zero=True), [
-                          times_of(method, track, "resolution") if of == TIME else
-                          series_of(method, track, "resolution", of) for method, track in by(here, "contestant")])
+                          times_of(method, track, "resolution", emphasis=method == BOX) if of == TIME else
+                          series_of(method, track, "resolution", of, emphasis=method == BOX)
+                          for method, track in by(here, "contestant")])
                       for at, (label, of) in enumerate(MEASURES.items()) for scene, here in scenes],
                   columns=len(scenes))
 
 
 def table_of(rows):
-    out = table_of_rows(
+    return table_of_rows(
         "offsets", "Boxes, exact offsets and intervals; times are medians of the runs with their intervals. " +
         sample_text(rows), rows,
         {"scene": "=scene", "resolution (px)": lambda row: str(row.resolution), "method": "=contestant",
          "kept triangles": "kept_triangles", "candidates": "candidates", "false positives": "~false_positives",
          "fragments": "fragments", "time (ms)": estimate_cell})
-    out.in_text = True
-    return out
 
 
 def beside(rows, a, b):

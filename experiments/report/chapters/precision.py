@@ -37,38 +37,16 @@ def drawn(rows):
     return NONE if steps == 0 and total(rows, "no_sample") else steps
 
 
-def not_drawn(rows):
-    """Sentences of the caption about violations that no line shows."""
-    samples, endless, gaps = [], [], False
-    for (line, bits), part in grouped_by(rows, ["line", "bits"]):
-        sides = grouped_by(part, ["resolution", "depth"])
-        lacking = sorted({depth for (_, depth), cell in sides if total(cell, "no_sample")})
-        beyond = sorted({depth for (_, depth), cell in sides if math.isinf(most(cell, "largest_steps"))})
-        gaps = gaps or any(math.isnan(drawn(cell)) for _, cell in sides)
-        at = [f"(depth {listed(rounded(d) for d in depths)} px)" for depths in (lacking, beyond)]
-        if lacking:
-            samples.append(f"{line}, {bits} {of_rows(part, 'no_sample', 'points')} {at[0]}")
-        if beyond:
-            endless.append(f"{line}, {bits} {at[1]}")
-    out = ""
-    if samples:
-        out += f" Points whose pixel has no sample have no distance and are in no line: {listed(samples)}."
-        out += " Where there are no others the line has a gap." if gaps else ""
-    if endless:
-        out += f" Farther outside than a number says, and in no line: {listed(endless)}."
-    return out
-
-
 def figure_of(rows, rounding):
     out = Figure("precision", "How far depth buffers are outside the bounds they should give",
                  f"The largest violation over all generators, n = {grouped(total(rows, 'points'))} points of "
                  "triangles. At 0 no sample is outside. Up to the mark a monotone rounding explains it, which the "
-                 "theorem allows." + not_drawn(rows))
+                 "theorem allows. A point whose pixel has no sample has no distance; the table counts these.")
     for (bits, side), here in grouped_by(rows, ["bits", "resolution"]):
         rounding = {**rounding, "16": ROUNDING_16}
         panel = Panel(f"{bits}, {side} px", log("depth of the scene (px)"), log("outside (depth steps)", zero=True),
                       marks=[Mark(rounding[bits[:2]], "rounding of the map", vertical=False)])
-        for line, of in grouped_by(here, "line"):
+        for line, of in sorted(grouped_by(here, "line"), key=lambda pair: pair[0] != OURS):
             depths = grouped_by(of, "depth")
             panel.series.append(Series(line, [d for d, _ in depths], [drawn(cell) for _, cell in depths],
                                        emphasis=line == OURS))
@@ -76,43 +54,24 @@ def figure_of(rows, rounding):
     return out
 
 
-def sums(rows):
-    return [grouped(total(rows, name)) for name in COUNTS] + [
-        rounded(most(rows, "largest_steps")), rounded(most(rows, "largest_px"))]
-
-
-def tables_of(rows):
-    short = Table("precision", "Points over all generators, sides and depths: without a sample, not bounded, and "
-                  "outside by no more than rounding; how far outside at most",
-                  columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)",
-                                                   "most (px)"]),
-                  [[*key, *sums(of)] for key, of in grouped_by(rows, ["line", "bits"])])
-    cells = Table("precision-depths", "Points over all generators, at every side and depth: without a sample, not "
-                  "bounded, and outside by no more than rounding",
-                  columns(["depth by", "buffer"], ["side (px)", "depth (px)", "step (px)", "points", "no sample",
-                                                   "not bounded", "rounded", "most (steps)", "most (px)"]),
-                  [[line, bits, grouped(side), grouped(depth), rounded(column(of, "step_px").iloc[-1]), *sums(of)]
-                   for (line, bits, side, depth), of in grouped_by(rows, ["line", "bits", "resolution", "depth"])],
-                  in_text=False)
-    return [short, cells, table_of_rows("precision-all", "All points", rows, {
-        "generator": "=generator", "depth (px)": lambda row: grouped(row.depth), "depth by": "=line",
-        "buffer": "=bits", "side (px)": lambda row: str(row.resolution), "points": "points",
-        "no sample": "no_sample", "not bounded": "not_bounding", "rounded": "rounded",
-        "most (steps)": "~largest_steps", "most (px)": "~largest_px"})]
+def table_of(rows):
+    return Table("precision", "Points over all generators, sides and depths: without a sample, not bounded, and "
+                 "outside by no more than rounding; how far outside at most",
+                 columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)",
+                                                  "most (px)"]),
+                 [[*key, *(grouped(total(of, name)) for name in COUNTS), rounded(most(of, "largest_steps")),
+                   rounded(most(of, "largest_px"))] for key, of in grouped_by(rows, ["line", "bits"])])
 
 
 def add_violations(chapter, rows):
-    """Adds each violation of fragment depth at the budget radius; returns whether there is one."""
-    broken = False
+    """Adds each violation of fragment depth at the budget radius that is not of a row that promises."""
     for row in rows[rows.line == OURS].itertuples():
         violations = number(row, "no_sample") + number(row, "not_bounding")
-        broken = broken or violations > 0
         if violations and not breaks(row):  # else reported already
             chapter.find_broken(
                 f"fragment depth at the budget radius, {row.bits}, {row.resolution} px, scene {row.depth:g} px deep: "
                 f"{of_all(violations, number(row, 'points'))} points of the generator \"{row.generator}\" have no "
                 f"sample or are not bounded, by up to {rounded(value(row, 'largest_steps'))} steps.")
-    return broken
 
 
 def add_deep_windows(chapter, rows):
@@ -129,29 +88,10 @@ def add_deep_windows(chapter, rows):
                      f"{rounded(chord.max())} px: {of_all(lost, total(deep, 'points'))} points are violated there.")
 
 
-def add_findings(chapter, rows):
-    broken = add_violations(chapter, rows)
-    for (line, bits), of in grouped_by(rows, ["line", "bits"]):
-        if broken and line == OURS:
-            continue
-        points, no_sample, not_bounding, after = (total(of, name) for name in COUNTS)
-        steps = rounded(most(of, "largest_steps"))
-        if no_sample + not_bounding == 0:
-            words = (f"all {grouped(points)} points have samples that bound them" +
-                     (f", {grouped(after)} of them after rounding of up to {steps} steps." if after
-                      else ", none even by rounding outside."))
-        else:
-            worst = of.generator.iloc[int(np.argmax(column(of, "largest_steps").fillna(math.inf)))]
-            words = f"{of_all(no_sample, points)} points have no sample, {grouped(not_bounding)} are not bounded"
-            words += (f", the worst by {steps} steps, {rounded(most(of, 'largest_px'))} px ({worst})."
-                      if not_bounding else ".")
-        chapter.find(f"{line}, {bits}: {words}")
-
-
 def fill(chapter, study):
     rows = with_axes(study.rows)
     add_promises(chapter, study)
-    add_findings(chapter, rows)
+    add_violations(chapter, rows)
     add_deep_windows(chapter, rows)
     chapter.limits = [
         "A violation is decided on what the buffer holds against the exact depth of the point under the exact depth "
@@ -164,4 +104,4 @@ def fill(chapter, study):
     add_gaps(chapter, study)
     if len(rows):
         chapter.figures = [figure_of(rows, study.constants["depth_rounding"])]
-        chapter.tables = tables_of(rows)
+        chapter.tables = [table_of(rows)]

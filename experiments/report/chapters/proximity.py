@@ -12,7 +12,7 @@ NAMES = {"boxes": BOXES, "trees": TREES, "voronoi": PUBLISHED, "voronoi-reliable
          "voronoi-reliable --widening 0": NARROW}
 DIAGRAMS = [PUBLISHED, RELIABLE, NARROW]
 CELLS = "cells along the scene"
-SUMS = ["with_nearest", "missed", "set_objects", "set_triangles"]
+SUMS = ["with_nearest", "missed", "set_triangles"]
 
 
 def with_names(rows):
@@ -32,8 +32,7 @@ class SetScene:
     def __init__(self, base, rows, at):
         rows = rows.assign(**{name: column(rows, name) for name in SUMS})
         self.base, self.seeds, self.sums = base, rows.scene.nunique(), rows.groupby(["name", at])[SUMS].sum()
-        for what in ("objects", "triangles"):
-            self.sums[what + "_each"] = (self.sums["set_" + what] / self.sums.with_nearest).fillna(0)
+        self.sums["triangles_each"] = (self.sums.set_triangles / self.sums.with_nearest).fillna(0)
 
     def of(self, method):
         return self.sums.loc[method] if method in self.sums.index else self.sums.iloc[:0]
@@ -111,9 +110,9 @@ def lost_figure(scenes):
     scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
     return Figure(
         "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
-        "An object is lost if none of its nearest neighbours is in its set. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
-        "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost "
-        f"are in the table. {objects_text(scenes)}.",
+        "An object is lost if none of its nearest neighbours is in its set. clusters:R has clusters whose sides are 1/R of "
+        "that of the scene. Not widened: the reliable form without the half diagonal of a cell that its proof asks for. "
+        f"Scenes of which nothing is lost are in the table. {objects_text(scenes)}.",
         [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
             series for method in DIAGRAMS if (series := lost_series(scene, method)).x])
          for scene in scenes])
@@ -122,38 +121,26 @@ def lost_figure(scenes):
 def lost_table(scenes, sizes):
     return Table(
         "proximity-lost",
-        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the "
-        "diagram was left out or not asked "
-        "for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
+        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the diagram "
+        "was left out or not asked for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
         [[scene.base, method, grouped(of.with_nearest.iloc[0])] +
          ["-" if count != count else grouped(count) for count in of.missed.reindex(sizes)]
          for scene in scenes for method in DIAGRAMS if len(of := scene.of(method))])
 
 
-def size_figure(scenes, what):
+def size_figure(scenes):
     out = Figure(
-        "proximity-triangles" if what == "triangles" else "proximity-set-objects",
-        f"{what.capitalize()} per set against the resolution",
+        "proximity-triangles", "Triangles per set against the resolution",
         "Mean over the objects that have a nearest neighbour. The published form and boxes take objects with all their "
         "triangles, or all those near enough; trees and the reliable form take triangles. The published form may be "
         f"below what holds all nearest neighbours. {objects_text(scenes)}.")
     for scene in scenes:
-        series = [scene.series(method, what + "_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
+        series = [scene.series(method, "triangles_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
         if series:  # boxes and trees have no cells, so they are the same at each resolution
-            x, levels = series[0].x, [(method, scene.value(method, 0, what + "_each")) for method in (BOXES, TREES)]
+            x, levels = series[0].x, [(method, scene.value(method, 0, "triangles_each")) for method in (BOXES, TREES)]
             series += [Series(method, x, [y] * len(x), "lines") for method, y in levels if y == y]
-            out.panels.append(Panel(scene.base, log(CELLS), log(f"{what} per object", zero=True), series))
+            out.panels.append(Panel(scene.base, log(CELLS), log("triangles per object", zero=True), series))
     return out
-
-
-def frames_figure(scenes):
-    return Figure(
-        "proximity-frames", "Triangles per set, frame by frame",
-        "Mean over the objects that have a nearest neighbour in that frame; each frame is searched anew. "
-        f"{objects_text(scenes)}.",
-        [Panel(scene.base, Axis("frame"), log("triangles per object", zero=True), [
-            scene.series(method, "triangles_each") for method in (BOXES, PUBLISHED, RELIABLE, TREES)
-            if len(scene.of(method))]) for scene in scenes])
 
 
 def efficiency_table(rest, moving, finest):
@@ -189,22 +176,14 @@ def add_sets(chapter, rest, sizes):
 
 # ---- times and distances
 
-def count_figure(chapter, rows, exponents):
+def count_figure(rows, exponents):
     drawn, out = [], Figure("proximity-objects", "Time against the number of objects")
     for what, title, part in (("sets", "sets: crowd:N", rows[rows.sets]),
                               ("distances", "distances to the nearest: crowd:N", rows[~rows.sets])):
-        panel, said = Panel(title, log("objects", zero=True), log("time (ms)")), []
-        for name, of in by(part[part.counts], "name"):
-            drawn.append(of.assign(objects=column(of, "objects")).sort_values("objects", kind="stable"))
-            series = times_of(name, drawn[-1], "objects", emphasis=name in (TREES, "farcull"))
-            panel.series.append(series)
-            if e := exponent_of(series.x, series.y):
-                said.append(f"{name} {exponent_text(e)}")
-                exponents.rows.append([what, name, rounded(e.first), rounded(e.last), grouped(e.points),
-                                       exponent_text(e)])
-        if said:
-            chapter.find(f"Exponent of time over objects, of {what}, with its 95 % interval: {listed(said)}.")
-        out.panels += [panel] * bool(panel.series)
+        part = part[part.counts].assign(number=column(part, "objects")).sort_values("number", kind="stable")
+        methods = {name: (name in (TREES, "farcull"), of) for name, of in part.groupby("name")}
+        drawn += [of for _, of in methods.values()]
+        out.panels += [times_panel(title, "objects", "number", methods, exponents, what)] * bool(methods)
     if drawn:
         out.caption = (f"On one thread: {sample_text(pd.concat(drawn))}. Bars are the intervals. Objects stand at the "
                        "same density. Distances are from the triangles to the distance of each object "
@@ -229,7 +208,7 @@ def error_figure(rows):
 
 
 def distance_table(rows):
-    out = table_of_rows(
+    return table_of_rows(
         "proximity-distances",
         "Distances asked for, those that are not the nearest double, and of these: lacking, 0 where objects are apart "
         "or the reverse, of another object that is not as near; the largest relative error of the others; time in ms "
@@ -238,26 +217,6 @@ def distance_table(rows):
          "other 0": "other_zero", "other object": "other_object",
          "largest error": lambda row: rounded(value(row, "largest_relative"), 2), "time (ms)": estimate_cell,
          "library": "=library"})
-    out.in_text = True
-    return out
-
-
-def add_distances(chapter, rows):
-    for name, of in rows.drop(index=promising(rows).index).groupby("name"):
-        largest = column(of, "largest_relative").fillna(0)
-        chapter.find(f"{name}: {of_rows(of, 'wrong', 'asked')} distances are not the nearest double; the largest "
-                     f"relative error is {rounded(largest.max(), 2)} ({of.scene[largest.idxmax()]}).")
-
-
-def sets_table(rows):
-    return table_of_rows(
-        "proximity-sets",
-        "Every row of sets: sizes over the objects that have a nearest neighbour, and times on one thread", rows,
-        {"scene": "=scene", "method": "=name", "cells": resolution_cell("-"),
-         "frame": lambda row: "-" if row.frame < 0 else str(row.frame), "objects": "with_nearest", "lost": "missed",
-         "nearest pairs": "nearest_pairs", "pairs lost": "missed_pairs", "pairs of objects": "object_pairs",
-         "pairs of triangles": "triangle_pairs", "objects, median": "median_objects", "objects, most": "most_objects",
-         "triangles, median": "median_triangles", "triangles, most": "most_triangles", "time (ms)": estimate_cell})
 
 
 def fill(chapter, study):
@@ -268,7 +227,6 @@ def fill(chapter, study):
     sizes = sorted({cells for scene in rest for _, cells in scene.sums.index if cells > 0})
     add_kept_promises(chapter, rows)
     add_sets(chapter, rest, sizes)
-    add_distances(chapter, rows[~rows.sets])
     chapter.limits = [
         "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It "
         "runs on one thread of the CPU, so that its times say nothing about graphics hardware.",
@@ -283,14 +241,10 @@ def fill(chapter, study):
             "to floats: it is too large where the nearest points lie inside two edges, and above 0 where objects "
             "cross. So its time is no time of the same question.")
     add_gaps(chapter, study)
-    exponents = Table(
-        "proximity-exponents",
-        "Exponent b of time = a x^b over the number of objects x, by least squares in logarithms, with its 95 % "
-        f"interval (Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
-        columns(["of", "method"], ["from", "to", "points", "exponent"]))
-    figures = [lost_figure(rest), size_figure(rest, "triangles"), size_figure(rest, "objects"), frames_figure(moving),
-               count_figure(chapter, rows, exponents), error_figure(apart)]
+    exponents = exponents_table("proximity-exponents", "the number of objects")
+    figures = [lost_figure(rest), size_figure(rest),
+               count_figure(rows, exponents), error_figure(apart)]
     tables = [lost_table(rest, sizes), efficiency_table(rest, moving, max(sizes, default=0)), exponents,
-              distance_table(apart), sets_table(sets)]
+              distance_table(apart)]
     chapter.figures = [figure for figure in figures if figure.panels]
     chapter.tables = [table for table in tables if table.rows]

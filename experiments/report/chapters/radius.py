@@ -2,15 +2,18 @@
 the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
 from frame import *  # noqa: F403
 
-CLOSE = 0.96  # the second row of panels shows CLOSE to 2 - CLOSE
-NAMED = 3     # number of generators with a line of their own
+CLOSE = 0.96  # the second panel shows CLOSE to 2 - CLOSE
 SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
 
 
 def with_axes(rows):
     """Rows with the radius over the budget radius (NaN where a row of a published radius lacks one of the two), and
-    with the canvas and the depth that a lemma was tested with."""
-    over = column(rows, "radius_px") / column(rows, "budget_px")
+    with the canvas and the depth that it was tested with."""
+    at = ["scene", "method", "depth_mode", "resolution"]
+    radius = rows.assign(px=column(rows, "radius_px"))
+    budgets = radius[radius.radius == "budget"].drop_duplicates(at).set_index(at).px
+    budget = column(rows, "budget_px").fillna(rows[at].join(budgets, on=at).px if len(budgets) else NONE)
+    over = radius.px / budget
     return rows.assign(
         published=rows.radius == "published",
         factor=[over[i] if r == "published" else 1.0 if r in ("", "budget") else float(r)
@@ -18,40 +21,18 @@ def with_axes(rows):
         surface=[SURFACES.get(m) or SURFACES.get(d, "fragment depth") for m, d in zip(rows.method, rows.depth_mode)])
 
 
-def violated(rows):
-    return share(total(rows, "violations"), total(rows, "points"))
-
-
-def missed(rows):
-    return share(total(rows, "missed"), total(rows, "colliding"))
-
-
 def groups(rows, name):
     return list(rows.groupby(name)) if len(rows) else []
 
 
-class Line:
-    """The rows of a line by factor, and those of the published radius apart."""
-
-    def __init__(self, rows):
-        self.published = rows[rows.published]
-        self.at = dict(groups(rows[~rows.published], "factor"))
-
-    def series(self, name, of, style):
-        return Series(name, list(self.at), [of(rows) for rows in self.at.values()], style)
-
-    @property
-    def published_factor(self):
-        """The published radius over the budget, from the rows of FAR at both."""
-        if self.published.empty or 1 not in self.at:
-            return NONE
-        one, other = (column(rows, "radius_px").iloc[-1] for rows in (self.published, self.at[1]))
-        return one / other if other > 0 else NONE
+def shares(rows, by, part, whole):
+    """For each value of the columns `by` the share of two sums, in per cent."""
+    sums = rows.assign(part=column(rows, part), whole=column(rows, whole)).groupby(by)[["part", "whole"]].sum()
+    return 100 * sums.part / sums.whole
 
 
-def lines_of(rows, name):
-    """For each surface, a Line for each value of the column."""
-    return {surface: {key: Line(of) for key, of in groups(here, name)} for surface, here in groups(rows, "surface")}
+def series(name, values, style="lines_points", **look):
+    return Series(name, list(values.index), list(values), style, **look)
 
 
 # ---- the lemmas
@@ -62,101 +43,63 @@ def panel_of(title, label):
                  marks=[Mark(1, "budget radius")])
 
 
-def hardest_generators(lines):
-    """Generators whose points are violated at the largest factors, on any surface; of equal ones first those with the
-    larger share there."""
-    at = {}
-    for of in lines.values():
-        for name, line in of.items():
-            at[name] = max([at.get(name, (-1, 0))] + [(factor, violated(rows)) for factor, rows in line.at.items()
-                                                      if total(rows, "violations")])
-    return sorted(sorted(at), key=lambda name: at[name], reverse=True)[:NAMED]
+def lemma_figure(lemmas):
+    panel = panel_of("all radii", "violated points (%)")
+    for surface, rows in groups(lemmas, "surface"):
+        each = shares(rows[~rows.published], ["factor", "generator"], "violations", "points")
+        panel.series.append(series(surface, each.groupby(level=0).max(), emphasis=surface == "fragment depth"))
+        published = rows[rows.published]
+        if len(published):
+            each = shares(published, ["factor", "generator"], "violations", "points").droplevel(1)
+            panel.series.append(series(f"{surface}, published radius", each, "points"))
+    close = Panel("close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
+                  [Series(**vars(s)) for s in panel.series], panel.marks)
+    return Figure(
+        "radius", "Points whose pixel lacks a sample or a bound, against the radius",
+        f"Lemmas 1 and 2 at {grouped(total(lemmas, 'points'))} points of triangles that aim at trouble, drawn by "
+        f"{lemmas.generator.nunique()} generators. A line is the largest share of any generator; of the published radius "
+        "each generator is a point. On the worst canvas a pixel has a fragment only where every device that keeps the "
+        "assumptions gives it one.", [panel, close])
 
 
-def envelope_of(lines):
-    """The largest share of a generator at each factor."""
-    most = {}
-    for line in lines.values():
-        for factor, rows in line.at.items():
-            most[factor] = max(most.get(factor, 0.0), violated(rows))
-    return Series("largest of all generators", sorted(most), [most[f] for f in sorted(most)], "lines", True)
-
-
-def published_series(name, lines, factor, of):
-    known = [line for line in lines.values() if len(line.published)]
-    return [Series(name, [factor(line) for line in known], [of(line.published) for line in known],
-                   "points")] if known else []
-
-
-def lemma_figure(generators, points):
-    out, named = Figure("radius", "Points whose pixel lacks a sample or a bound, against the radius"), \
-        hardest_generators(generators)
-    for surface, lines in generators.items():
-        panel = panel_of(surface, "violated points (%)")
-        panel.series = [line.series(name, violated, "lines") for name, line in lines.items() if name in named]
-        panel.series.append(envelope_of(lines))
-        panel.series += published_series("published radius, each generator", lines,
-                                         lambda line: line.published.factor.iloc[-1], violated)
-        out.panels.append(panel)
-    for panel in list(out.panels):  # the same again, close to the published radius
-        out.panels.append(Panel("the same, close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
-                                [Series(**vars(s)) for s in panel.series], panel.marks))
-    count = max(len(lines) for lines in generators.values())
-    out.caption = (f"Lemmas 1 and 2 at {grouped(points)} points of triangles that aim at trouble, drawn by {count} "
-                   "generators. The thick line is the largest share of any generator; those that fail at the largest "
-                   "factors are named. On the worst canvas a pixel has a fragment only where every device that keeps "
-                   "the assumptions gives it one.")
-    return out
-
-
-def miss_figure(depths, runs):
-    out, scenes = Figure("radius-missed", "Missed pairs against the radius"), []
-    for depth, lines in depths.items():
+def miss_figure(runs):
+    out = Figure("radius-missed", "Missed pairs against the radius")
+    for depth, of in groups(runs, "surface"):
         panel = panel_of(depth, "missed pairs (%)")
-        panel.series = [line.series(name, missed, "lines_points") for name, line in lines.items()]
-        panel.series += published_series("published radius, each scene", lines, lambda line: line.published_factor,
-                                         missed)
+        panel.series = [series(scene, shares(rows, "factor", "missed", "colliding"))
+                        for scene, rows in groups(of[~of.published], "scene")]
+        published = of[of.published]
+        if len(published):
+            panel.series.append(series("published radius, each scene", shares(
+                published, ["factor", "scene"], "missed", "colliding").droplevel(1), "points"))
         out.panels.append(panel)
-        for scene, line in lines.items():
-            rows = line.published if len(line.published) else next(iter(line.at.values()))
-            scenes.append(f"{grouped(column(rows, 'colliding').fillna(0).iloc[-1])} in {scene}")
-    out.caption = (f"FAR with oriented boxes: colliding pairs that culling loses, of {listed(dict.fromkeys(scenes))}. "
+    colliding = [f"{count_cell(rows.iloc[-1], 'colliding')} in {scene}" for scene, rows in groups(runs, "scene")]
+    out.caption = (f"FAR with oriented boxes: colliding pairs that culling loses, of {listed(colliding)}. "
                    f"n = {counted(len(runs), 'run', 'runs')}, one at each point.")
     return out
 
 
-def least_safe(line):
-    """The least factor from which on no row of the line is violated."""
-    out = "-"
-    for factor, rows in reversed(line.at.items()):
-        if total(rows, "violations"):
-            break
-        out = f"{factor:.4g}"
-    return out
-
-
-def farthest(rows):
-    return max(0.0, column(rows, "largest_px").fillna(math.inf).max())
-
-
-def lemma_table(name, caption, lines):
-    out = Table(name, "Violated points at the published and at the budget radius, and the least factor on the budget "
-                "from which on none is" + caption,
+def lemma_table(lemmas):
+    out = Table("radius", "Violated points at the published and at the budget radius, and the least factor on the budget "
+                "from which on none is, of every generator",
                 columns(["depth", "generator"], ["points", "published", "budget", "least factor",
                                                  "published: farthest outside (px)"]))
-    for surface, generators in lines.items():
-        for generator, line in generators.items():
-            budget = line.at.get(1)
-            count = (lambda rows, n: "-" if rows is None or rows.empty else grouped(total(rows, n)))
-            out.rows.append([surface, generator, count(budget, "points"), count(line.published, "violations"),
-                             count(budget, "violations"), least_safe(line),
-                             rounded(farthest(line.published)) if len(line.published) else "-"])
+    for (surface, generator), rows in groups(lemmas, ["surface", "generator"]):
+        published, others = rows[rows.published], rows[~rows.published]
+        budget, bad = others[others.factor == 1], others.factor[column(others, "violations") > 0].max()
+        safe = others.factor[~(others.factor <= bad)].min()
+        far = column(published, "largest_px").fillna(math.inf).max()
+        counts = [grouped(total(of, name)) if len(of) else "-" for of, name in (
+            (budget, "points"), (published, "violations"), (budget, "violations"))]
+        out.rows.append([surface, generator, *counts, f"{safe:.4g}" if safe == safe else "-",
+                         rounded(max(0.0, far)) if len(published) else "-"])
     return out
 
 
 def add_lemmas(chapter, lemmas):
-    """Adds violations of the lemmas at the budget radius and beyond. With fragment depth the lemmas are proved, so a
-    violation breaks a promise even if its row promises nothing. Rows for which breaks() holds are reported already."""
+    """Adds violations of the lemmas at the budget radius and beyond, and at the published radius. With fragment depth the
+    lemmas are proved, so a violation breaks a promise even if its row promises nothing. Rows for which breaks() holds are
+    reported already."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")
@@ -170,39 +113,11 @@ def add_lemmas(chapter, lemmas):
         if not (promised and broken and total(rows, "violations")):
             chapter.find(f"At the budget radius and beyond, {surface}: {of_rows(rows, 'violations', 'points')} points "
                          f"are violated{'' if promised else ' (it promises nothing)'}.")
-
-
-def add_published(chapter, generators):
-    for surface, lines in generators.items():
-        known = {name: line.published for name, line in lines.items() if len(line.published)}
-        if not known:
-            continue
-        rows = pd.concat(list(known.values()))
-        factors = [of.factor.iloc[-1] for of in known.values()]
-        least, most = min(factors), max(factors)
-        radius = f"{least:.4f}" if least == most else f"{least:.4f} to {most:.4f}"
-        failing = [f"{name} ({of_rows(of, 'violations', 'points')})" for name, of in known.items()
-                   if total(of, "violations")]
-        if failing:
-            far = farthest(rows)
-            outside = f", others up to {rounded(far)} px outside their bounds" if far > 0 else ""
-            chapter.find(f"The published radius, {radius} of the budget, fails, {surface}: "
-                         f"{of_rows(rows, 'violations', 'points')} points, {grouped(total(rows, 'no_sample'))} of them "
-                         f"without a sample{outside}; on {listed(failing)}.")
-        else:
-            chapter.find(f"The published radius, {radius} of the budget, violates none of "
-                         f"{grouped(total(rows, 'points'))} points, {surface}.")
-
-
-def add_misses(chapter, depths):
-    for depth, lines in depths.items():
-        for scene, line in lines.items():
-            worst = max((f for f, rows in line.at.items() if total(rows, "missed")), default=None)
-            words = (f"{scene}, {depth}: no factor misses a pair" if worst is None else
-                     f"{scene}, {depth}: pairs are missed up to the factor {worst:.4g}")
-            if len(line.published):
-                words += f"; the published radius misses {of_rows(line.published, 'missed', 'colliding')}"
-            chapter.find(words + ".")
+    for surface, rows in groups(lemmas[lemmas.published], "surface"):
+        low, high = (f"{end(rows.factor):.4f}" for end in (min, max))
+        chapter.find(f"The published radius, {low if low == high else low + ' to ' + high} of the budget, {surface}: "
+                     f"{of_rows(rows, 'violations', 'points')} points are violated, "
+                     f"{grouped(total(rows, 'no_sample'))} of them without a sample.")
 
 
 # ---- placements
@@ -257,53 +172,38 @@ def add_headline(chapter, runs, placements):
         chapter.find(f"Smaller radii miss something in such placements: {listed(words)}.")
 
 
-def usual(rows, name):
-    """The value that most placements have; of equally common ones the least."""
-    times = {key: total(of, "placements") for key, of in groups(rows, name)}
-    return max(times, key=times.get)
-
-
 def placement_figure(placements):
     """The rate of placements with a miss against the radius, by the size of triangles, with its interval. Corners are
     snapped to as many bits as in most placements."""
-    bits = usual(placements, "bits")
+    bits = max(groups(placements, "bits"), key=lambda of: total(of[1], "placements"))[0]
     rows = placements[(placements.bits == bits) & np.isfinite(placements.factor)]
     panel = panel_of("", "placements with a miss (%)")
-    for side, here in groups(rows, "side"):
-        series = Series(f"sides of {side:.4g} px")
-        for factor, of in groups(here, "factor"):
-            if total(of, "colliding_placements"):
-                rate = rate_of(total(of, "missed_placements"), total(of, "colliding_placements"))
-                series.x.append(factor)
-                for ends, part in ((series.y, rate.value), (series.y_low, rate.low), (series.y_high, rate.high)):
-                    ends.append(100 * part)
-        panel.series += [series] * (len(series.x) > 1)
+    panel.x.low = 0.45
+    for side, here in groups(rows[column(rows, "colliding_placements") > 0], "side"):
+        rates = {factor: rate_of(total(of, "missed_placements"), total(of, "colliding_placements"))
+                 for factor, of in groups(here, "factor")}
+        values, low, high = zip(*((100 * rate.value, 100 * rate.low, 100 * rate.high) for rate in rates.values()))
+        panel.series += [Series(f"sides of {side:.4g} px", list(rates), list(values), y_low=list(low),
+                                y_high=list(high))] * (len(rates) > 1)
     return Figure(
         "radius-placements", "How often FAR misses something in random placements, by radius",
-        "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each "
-        "decided "
-        "by exact predicates: of those in which a pair collides, those in which one is missed, with the 95 % "
-        "interval of "
-        f"Clopper and Pearson (where none is missed, up to its upper bound). {bits_text(bits).capitalize()}. The "
-        "published "
-        "radius is the last point below 1. n = "
-        f"{counted(total(rows, 'placements'), 'placement', 'placements')}; what was measured at the published "
-        "radius with "
-        "other bits and resolutions is in the table.", [panel] if panel.series else [])
+        "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each decided "
+        "by exact predicates: of those in which a pair collides, those in which one is missed, with the 95 % interval of "
+        f"Clopper and Pearson (where none is missed, up to its upper bound). {bits_text(bits).capitalize()}. The published "
+        f"radius is the last point below 1. n = {counted(total(rows, 'placements'), 'placement', 'placements')}; what was "
+        "measured with other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
-def placement_table(rows):
+def placement_table(placements):
     out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
-                "collides", columns(["radius", "patches", "contact"], [
-                    "side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
-                    "largest miss (px)"]))
-    for row in rows.itertuples():
+                "collides, of both kinds of patches and of contacts together",
+                columns(["radius"], ["side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
+                                     "largest miss (px)"]))
+    for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
-            row.radius, row.patches, row.contact, rounded(row.side), str(row.bits) if row.bits else "not snapped",
-            str(row.resolution), count_cell(row, "placements"),
-            rate_text(number(row, "missed_placements"), number(row, "colliding_placements")),
-            of_all(number(row, "missed"), number(row, "colliding")),
-            rounded(value(row, "largest_miss_px")) if number(row, "missed") else "-"])
+            radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
+            rate_of_rows(rows), of_rows(rows, "missed", "colliding"),
+            rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out
 
 
@@ -313,12 +213,9 @@ def fill(chapter, study):
     placed = ~lemma & rows.scene.str.contains("@crossing:|@grazing:")
     lemmas, placements, runs = rows[lemma], with_placements(rows[placed]), rows[~lemma & ~placed]
     lemmas = lemmas.assign(generator=[scene.split(":")[1] for scene in lemmas.scene])
-    generators, misses = lines_of(lemmas, "generator"), lines_of(runs, "scene")
     add_headline(chapter, runs, placements)
     add_promises(chapter, study)
     add_lemmas(chapter, lemmas)
-    add_published(chapter, generators)
-    add_misses(chapter, misses)
     chapter.limits = [
         "The points are drawn to find violations, so a share of violated points is no probability in a scene.",
         "Placements are of patches of eight triangles alone, which meet by construction. A rate over them is no rate "
@@ -332,23 +229,10 @@ def fill(chapter, study):
         "exactly."]
     add_gaps(chapter, study)
     if len(lemmas):
-        chapter.figures.append(lemma_figure(generators, total(lemmas, "points")))
-        together = lines_of(lemmas.assign(generator="all generators"), "generator")
-        chapter.tables += [lemma_table("radius", "", together),
-                           lemma_table("radius-generators", ", of every generator", generators)]
-        chapter.tables[-1].in_text = False
+        chapter.figures.append(lemma_figure(lemmas))
+        chapter.tables.append(lemma_table(lemmas))
     if len(runs):
-        chapter.figures.append(miss_figure(misses, runs))
+        chapter.figures.append(miss_figure(runs))
     if len(placements):
-        figure = placement_figure(placements)
-        chapter.figures += [figure] if figure.panels else []
+        chapter.figures += [figure for figure in [placement_figure(placements)] if figure.panels]
         chapter.tables.append(placement_table(placements))
-    if len(lemmas):
-        chapter.tables.append(table_of_rows("radius-all", "All points of the lemmas", lemmas, {
-            "generator": "=generator", "depth": "=surface", "radius": "=radius",
-            "radius px": lambda row: rounded(value(row, "radius_px"), 6), "points": "points", "no sample": "no_sample",
-            "not bounding": "not_bounding", "rounded": "rounded", "farthest outside (px)": "~largest_px"}))
-    if len(runs):
-        chapter.tables.append(table_of_rows("radius-missed", "Missed pairs of FAR at every radius", runs, {
-            "scene": "=scene", "depth": "=surface", "radius": "=radius", "colliding": "colliding", "missed": "missed",
-            "kept triangles": "kept_triangles"}))

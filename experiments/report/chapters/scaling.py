@@ -21,21 +21,6 @@ def rows_of(rows, plot):
     return rows[rows["at"] > 0 if size == "resolution" else rows["at"].notna()].sort_values("at", kind="stable")
 
 
-def miss_table(chapter, rows):
-    """Missed and colliding pairs by method, over all rows; a method that misses is a finding."""
-    out = Table(
-        "scaling-missed",
-        "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run",
-        columns(["method"], ["points", "colliding", "missed", "share (%)"]))
-    for method, of in rows[column(rows, "missed").notna()].groupby("contestant"):
-        missed, colliding = total(of, "missed"), total(of, "colliding")
-        out.rows.append([method, grouped(len(of)), grouped(colliding), grouped(missed),
-                         rounded(share(missed, colliding))])
-        if missed or method == "CULLIDE":
-            chapter.find(f"{method} missed {of_all(missed, colliding)} colliding pairs over all sizes.")
-    return out
-
-
 def caption_of(rows, drawn):
     sides = sorted({side for plot in PLOTS if plot != "resolution" for side in resolutions(rows_of(rows, plot))})
     drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and "
@@ -48,31 +33,17 @@ def caption_of(rows, drawn):
 def fill(chapter, study):
     rows, drawn = study.rows, []
     add_promises(chapter, study)
-    misses = miss_table(chapter, rows)
+    for method in sorted(set(rows[column(rows, "missed") > 0].contestant)):
+        chapter.find(f"{method} missed {missed_of(rows[rows.contestant == method])} colliding pairs over all sizes.")
     figure = Figure("scaling", "Time against objects, triangles, resolution, density and colliding pairs")
-    exponents = Table(
-        "scaling-exponents",
-        "Exponent b of time = a x^b, by least squares in logarithms over the whole range, with its 95 % interval "
-        f"(Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
-        columns(["x", "method"], ["from", "to", "points", "exponent"]))
-    times = Table("scaling-times", "Time from triangles to exact pairs: median of the runs, with its interval",
-                  columns(["x", "method"], ["value", "runs", "time (ms)"]), in_text=False)
+    exponents = exponents_table("scaling-exponents", "the measure x")
     for plot, (title, axis, *_) in PLOTS.items():
-        of, said = rows_of(rows[column(rows, "total_ms").notna()], plot), []
-        panel = Panel(title, log(axis, zero=True), log("time (ms)"))
-        for method in (method for method in METHODS if (of.contestant == method).any()):
-            drawn.append(of[of.contestant == method])
-            series = times_of(method, drawn[-1], "at", emphasis=method.startswith("FAR"))
-            panel.series.append(series)
-            times.rows += [[plot, method, rounded(row.at, 6), grouped(e.n), estimate_text(e, 4)]
-                           for row in drawn[-1].itertuples() for e in [estimate(row)]]
-            if e := exponent_of(series.x, series.y):
-                said.append(f"{method} {exponent_text(e)}")
-                exponents.rows.append([plot, method, rounded(e.first), rounded(e.last), grouped(e.points),
-                                       exponent_text(e)])
-        if said:
-            chapter.find(f"Exponent of time over {plot}, with its 95 % interval: {listed(said)}.")
-        figure.panels += [panel] * bool(panel.series)
+        of = rows_of(rows[column(rows, "total_ms").notna()], plot)
+        methods = {name: (name.startswith("FAR"), here) for name in METHODS if len(here := of[of.contestant == name])}
+        drawn += [here for _, here in methods.values()]
+        figure.panels += [times_panel(title, axis, "at", methods, exponents, plot)] * bool(methods)
+    if said := [f"{row[-1]} over {row[0]}" for row in exponents.rows if row[1] == "FAR pairs"]:
+        chapter.find(f"Exponents of the time of FAR pairs, with 95 % intervals: {listed(said)}.")
     chapter.limits = [
         "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and the growing "
         "number of rounds steepen large ones. The interval is of the straight line through the medians, not of another "
@@ -85,5 +56,4 @@ def fill(chapter, study):
     add_gaps(chapter, study)
     if drawn:
         figure.caption = caption_of(rows, pd.concat(drawn).drop_duplicates("position"))
-        chapter.figures, chapter.tables = [figure], [exponents, times]
-    chapter.tables += [misses] * bool(misses.rows)
+        chapter.figures, chapter.tables = [figure], [exponents]

@@ -1,38 +1,28 @@
 """All scenes of the studies: where they come from, and how large their triangles are in pixels."""
-import re
-
 from frame import *  # noqa: F403: a chapter uses most of it
 
 RESOLUTIONS = (64, 128, 256, 512, 1024, 2048, 4096)  # px
 MESHES, SIMULATED, DRAWN, CONSTRUCTED = "scanned or modelled", "simulated", "drawn", "constructed"
 
 
-def builtin(study, scene):
-    """The program's entry for the scene, by its name without numbers and suffixes."""
-    return study.constants["scenes"].get(re.split("[:@]", scene)[0], {})
+def with_sources(rows, scenes):
+    """The rows with the column source, and `seed` for drawn ones: from @seed, or that of the scene. scenes: the entry of
+    the program for each scene, by its name without numbers and suffixes."""
+    def source_of(row):
+        known = scenes.get(re.split("[:@]", row.scene)[0], {})
+        if known.get("needs_meshes"):
+            return MESHES, None
+        if row.scene.startswith("cloth"):
+            return SIMULATED, None
+        given = re.search("@seed([^@]*)", row.scene)
+        return (CONSTRUCTED, None) if known.get("seed") is None else (DRAWN, given[1] if given else known["seed"])
+
+    found = [source_of(row) for row in rows.itertuples()]
+    return rows.assign(source=[source for source, _ in found], drawn_with=[seed for _, seed in found])
 
 
-def source_of(study, scene):
-    known = builtin(study, scene)
-    if known.get("needs_meshes"):
-        return MESHES
-    if scene.startswith("cloth"):
-        return SIMULATED
-    return CONSTRUCTED if known.get("seed") is None else DRAWN
-
-
-def source_text(study, scene):
-    """The source of the scene; for a randomly drawn one with its seed, from @seed or its own."""
-    given = re.search("@seed([^@]*)", scene)
-    seed = given[1] if given else builtin(study, scene).get("seed")
-    source = source_of(study, scene)
-    return f"{DRAWN}, seed {seed}" if source == DRAWN else source
-
-
-def pixels_text(row, rank, resolution, at):
-    """Pixels that the triangle of this rank covers at `resolution`, computed from the resolution `at`."""
-    there = value(row, rank) * (resolution / at) ** 2
-    return "-" if there != there else rounded(there, 2) if there >= 1 else f"{there:.2g}"
+def pixels_text(pixels):
+    return "-" if pixels != pixels else rounded(pixels, 2) if pixels >= 1 else f"{pixels:.2g}"
 
 
 def self_text(row):
@@ -40,39 +30,25 @@ def self_text(row):
     return "no" if own == 0 else "yes" if own == objects else f"{own} of {objects}"
 
 
-def tables_of(study, at):
-    starts, counts = [], []
-    for row in study.rows.itertuples():
-        starts.append([row.scene, source_text(study, row.scene)])
-        counts.append([str(row.frame) if row.frame >= 0 else "-"] +
-                      [count_cell(row, name) for name in ("objects", "triangles", "colliding")])
-    rows, numbers = list(study.rows.itertuples()), ["frame", "objects", "triangles", "colliding"]
-    return [
-        Table("scenes",
-              "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, "
-              "without neighbours inside an object. Then the pixels that the median triangle covers at each "
-              "resolution: the area of its image in the views x, y and z. The median is that of the triangles whose "
-              "box meets another object's or whose object is tested against itself. Of a scene that moves, the frame "
-              "that is named",
-              columns(["scene", "source", "self"], numbers + [f"{resolution} px" for resolution in RESOLUTIONS]),
-              [start + [self_text(row)] + count + [pixels_text(row, "pixels_half", side, at) for side in RESOLUTIONS]
-               for row, start, count in zip(rows, starts, counts)]),
-        Table("scenes-all",
-              "All scenes, the studies that use them, colliding neighbours, and the pixels that the smallest tenth, "
-              f"half and nine tenths of the triangles cover at most at {at} px",
-              columns(["scene", "source", "description", "studies", "self"],
-                      numbers + ["neighbours", "tenth", "half", "nine tenths"], ["scene hash"]),
-              [start + [builtin(study, row.scene).get("description", "-"),
-                        " ".join(study.constants["users"].get(row.scene, [])), self_text(row)] +
-               count + [count_cell(row, "neighbours")] +
-               [pixels_text(row, rank, at, at) for rank in ("pixels_tenth", "pixels_half", "pixels_ninety")] +
-               [text(row, "scene_hash") or "-"] for row, start, count in zip(rows, starts, counts)], in_text=False)]
+def table_of(rows, at):
+    return Table(
+        "scenes", "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, "
+        "without neighbours inside an object. Then the pixels that the median triangle covers at each "
+        "resolution: the area of its image in the views x, y and z. The median is that of the triangles whose "
+        "box meets another object's or whose object is tested against itself. Of a scene that moves, the frame "
+        "that is named. The CSV of all rows also has the smallest tenth, nine tenths, and the hash of the triangles",
+        columns(["scene", "source", "self"], ["frame", "objects", "triangles", "colliding"] +
+                [f"{side} px" for side in RESOLUTIONS]),
+        [[row.scene, f"{DRAWN}, seed {row.drawn_with}" if row.source == DRAWN else row.source, self_text(row),
+          str(row.frame) if row.frame >= 0 else "-"] +
+         [count_cell(row, name) for name in ("objects", "triangles", "colliding")] +
+         [pixels_text(value(row, "pixels_half") * (side / at)**2) for side in RESOLUTIONS] for row in rows.itertuples()])
 
 
 def fill(chapter, study):
-    rows, at = study.rows, study.constants["scene_resolution"]
+    rows, at = with_sources(study.rows, study.constants["scenes"]), study.constants["scene_resolution"]
     if len(rows):
-        sources = rows.scene.map(lambda scene: source_of(study, scene)).value_counts()
+        sources = rows.source.value_counts()
         triangles, pixels = column(rows, "triangles"), column(rows, "pixels_half")
         chapter.find(
             f"The studies use {len(rows)} scenes: {sources.get(MESHES, 0)} of scanned or modelled meshes, "
@@ -82,7 +58,7 @@ def fill(chapter, study):
             "are tested against themselves.")
         chapter.find(f"At {at} px the median triangle covers less than a pixel in {int((pixels < 1).sum())} of "
                      f"{int(pixels.notna().sum())} scenes.")
-        chapter.tables = tables_of(study, at)
+        chapter.tables = [table_of(rows, at)]
     chapter.limits = [
         "The generated scenes are ours. The meshes are a few that many papers use, scanned or modelled at one "
         "resolution each.",

@@ -57,42 +57,19 @@ def number_text(x):
     return f"{x:g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
 
 
-def panel_of(family, methods, label):
-    zero = any(0 in places for _, places in methods)
-    return Panel(family[0], log(family[1], zero), log(label, zero=True, high=100))
-
-
-def figures_of(tracks):
+def figure_of(tracks):
     runs = counted(sum(len(rows) for *_, places in tracks for rows in places.values()), "point", "points")
-    missed = Figure("stability-missed", "Missed pairs in extreme scenes", "Colliding pairs that are not found, of all "
-                    "there are. Scenes in which nothing collides " f"have no share. n = {runs}, each of 1 run.")
-    kept = Figure("stability-kept", "What culling keeps in extreme scenes", "Triangles that are kept, of all; below, "
-                  "those that collide: a method that misses nothing " f"cannot be below that line. n = {runs}, each of "
-                  f"1 run.")
+    out = Figure("stability-missed", "Missed pairs in extreme scenes", "Colliding pairs that are not found, of all "
+                 f"there are. Scenes in which nothing collides have no share. n = {runs}, each of 1 run.")
     for family, methods in families_of(tracks):
-        panel = panel_of(family, methods, "missed pairs (%)")
-        for method, places in methods:
-            if method != "exact":
-                panel.series.append(Series(method, list(places), [share(total(r, "missed"), total(r, "colliding")) for r
-                                                                  in places.values()],
-                                           emphasis=method.startswith("FAR")))
-        if any(total(r, "colliding") for m, p in methods if m != "exact" for r in p.values()):
-            missed.panels.append(panel)
-        panel = panel_of(family, methods, "kept triangles (%)")
-        floor = None
-        for method, places in methods:
-            places = {at: rows for at, rows in places.items() if keeps(rows)}
-            if not places:
-                continue
-            of = [total(rows, "triangles") for rows in places.values()]
-            ys = {name: [share(total(r, name), n) for r, n in zip(places.values(), of)]
-                  for name in ("kept_triangles", "colliding_triangles")}
-            panel.series.append(Series(method, list(places), ys["kept_triangles"], emphasis=method.startswith("FAR")))
-            floor = floor or Series("colliding", list(places), ys["colliding_triangles"], "lines")
-        if floor:
-            panel.series.append(floor)
-            kept.panels.append(panel)
-    return [missed, kept]
+        drawn = [(method, places) for method, places in methods if method != "exact"]
+        if any(total(rows, "colliding") for _, places in drawn for rows in places.values()):
+            out.panels.append(Panel(
+                family[0], log(family[1], any(0 in places for _, places in methods)),
+                log("missed pairs (%)", zero=True, high=100),
+                [Series(method, list(places), [share(total(r, "missed"), total(r, "colliding")) for r in places.values()],
+                        emphasis=method.startswith("FAR")) for method, places in drawn]))
+    return out
 
 
 def risks_of(rows, track):
@@ -101,7 +78,7 @@ def risks_of(rows, track):
     return [NONE if all(x != x for x in values) else sum(x for x in values if x == x) for values in zip(*known)]
 
 
-def short_table(rows, tracks):
+def table_of(rows, tracks):
     out = Table("stability", "Pairs in all scenes of a family together: colliding ones, and those that a method missed. "
                 "At risk: pairs that are lost in the same scene, views and pixels with 0.9 of the radius of FAR, and "
                 "without a ball. Where there are none, 0 missed does not show that the radius is large enough. Wrong: "
@@ -126,78 +103,24 @@ def short_table(rows, tracks):
     return out
 
 
-def all_table(tracks):
-    out = Table("stability-all", "Every place; of cloth the sum of its frames, and the widest radius",
-                columns(["family"], ["at"], ["method"], ["colliding", "missed", "wrong", "candidates", "kept triangles",
-                                                         "triangles", "kept/colliding", "radius (px)", "radius (units)",
-                                                         "time (ms)"]), in_text=False)
-    for family, method, places in tracks:
-        for at, rows in places.items():
-            radius = column(rows, "radius_px").fillna(0).max()
-            units = radius * column(rows, "pixel_size").fillna(0).max()
-            out.rows.append(
-                [family[0], number_text(at), method] +
-                [grouped(total(rows, name)) for name in ("colliding", "missed", "wrong",
-                                                         "candidates")] +
-                [grouped(total(rows, "kept_triangles")) if keeps(rows) else "-",
-                 grouped(total(rows, "triangles")), rounded(excess(rows)),
-                 rounded(radius) if radius > 0 else "-", rounded(units) if radius > 0 else "-",
-                 rounded(column(rows, "total_ms").sum())])
-    return out
-
-
-def worst_place(family, places, of, in_words):
-    """`slivers (aspect 1000: 4 of 20)`: the first place with the largest positive value, as a list
-    of one; an empty list where no value is positive."""
-    values = {at: of(rows) for at, rows in places.items()}
-    values = {at: x for at, x in values.items() if x > 0}
-    if not values:
-        return []
-    at = max(values, key=values.get)
-    return [f"{family[0]} ({family[1]} {number_text(at)}: {in_words(places[at])})"]
-
-
-def add_failures(chapter, tracks, promising_names):
-    """Adds where a method that promises nothing misses, and what a library reports wrongly."""
-    misses, wrongs = {}, {}
-    for family, method, places in tracks:
-        if method in promising_names:
-            continue
-        misses.setdefault(method, []).extend(worst_place(
-            family, places, lambda r: share(total(r, "missed"), total(r, "colliding")),
-            lambda r: of_rows(r, "missed", "colliding")))
-        wrongs.setdefault(method, []).extend(worst_place(
-            family, places, lambda r: total(r, "wrong"), lambda r: grouped(total(r, "wrong"))))
-    for method, found in misses.items():
-        if found:
-            chapter.find(f"{method} missed pairs, at worst: {listed(found)}.")
-        elif method != "exact":
-            chapter.find(f"{method} missed nothing here, and promises nothing.")
-        if wrongs[method]:
-            chapter.find(f"{method} reported pairs that do not collide, at worst: {listed(wrongs[method])}.")
+def add_failures(chapter, rows):
+    """Adds what methods that promise nothing miss, and what a library reports wrongly."""
+    for method, of in by(rows[~rows.index.isin(promising(rows).index) & (rows.method != "exact")], "contestant"):
+        wrong = total(of, "wrong")
+        more = f", and reported {counted(wrong, 'pair', 'pairs')} that do not collide" if wrong else ""
+        chapter.find(f"{method} promises nothing, and missed {missed_of(of)} colliding pairs{more}.")
 
 
 def add_power(chapter, rows, tracks, names):
-    """Adds for each family what methods that promise culled, and which pairs they could have missed; and where too
-    little was culled or at risk for 0 missed to say anything."""
+    """Adds where methods that promise culled too little, or nothing was at risk, so that 0 missed says little."""
     for family, methods in families_of(tracks):
-        shares, risks, little, safe = [], "", [], []
+        little, safe = [], []
         for method, places in methods:
             of = [sum(culled_shares(r)) for r in places.values() if column(r, "views_used").notna().any()]
-            if method not in names or not of:
-                continue
-            low, high = rounded(min(of), 2), rounded(max(of), 2)
-            shares.append(f"{method} {low if low == high else low + ' to ' + high} %")
-            little += [method] * (max(of) < LEAST_CULLED)
-            if method.startswith("FAR ("):
-                track = pd.concat(list(places.values()))
-                risk, bare = risks_of(rows, track)
-                safe += [method] * (not risk > 0)
-                risks = risks or (f"; at risk of {grouped(total(track, 'colliding'))} that collide: "
-                                  f"{grouped(risk)} with 0.9 of the radius and {grouped(bare)} without a ball"
-                                  if risk == risk and bare == bare else "; pairs at risk were not counted")
-        if shares:
-            chapter.find(f"{family[0]}: of all triangles culling took away: {listed(shares)}{risks}.")
+            if method in names and of:
+                little += [method] * (max(of) < LEAST_CULLED)
+                safe += [method] * (method.startswith("FAR (") and
+                                    not risks_of(rows, pd.concat(list(places.values())))[0] > 0)
         if little:
             why = WHY_LITTLE.get(family[0])
             chapter.find(f"{family[0]}: {listed(little)} cannot cull {LEAST_CULLED} % of the triangles here"
@@ -207,30 +130,12 @@ def add_power(chapter, rows, tracks, names):
                          "test that the radius is large enough; only pairs lost without a ball are tested.")
 
 
-def add_degradation(chapter, tracks, method):
-    """Adds how much more than the colliding triangles a method keeps, over the places of each family."""
-    parts = []
-    for family, name, places in tracks:
-        values = {at: excess(rows) for at, rows in places.items()}
-        values = {at: x for at, x in values.items() if x == x}
-        if name != method or not values:
-            continue
-        low, high = min(values, key=values.get), max(values, key=values.get)
-        least, most = rounded(values[low]), rounded(values[high])
-        parts.append(f"{family[0]} {least}" if least == most else f"{family[0]} {least} (at {number_text(low)}) to "
-                     f"{most} (at {number_text(high)})")
-    if parts:
-        chapter.find(f"{method} keeps for each triangle that collides: {listed(parts)}.")
-
-
 def fill(chapter, study):
     tracks = tracks_of(study.rows)
     names = list(dict.fromkeys(promising(study.rows).contestant))
     add_promises(chapter, study)
     add_power(chapter, study.rows, tracks, names)
-    add_failures(chapter, tracks, names)
-    for method in names:
-        add_degradation(chapter, tracks, method)
+    add_failures(chapter, study.rows)
     chapter.limits = [
         "Contacts are made to be lost: each lies at the corner of a pixel, in a cell of its own. Every other cell holds "
         "two triangles that only a view can tell apart, so that about half of the triangles can be culled. The "
@@ -250,5 +155,5 @@ def fill(chapter, study):
         "cheaper."]
     add_gaps(chapter, study)
     if tracks:
-        chapter.figures = figures_of(tracks)
-        chapter.tables = [short_table(study.rows, tracks), all_table(tracks)]
+        chapter.figures = [figure_of(tracks)]
+        chapter.tables = [table_of(study.rows, tracks)]

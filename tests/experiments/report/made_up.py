@@ -13,10 +13,10 @@ from frame import Chapter  # noqa: E402
 from store import AXES, Store  # noqa: E402
 
 TEXTS = [axis for axis in AXES if axis not in ("resolution", "frame", "seed")]
-CONSTANTS = {"scene_resolution": 512, "few_triangles": 1000, "users": {}, "depth_rounding": {"24": 3.5, "32": 1.5},
-             "scenes": {"needles": {"seed": 2, "description": "thin"}, "crowd": {"seed": 4, "description": "many"},
-                        "two-spheres": {"description": "two"}, "cloth": {"description": "cloth"},
-                        "two-bunnies": {"needs_meshes": True, "description": "scans"}}}
+CONSTANTS = {"scene_resolution": 512, "few_triangles": 1000, "depth_rounding": {"24": 3.5, "32": 1.5},
+             "scenes": {"needles": {"needs_meshes": False, "seed": 2}, "crowd": {"needs_meshes": False, "seed": 4},
+                        "two-spheres": {"needs_meshes": False}, "cloth": {"needs_meshes": False},
+                        "two-bunnies": {"needs_meshes": True}}}
 
 
 def row(scene, method, counts=(), ms=2.0, left_out="", runs=None, void=(), **axes):

@@ -85,8 +85,6 @@ def test_culling_tells_a_join_of_boxes_from_culling():
     chapter = chapter_of("culling", culling_rows(800))
     said = findings(chapter)
     for part in ("on easy (79 of 80): there it is a fast join of boxes", "keeps fewer on hard (800 of 8,000)",
-                 "Three views leave 2 candidates for each pair that collides on hard (at 256 px), where boxes leave "
-                 "1,000, and 3 candidates for each pair that collides on easy",
                  "than FCL's oriented boxes on 1 of 2 scenes"):
         assert part in said
     assert "BROKEN" not in said and "More pixels" not in said
@@ -116,7 +114,7 @@ def scene_counts(**more):
     ("cloth:450:1e4", "simulated"), ("two-spheres", "constructed"), ("pixel-corners", "constructed")])
 def test_the_source_of_a_scene(scene, source):
     chapter = chapter_of("scenes", [row(scene, "exact", scene_counts())])
-    assert table(chapter, "scenes")[0][1] == source == table(chapter, "scenes-all")[0][1]
+    assert table(chapter, "scenes")[0][1] == source
 
 
 def test_scenes_tell_the_size_of_triangles_at_each_resolution():
@@ -141,13 +139,10 @@ def efficiency_rows(partial):
             if not (partial and frame == 1 and method == "quick-cullide")]
 
 
-@pytest.mark.parametrize("partial, quick, time", [
-    (True, ["s", "1", "0.500", "1", "20", "3", "0", "0"], "2"),
-    (False, ["s", "2", "0.500", "1", "40", "6", "0", "0"], "3 (2 to 4)")])
-def test_efficiency_sums_the_frames_that_all_have(partial, quick, time):
+@pytest.mark.parametrize("partial", [True, False])
+def test_efficiency_sums_the_frames_that_all_have(partial):
     chapter = chapter_of("efficiency", efficiency_rows(partial))
-    assert table(chapter, "efficiency-quick") == [quick]
-    assert table(chapter, "efficiency-times")[0][3] == time
+    assert "Quick-CULLIDE asks 0.500 and draws 1 times as often" in findings(chapter)
     assert table(chapter, "efficiency-factors")[0] == ["s", "OBB", "2", "2 (2 to 2)", "1 (1 to 1)", "1 (1 to 1)"]
     assert "leaves 2 (s) to 2 (s) times fewer triangles than the objects" in findings(chapter)
     assert "CULLIDE 6 of 40" in findings(chapter) and "FAR (OBB) 0 of 40" in findings(chapter)
@@ -159,8 +154,7 @@ def test_scaling_says_what_is_missed():
     rows = [row("crowd:100", "cullide", run_counts(missed, objects=100), resolution=side)
             for side, missed in ((128, 4), (512, 1))]
     chapter = chapter_of("scaling", rows)
-    assert "CULLIDE missed 5 of 40 colliding pairs over all sizes." in findings(chapter)
-    assert table(chapter, "scaling-missed") == [["CULLIDE", "2", "40", "5", "12.5"]]
+    assert "CULLIDE missed 5 of 40 (12 %, on 1 of 1 scene) colliding pairs over all sizes." in findings(chapter)
     assert "at 128 and 512 px" in chapter.figures[0].caption
 
 
@@ -171,7 +165,7 @@ def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
                 for n in (10 << i for i in range(points))]
 
     six = chapter_of("scaling", rows(6))
-    assert "exact 2.00 (2.00 to 2.00)" in findings(six)
+    assert [r[-1] for r in table(six, "scaling-exponents")] == ["2.00 (2.00 to 2.00)"]
     series = six.figures[0].panels[0].series[0]
     # Of nine runs the least and the largest.
     assert np.allclose(np.array(series.y_low) / series.y, 0.96, rtol=1e-12)
@@ -181,7 +175,7 @@ def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
                "another {0} runs with {2} %. Bars")
     assert six.figures[0].caption.startswith(caption.format(9, "99.6", 97))
     assert chapter_of("scaling", rows(6, runs=3)).figures[0].caption.startswith(caption.format(3, "75", 60))
-    assert "exact 2.00 (no interval of 5 points)" in findings(chapter_of("scaling", rows(5)))
+    assert table(chapter_of("scaling", rows(5)), "scaling-exponents")[0][-1] == "2.00 (no interval of 5 points)"
 
 
 # ---- devices

@@ -108,7 +108,7 @@ TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
     RunOptions options = options_of(of, lab);
     const auto forecast = [&](double sharpness) {
       const Plan planned = plan(drawn, options);
-      return forecast_misses(drawn, std::get<DrawPlan>(planned.work), options, lab.truth().pairs,
+      return predict_misses(drawn, std::get<DrawPlan>(planned.work), options, lab.truth().pairs,
                              sharpness)
           ->missed;
     };
@@ -123,14 +123,14 @@ TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
 
 TEST(MissModel, SaysWhereItHasNoPrediction) {
   RunOptions options{.method = Method::cullide};
-  EXPECT_EQ(unforeseen(options), "");
+  EXPECT_EQ(why_unpredicted(options), "");
   options.conservative = true;
-  EXPECT_EQ(unforeseen(options), "conservative rasterization");
-  EXPECT_EQ(unforeseen({.method = Method::far}), "the method misses nothing");
-  EXPECT_EQ(unforeseen({.method = Method::far, .radius = {.factor = 0.5}}), "");
+  EXPECT_EQ(why_unpredicted(options), "conservative rasterization");
+  EXPECT_EQ(why_unpredicted({.method = Method::far}), "the method misses nothing");
+  EXPECT_EQ(why_unpredicted({.method = Method::far, .radius = {.factor = 0.5}}), "");
   const Scene scene = make_builtin_scene("needles:60");
   const auto line = [&](const RunOptions& of) {
-    return outlook_line(look_ahead(scene, plan(scene, of)));
+    return misses_line(misses_of(scene, plan(scene, of)));
   };
   EXPECT_EQ(line({.method = Method::far_pairs}), "");
   EXPECT_EQ(line(options), "misses     not predicted: conservative rasterization\n");
