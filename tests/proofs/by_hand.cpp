@@ -28,10 +28,10 @@ std::vector<ByHand> proved_by_hand() {
       {"Every point of the exact triangle inside the planes has a partner on the fan of the "
        "computed "
        "corners (winding numbers)",
-       "[budget.md](budget.md), \"Clipping and the fan\"", "`map.point`, `clip.cut`"},
+       "[budget.md](budget.md), \"Clipping and the fan\"; Coq, `Fan.v`", "`map.point`, `clip.cut`"},
       {"A centre inside the exact proxy by more than the displacement of its corners stays inside "
        "(winding numbers)",
-       "[reliability.md](reliability.md), \"One view\"",
+       "[reliability.md](reliability.md), \"One view\"; Coq, `View.v`",
        "`budget.input`, `budget.vertex`, and the term `snap`"},
       {"The doubles of a proxy's rectangle err by less than 2^-48 M; turned normals add less than "
        "2^-20 "
@@ -72,7 +72,8 @@ std::vector<ByHand> proved_by_hand() {
       {"The slice of a depth is exact and never decreases with depth",
        "[budget.md](budget.md), \"Slices\"", "none: no error is bounded, an order is kept"},
       {"Passes, views and rounds keep both triangles of every colliding pair",
-       "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2",
+       "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2; Coq, "
+       "`PassProofs.v`",
        "none: theorem 1 alone joins it to geometry"},
   };
 }

@@ -1,5 +1,6 @@
 // The model of the passes against core/cull, step by step, on random worlds and schedules
-// (docs/model.md). FARCULL_MODEL_TRIALS=1000000 asks for more of them.
+// (docs/model.md). FARCULL_MODEL_TRIALS=1000000 asks for more of them. FARCULL_MODEL_DUMP=FILE
+// writes them for the model that Coq has proved things of, which tests/coq.sh runs.
 #include "tests/core/cull/model_cases.h"
 #include "tests/core/cull/model_worlds.h"
 
@@ -60,19 +61,86 @@ bool breaks(const Case& c, const Outcome& outcome, const Bits& no) {
          std::ranges::any_of(outcome.steps, [&](const Seen& step) { return wrong(step.bits); });
 }
 
+// The pairs that exact tests look at after culling by patches. All boxes overlap.
+std::vector<TrianglePair> pairs_by_core(const Case& c, const Outcome& core) {
+  std::vector<std::uint32_t> live;
+  for (std::uint32_t t = 0; t < core.bits.size(); ++t)
+    if (core.bits[t] != kCulled) live.push_back(t);
+  const std::vector<Box> boxes(core.bits.size(), Box{Vec3::Zero(), Vec3::Ones()});
+  return join_patches(c.scene, boxes, {.owner = c.patches}, live, core.bits);
+}
+
+// A run of core/cull for tests/proofs/coq/replay.ml, as numbers; a set is a mask of bits. Which
+// passes there are is the model's word, and what they set is that of core/cull.
+std::string dump(const Case& c, const Outcome& core) {
+  std::ostringstream out;
+  const std::size_t n = core.bits.size();
+  out << "case " << n << ' ' << c.world.region << ' ' << c.world.owners.size();
+  for (const Set owner : c.world.owners) out << ' ' << owner;
+  out << ' ' << c.world.views.size();
+  for (const View& view : c.world.views) {
+    out << ' ' << view.undrawable << ' ' << view.shown;
+    for (std::size_t t = 0; t < n; ++t) out << ' ' << view.behind[t];
+  }
+  std::vector<Step> steps;
+  run(c.world, c.schedule, c.start, [&](const Step& step) { steps.push_back(step); });
+  const auto add_bits = [&](const std::vector<std::uint8_t>& bits) {
+    Bits sets;
+    for (std::size_t t = 0; t < n; ++t) {
+      sets.f |= Set{(bits[t] & kF) != 0} << t;
+      sets.l |= Set{(bits[t] & kL) != 0} << t;
+    }
+    out << ' ' << sets.f << ' ' << sets.l;
+  };
+  out << ' ' << steps.size();
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const Step& step = steps[i];
+    const bool fine = step.level == static_cast<int>(c.schedule.coarse.size());
+    out << ' ' << c.schedule.quick << ' ' << step.second << ' ' << step.view << ' ' << step.ran;
+    const Level& level = fine ? c.schedule.triangles : c.schedule.coarse[step.level];
+    out << ' ' << level.size();
+    for (const std::vector<Set>& groups : level) {
+      out << ' ' << groups.size();
+      for (const Set group : groups) out << ' ' << group;
+    }
+    out << ' ' << step.before.f << ' ' << step.before.l;
+    add_bits(core.steps[i].bits);
+  }
+  add_bits(core.bits);
+  std::vector<std::array<std::uint32_t, 3>> pairs;
+  if (!c.patches.empty()) {
+    const std::vector<TrianglePair> kept = pairs_by_core(c, core);
+    const std::vector<std::uint32_t> object = owners(c.scene);
+    for (std::uint32_t a = 0; a < n; ++a) {
+      for (std::uint32_t b = a + 1; b < n; ++b) {
+        if (object[a] != object[b] || c.scene.objects[object[a]].self)
+          pairs.push_back({a, b, std::ranges::find(kept, TrianglePair{a, b}) != kept.end()});
+      }
+    }
+  }
+  out << ' ' << pairs.size();
+  for (const auto& [a, b, tested] : pairs) out << ' ' << a << ' ' << b << ' ' << tested;
+  out << '\n';
+  return out.str();
+}
+
 TEST(CullModel, AgreesWithCullStepByStep) {
   const int count = trials();
   Contents contents;
+  std::ofstream dumped;
+  if (const char* path = std::getenv("FARCULL_MODEL_DUMP")) dumped.open(path);
   for (int n = 0; n < count; ++n) {
     const Case c = nth_case(n);
     const Outcome core = by_core(c);
     ASSERT_EQ(difference(by_model(c), core), "") << "seed " << n;
+    if (dumped.is_open()) dumped << dump(c, core);
     const Bits no = forbidden(c.world);
     contents.add(c, core, no);
     if (!model::breaks(c.start, no)) {
       ASSERT_FALSE(breaks(c, core, no)) << "theorem 2, seed " << n;
     }
   }
+  if (dumped.is_open()) dumped << "end\n";
   std::printf("%d schedules, %d steps\n", count, contents.steps);
   for (const int some : contents.all()) EXPECT_GT(some, count / 100);
 }
@@ -174,13 +242,7 @@ TEST(CullModel, AgreesWithJoinPatches) {
     if (c.patches.empty()) continue;
     const Bits bits = run(c.world, c.schedule, c.start, [](const Step&) {});
     const Outcome core = by_core(c);
-    std::vector<std::uint32_t> live;
-    for (std::uint32_t t = 0; t < core.bits.size(); ++t)
-      if (core.bits[t] != kCulled) live.push_back(t);
-    // All boxes overlap.
-    const std::vector<Box> boxes(core.bits.size(), Box{Vec3::Zero(), Vec3::Ones()});
-    const std::vector<TrianglePair> pairs =
-        join_patches(c.scene, boxes, {.owner = c.patches}, live, core.bits);
+    const std::vector<TrianglePair> pairs = pairs_by_core(c, core);
     ASSERT_EQ(pairs, pairs_by_model(c, bits)) << "seed " << n;
     c.schedule.rules.joins_inside_owners = false;
     inside_differs += pairs != pairs_by_model(c, bits);

@@ -1,5 +1,5 @@
 """Compares the verdicts of farcull check and of farcull-check-verified, on certificates and on forged ones, and changes
-inequalities of the proved checker, which must break its proof. tests/coq.sh calls it.
+inequalities of the proved checker, or rules of the passes (tests/proofs/coq), which must break their proofs. tests/coq.sh calls it.
   verified_test.py compare FARCULL CHECKER FOLDER RANDOM   RANDOM scenes on a small grid, besides those that are built in
   verified_test.py mutants SOURCES FOLDER"""
 import base64
@@ -272,29 +272,72 @@ MUTANTS = [
     ('((obj a <? last b) ||', '((last b <? obj a) ||')]
 FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs']
 
+# Of the passes, and of the statements about one view. Each file, and the files that prove things of it.
+CULLING = {
+    'Passes': (['Passes', 'PassProofs'], [
+        ('if second p then rev (seq 0 (owners w)) else', 'if second p then seq 0 (owners w) else'),
+        ('asks p t && negb (undrawable (along p) t)', 'asks p t'),
+        ('undrawable v u || behind v t u.', 'behind v t u.'),
+        ('existsb (hides (along p) t) stored) asked\n', 'existsb (hides (along p) t) stored) (firstn 1 asked)\n'),
+        ('(fun u => negb (mem u (bit (negb second) b)))', '(fun u => negb (mem u (bit second b)))'),
+        ('mem t (f b) && mem t (l b)', 'mem t (f b) || mem t (l b)'),
+        ('Bits (f b) (cleared w p ++ l b)', 'Bits (cleared w p ++ f b) (l b)'),
+        ('(owner w u =? o) && stores p u', '(owner w u <? o) && stores p u'),
+        ('(negb (mem u (l b)) && negb (mem t (f b)))', '(negb (mem t (l b)) && negb (mem u (f b)))'),
+        ('negb (drawn u t) || (owner w u =? owner w t) ||', '(owner w u =? owner w t) ||'),
+        ('negb (drawn u t) || (owner w u =? owner w t) ||', 'negb (drawn u t) ||'),
+        ('if drawn u t then [u; t] else', 'if drawn u t then [u] else'),
+        ('sees v u t /\\ sees v t u.', 'sees v u t.'),
+        ('In t g -> owner w t = o.', 'In t g -> owner w t <= o.'),
+        ('~ In u (l b) /\\ ~ In t (f b).', '~ In u (f b) /\\ ~ In t (l b).')]),
+    'Fan': (['Fan'], [
+        ('(small : E < 1)', '(small : E < 2)'),
+        ('bound + 1 <= s * Q i', 'bound <= s * Q i'),
+        ('s * computed c i <= bound', 'bound <= s * computed c i'),
+        ('if Rlt_dec 0 (side p q) then 1%Z', 'if Rlt_dec (side p q) 0 then 1%Z')]),
+    'View': (['View'], [
+        ('sqrt 2 / 2 + sqrt 2 * E', '1 / 2 + sqrt 2 * E'),
+        ('sqrt 2 / 2 + sqrt 2 * E', 'sqrt 2 / 2 + E'),
+        ('Definition double (E : R) : R := E ^ 2', 'Definition double (E : R) : R := E ^ 4'),
+        ('d + w < r ->', 'd < r ->'),
+        ('squared p Q\' <= r ^ 2 -> solid p', 'solid p -> squared p Q\' <= r ^ 2')])}
+
 
 def mutants(sources, folder):
-    """Each change compiles as a program, and its proof does not."""
+    """Each change compiles as a program, and its proof does not. Of the view, whose files have their statements beside the proofs,
+    only that the file is refused, and not for its syntax."""
     os.makedirs(folder, exist_ok=True)
-    text = open(f'{sources}/Checker.v', encoding='utf-8').read()
+    tables = CULLING if os.path.exists(f'{sources}/Passes.v') else {'Checker': (FILES, MUTANTS)}
+    failed, number = [], 0
+    for name, (files, table) in tables.items():
+        failed += broken_proofs(sources, folder, name, files, table, number)
+        number += len(table)
+    print('\n'.join(failed) or f'mutants: each of the {number} changes breaks the proof')
+    return bool(failed)
+
+
+def broken_proofs(sources, folder, changed, files, table, first):
+    text = open(f'{sources}/{changed}.v', encoding='utf-8').read()
     failed = []
-    for number, (old, new) in enumerate(MUTANTS):
+    for number, (old, new) in enumerate(table, first):
         if text.count(old) != 1:
             failed.append(f'{old!r} does not occur once')
             continue
         for name in os.listdir(sources):
             if name.endswith(('.v', '.vo')):
                 shutil.copy(f'{sources}/{name}', folder)
-        with open(f'{folder}/Checker.v', 'w', encoding='utf-8') as file:
+        with open(f'{folder}/{changed}.v', 'w', encoding='utf-8') as file:
             file.write(text.replace(old, new))
-        broken = next((name for name in FILES if subprocess.run(
-            ['timeout', '300', 'coqc', f'{name}.v'], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            check=False).returncode), 'none')
-        print(f'mutant {number + 1}: {old}  ->  {new}: breaks {broken}', flush=True)
-        if broken in ('none', 'Checker'):
+        broken, why = 'none', ''
+        for name in files:
+            status, why = output(['timeout', '300', 'sh', '-c', f'cd {folder} && exec coqc -q {name}.v'])
+            if status:
+                broken = name
+                break
+        print(f'mutant {number + 1}: {old.strip()}  ->  {new.strip()}: breaks {broken}', flush=True)
+        if broken == 'none' or (broken == changed and len(files) > 1) or 'Syntax error' in why:
             failed.append(f'{new!r} breaks {broken}')
-    print('\n'.join(failed) or f'mutants: each of the {len(MUTANTS)} changes breaks the proof')
-    return bool(failed)
+    return failed
 
 
 command, *rest = sys.argv[1:]
