@@ -303,7 +303,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
   const PictureResult result = answer_beside([&] {
     if (page) require_three();
     PictureArguments arguments;
-    arguments.scene = {"scene"};
+    arguments.scene = {kept.scene->name};
     arguments.view = view;
     arguments.up = up;
     arguments.zoom = zoom;
@@ -313,7 +313,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));
     validate(arguments);
     Lab lab(device, stopping_progress(), threads);
-    lab.scene("scene", [&] { return *kept.scene; });
+    lab.scene(kept.scene->name, [&] { return *kept.scene; });
     PictureResult flat = make_picture(arguments, lab);
     if (page) {
       html = make_page({.picture = arguments, .steps = arguments.panels, .frames = {}}, flat, lab)

@@ -353,7 +353,8 @@ def join(*meshes: Any) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[
     """
     if not meshes:
         raise InputError("meshes", "are none", "give (V, F) of each")
-    vertices, triangles, starts = [], [], []
+    vertices, triangles = [], []
+    starts: List[int] = []
     first_vertex = first_triangle = 0
     for mesh in meshes:
         V, F = _arguments.mesh(mesh)
@@ -362,6 +363,9 @@ def join(*meshes: Any) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[
                 raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
         if not F.size:
             raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
+        if V.dtype.kind in "iu" and V.size and max(-int(V.min()), int(V.max())) > 2**53:
+            # Beside another type numpy would round them.
+            raise InputError("V", "hold what a double may not hold exactly", "give doubles")
         if not (0 <= F.min() and F.max() < len(V)):
             raise InputError(
                 "F", "names a vertex that the mesh does not have", "correct the index"

@@ -231,6 +231,7 @@ def test_answers_are_shown_in_the_browser(tmp_path, monkeypatch):
     farcull.show(record, page, browse=False)
     missed = len(record.missed())
     assert f'"missedPairs":{missed}' in page.read_text() and missed > 0 and len(opened) == 1
+    assert '"command":"farcull picture two-tori --method cullide' in page.read_text()
     # A page that would show other pairs than the answer is an error.
     V[0] += 1e-9
     V[F[result.pairs[0, 0], 0]] += 100
@@ -265,6 +266,8 @@ def test_meshes_of_other_packages_are_joined():
     for wrong in (Held(points=W, cells=[line]), Held(points=W, cells=np.array([3, 0, 1, 2])), Held(vertices=V), Held(points=W, cells=[]),
                   Held(vertices=None, faces=None), farcull.Scene("two-tori"), "mesh.obj", V, 3):
         assert refused(farcull.join, trimesh, wrong) in ("meshes", "V", "F")
+    # numpy would round whole numbers beside doubles.
+    assert refused(farcull.join, trimesh, (np.array([[0, 0, 0], [1, 0, 0], [0, 2**53 + 1, 0]]), [[0, 1, 2]])) == "V"
     flat = Held(points=W[:, :2], cells=[triangle])
     assert refused(farcull.join, flat) == "V"
 
