@@ -2,10 +2,14 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,13 +49,33 @@ py::dict report_of(const ColliderReport& report) {
                   "stages"_a = std::move(stages));
 }
 
-py::dict result_of(const ColliderResult& result, bool kinds) {
-  return py::dict(
-      "pairs"_a = pair_array(result.pairs),
-      "neighbour_pairs"_a = pair_array(result.neighbour_pairs),
-      "kinds"_a = kinds ? py::object(kind_array(result.contacts)) : py::none(),
-      "neighbour_kinds"_a = kinds ? py::object(kind_array(result.neighbour_contacts)) : py::none(),
-      "complete"_a = result.complete, "report"_a = report_of(result.report));
+// What is said of how each pair meets: the arrays of kinds and of segments, or None. Contacts: any
+// range of ColliderContact with a size.
+template <class Contacts>
+std::pair<py::object, py::object> contact_arrays(const Contacts& contacts, ColliderContacts asked) {
+  if (asked == ColliderContacts::none) return {py::none(), py::none()};
+  if (asked == ColliderContacts::kinds) return {kind_array(contacts), py::none()};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  py::array_t<double> segments(
+      {static_cast<py::ssize_t>(contacts.size()), py::ssize_t{2}, py::ssize_t{3}});
+  double* to = segments.mutable_data();
+  for (const ColliderContact& contact : contacts) {
+    const bool segment = contact.dimension == 0 || contact.dimension == 1;
+    for (const std::array<double, 3>& end : contact.ends) {
+      for (const double x : end) *to++ = segment ? x : kNone;
+    }
+  }
+  return {kind_array(contacts), segments};
+}
+
+py::dict result_of(const ColliderResult& result, ColliderContacts asked) {
+  const auto [kinds, segments] = contact_arrays(result.contacts, asked);
+  const auto [of_neighbours, between] = contact_arrays(result.neighbour_contacts, asked);
+  return py::dict("pairs"_a = pair_array(result.pairs),
+                  "neighbour_pairs"_a = pair_array(result.neighbour_pairs), "kinds"_a = kinds,
+                  "segments"_a = segments, "neighbour_kinds"_a = of_neighbours,
+                  "neighbour_segments"_a = between, "complete"_a = result.complete,
+                  "report"_a = report_of(result.report));
 }
 
 // A forked process lacks the threads and the device of objects made before the fork.
@@ -61,30 +85,34 @@ void require_process(pid_t maker, const char* made) {
         "make one in each process", false);
 }
 
-// A collider for one thread at a time, and for one process.
-class KeptCollider {
+// A Collider or a DistanceFinder, for one thread at a time and for one process.
+template <class Finder, class Options>
+class KeptFinder {
  public:
-  explicit KeptCollider(const ColliderOptions& options)
-      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
-    beside([&] { collider_ = std::make_unique<Collider>(options); });
+  KeptFinder(const char* name, Options given)
+      : options(std::move(given)), name_(name), process_(::getpid()) {
+    beside([&] { finder_ = std::make_unique<Finder>(options); });
   }
 
-  py::dict find(const py::array& vertices, const py::array& triangles, const py::array& starts) {
-    require_process(process_, "Collider");
-    const Turn turn(used_, "Collider");
+  auto find(const py::array& vertices, const py::array& triangles, const py::array& starts) {
+    require_process(process_, name_);
+    const Turn turn(used_, name_);
     const Given given(vertices, triangles, starts);
-    const ColliderResult result =
-        answer_beside([&] { return collider_->find(given.input(copies_)); });
-    return result_of(result, kinds_);
+    return answer_beside([&] { return finder_->find(given.input(copies_)); });
   }
+
+  const Options options;
 
  private:
+  const char* name_;
   pid_t process_;
-  bool kinds_;
   Copies copies_;
   std::atomic_flag used_;
-  std::unique_ptr<Collider> collider_;
+  std::unique_ptr<Finder> finder_;
 };
+
+using KeptCollider = KeptFinder<Collider, ColliderOptions>;
+using KeptDistances = KeptFinder<DistanceFinder, DistanceFinderOptions>;
 
 DistanceKind kind_of(const std::string& name) {
   if (name == "objects") return DistanceKind::objects;
@@ -93,50 +121,62 @@ DistanceKind kind_of(const std::string& name) {
   raise("kind", "'" + name + "' is no choice", "give objects, nearest or all", true);
 }
 
-// In the order of DistanceInside.
+// Codes of features and of DistanceInside are indices into these.
+constexpr std::array kFeatures = {"vertex 0", "vertex 1", "vertex 2", "edge 0",
+                                  "edge 1",   "edge 2",   "face"};
 constexpr std::array kInside = {"unknown", "none", "a", "b", "not closed"};
 
-py::list distances_of(const py::array& vertices, const py::array& triangles,
-                      const py::array& starts, const std::string& kind, std::size_t k,
-                      double within, bool self, const std::vector<bool>& self_objects, bool inside,
-                      unsigned threads) {
-  const DistanceFinderOptions options{.kind = kind_of(kind),
-                                      .k = k,
-                                      .within = within,
-                                      .self = self,
-                                      .self_objects = self_objects,
-                                      .inside = inside,
-                                      .threads = threads};
-  const Given given(vertices, triangles, starts);
-  const std::vector<DistanceAnswer> answers = answer_beside([&] {
-    Copies copies;
-    return distances(given.input(copies), options);
-  });
-  py::list out;
-  for (const DistanceAnswer& d : answers) {
-    out.append(py::dict(
-        "objects"_a = std::pair(d.object_a, d.object_b),
-        "triangles"_a = std::pair(d.triangle_a, d.triangle_b), "distance"_a = d.distance,
-        "squared"_a = d.squared,
-        "points"_a = std::pair(py::tuple(py::cast(d.point_a)), py::tuple(py::cast(d.point_b))),
-        "features"_a = std::pair(d.feature_a, d.feature_b),
-        "inside"_a = kInside.at(static_cast<std::size_t>(d.inside))));
+std::uint8_t feature_code(const std::string& feature) {
+  return static_cast<std::uint8_t>(std::find(kFeatures.begin(), kFeatures.end(), feature) -
+                                   kFeatures.begin());
+}
+
+// A column for each member of DistanceAnswer.
+py::dict columns_of(const std::vector<DistanceAnswer>& answers) {
+  const auto count = static_cast<py::ssize_t>(answers.size());
+  constexpr py::ssize_t kTwo = 2, kThree = 3;
+  py::array_t<std::int64_t> objects({count, kTwo}), triangles({count, kTwo});
+  py::array_t<double> distance(count), points({count, kTwo, kThree});
+  py::array_t<std::uint8_t> features({count, kTwo}), inside(count);
+  py::list squared(answers.size());
+  std::int64_t *object = objects.mutable_data(), *triangle = triangles.mutable_data();
+  double* point = points.mutable_data();
+  std::uint8_t* feature = features.mutable_data();
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    const DistanceAnswer& d = answers[k];
+    const auto at = static_cast<py::ssize_t>(k);
+    object = std::ranges::copy(std::array{d.object_a, d.object_b}, object).out;
+    triangle = std::ranges::copy(std::array{d.triangle_a, d.triangle_b}, triangle).out;
+    point = std::ranges::copy(d.point_b, std::ranges::copy(d.point_a, point).out).out;
+    *feature++ = feature_code(d.feature_a);
+    *feature++ = feature_code(d.feature_b);
+    distance.mutable_at(at) = d.distance;
+    inside.mutable_at(at) = static_cast<std::uint8_t>(d.inside);
+    squared[k] = py::str(d.squared);
   }
+  return py::dict("objects"_a = objects, "triangles"_a = triangles, "distance"_a = distance,
+                  "squared"_a = squared, "points"_a = points, "features"_a = features,
+                  "inside"_a = inside);
+}
+
+template <class Names>
+py::tuple names_of(const Names& names) {
+  py::tuple out(names.size());
+  for (std::size_t k = 0; k < names.size(); ++k) out[k] = py::str(names[k]);
   return out;
 }
 
 }  // namespace
 
 ColliderOptions options_of(const py::dict& question) {
-  return {
-      .threads = question["threads"].cast<unsigned>(),
-      .self = question["all_objects"].cast<bool>(),
-      .self_objects = question["self_objects"].cast<std::vector<bool>>(),
-      .clearance = question["clearance"].cast<double>(),
-      .neighbours = question["neighbours"].cast<bool>(),
-      .contacts = question["kinds"].cast<bool>() ? ColliderContacts::kinds : ColliderContacts::none,
-      .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
-      .limit = question["limit"].cast<std::uint64_t>()};
+  return {.threads = question["threads"].cast<unsigned>(),
+          .self = question["all_objects"].cast<bool>(),
+          .self_objects = question["self_objects"].cast<std::vector<bool>>(),
+          .clearance = question["clearance"].cast<double>(),
+          .neighbours = question["neighbours"].cast<bool>(),
+          .contacts = static_cast<ColliderContacts>(question["contacts"].cast<int>()),
+          .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
+          .limit = question["limit"].cast<std::uint64_t>()};
 }
 
 void add_collider(py::module_& module) {
@@ -147,11 +187,14 @@ void add_collider(py::module_& module) {
              options.device = device_of(device);
              options.views = views;
              options.resolution = resolution;
-             return std::make_unique<KeptCollider>(options);
+             return std::make_unique<KeptCollider>("Collider", options);
            }),
            py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
            py::arg("resolution"))
-      .def("find", &KeptCollider::find);
+      .def("find", [](KeptCollider& kept, const py::array& vertices, const py::array& triangles,
+                      const py::array& starts) {
+        return result_of(kept.find(vertices, triangles, starts), kept.options.contacts);
+      });
   // Codes of kinds are indices into this tuple, for both enumerations.
   static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());
   py::tuple kinds(kContactKinds.size());
@@ -160,7 +203,26 @@ void add_collider(py::module_& module) {
   module.attr("kinds") = kinds;
 }
 
-void add_distances(py::module_& module) { module.def("distances", &distances_of); }
+void add_distances(py::module_& module) {
+  py::class_<KeptDistances>(module, "DistanceFinder")
+      .def(py::init([](const std::string& kind, std::size_t k, double within, bool self,
+                       const std::vector<bool>& self_objects, bool inside, unsigned threads) {
+        return std::make_unique<KeptDistances>("DistanceFinder",
+                                               DistanceFinderOptions{.kind = kind_of(kind),
+                                                                     .k = k,
+                                                                     .within = within,
+                                                                     .self = self,
+                                                                     .self_objects = self_objects,
+                                                                     .inside = inside,
+                                                                     .threads = threads});
+      }))
+      .def("find", [](KeptDistances& kept, const py::array& vertices, const py::array& triangles,
+                      const py::array& starts) {
+        return columns_of(kept.find(vertices, triangles, starts));
+      });
+  module.attr("features") = names_of(kFeatures);
+  module.attr("inside") = names_of(kInside);
+}
 
 // Pairs part by part: the stream of the library.
 
@@ -173,7 +235,7 @@ class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
              const ColliderOptions& options)
-      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
+      : process_(::getpid()), contacts_(options.contacts) {
     const Given given(vertices, triangles, starts);
     beside([&] {
       Copies copies;
@@ -197,20 +259,13 @@ class KeptStream {
       given_ = false;
       return py::none();
     }
-    const auto count = static_cast<py::ssize_t>(found_.size());
-    py::array_t<std::int64_t> pairs({count, py::ssize_t{2}});
-    py::array_t<bool> neighbours(count);
-    py::array_t<std::uint8_t> kinds(kinds_ ? count : 0);
-    std::int64_t* pair = pairs.mutable_data();
-    bool* neighbour = neighbours.mutable_data();
-    std::uint8_t* kind = kinds.mutable_data();
-    for (const ColliderFound& one : found_) {
-      *pair++ = one.pair.a;
-      *pair++ = one.pair.b;
-      *neighbour++ = one.neighbours;
-      if (kinds_) *kind++ = static_cast<std::uint8_t>(one.contact.kind);
-    }
-    return py::make_tuple(pairs, neighbours, kinds_ ? py::object(kinds) : py::none());
+    py::array_t<bool> neighbours(static_cast<py::ssize_t>(found_.size()));
+    std::ranges::transform(found_, neighbours.mutable_data(), std::identity(),
+                           &ColliderFound::neighbours);
+    const auto [kinds, segments] =
+        contact_arrays(std::views::transform(found_, &ColliderFound::contact), contacts_);
+    return py::make_tuple(pair_array(std::views::transform(found_, &ColliderFound::pair)),
+                          neighbours, kinds, segments);
   }
 
   void take() { given_ = false; }
@@ -221,7 +276,7 @@ class KeptStream {
 
  private:
   pid_t process_;
-  bool kinds_;
+  ColliderContacts contacts_;
   bool given_ = false;  // a call began, and its pairs were not taken
   std::atomic_flag used_;
   std::unique_ptr<ColliderStream> stream_;

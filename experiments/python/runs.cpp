@@ -1,5 +1,5 @@
-// Runs of any method, with their record, plan, check and picture, like the commands of the same
-// names.
+// Runs of any method, with their record, plan, check, picture and clashes, like the commands of the
+// same names.
 #include <pybind11/stl.h>
 
 #include <array>
@@ -16,9 +16,12 @@
 #include "core/scene/scene.h"
 #include "experiments/library/input.h"
 #include "experiments/measure/harness.h"
+#include "experiments/method/clash.h"
+#include "experiments/picture/clash_page.h"
 #include "experiments/picture/picture.h"
 #include "experiments/python/arrays.h"
 #include "experiments/record/check.h"
+#include "experiments/record/clash.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -293,13 +296,16 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
+// The pixels, what the panels say, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom,
                      const std::optional<std::string>& depth_view, int width, int height,
-                     const std::string& device, unsigned threads) {
+                     const std::string& device, unsigned threads, bool page) {
+  std::string html;
   const PictureResult result = answer_beside([&] {
+    if (page) require_three();
     PictureArguments arguments;
-    arguments.scene = {"scene"};
+    arguments.scene = {kept.scene->name};
     arguments.view = view;
     arguments.up = up;
     arguments.zoom = zoom;
@@ -309,8 +315,13 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));
     validate(arguments);
     Lab lab(device, stopping_progress(), threads);
-    lab.scene("scene", [&] { return *kept.scene; });
-    return make_picture(arguments, lab);
+    lab.scene(kept.scene->name, [&] { return *kept.scene; });
+    PictureResult flat = make_picture(arguments, lab);
+    if (page) {
+      html = make_page({.picture = arguments, .steps = arguments.panels, .frames = {}}, flat, lab)
+                 .html;
+    }
+    return flat;
   });
   const Image& image = result.image;
   static_assert(sizeof(Rgba) == 4);
@@ -322,7 +333,27 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
                           "colliding"_a = p.colliding, "missed"_a = p.missed, "kept"_a = p.kept,
                           "device"_a = p.device));
   }
-  return py::make_tuple(pixels, shown);
+  return py::make_tuple(pixels, shown, html);
+}
+
+// The answer of clashes(), with the scene that it is about.
+struct KeptClash {
+  std::shared_ptr<const Scene> scene;
+  ClashRecord record;
+};
+
+KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignore,
+                   unsigned threads) {
+  return answer_beside([&] {
+    auto scene = std::make_shared<Scene>(*kept.scene);
+    for (Object& object : scene->objects) object.self = false;
+    ClashOptions options{.clearance = clearance, .ignored = scene->ignored, .threads = threads};
+    for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
+    options.ignored = in_order(std::move(options.ignored));
+    scene->ignored.clear();
+    ClashRecord record = clashes(*scene, options, stopping_progress());
+    return KeptClash{std::move(scene), std::move(record)};
+  });
 }
 
 }  // namespace
@@ -354,12 +385,12 @@ void add_runs(py::module_& module) {
   };
   viewed("bits", &Candidates::bits);
   viewed("kept_triangles", &Candidates::triangles);
-  const auto text = [&](const char* name, auto write) {
-    made.def(name,
-             [write](const KeptRecord& k) { return answer_beside([&] { return write(k); }); });
+  const auto text = [](auto& of, const char* name, auto write) {
+    using Answer = typename std::decay_t<decltype(of)>::type;
+    of.def(name, [write](const Answer& k) { return answer_beside([&] { return write(k); }); });
   };
-  text("json", [](const KeptRecord& k) { return to_json(*k.scene, k.record).dump(); });
-  text("table", [](const KeptRecord& k) { return run_table(*k.scene, k.record); });
+  text(made, "json", [](const KeptRecord& k) { return to_json(*k.scene, k.record).dump(); });
+  text(made, "table", [](const KeptRecord& k) { return run_table(*k.scene, k.record); });
   made.def("missed", [](const KeptRecord& k) -> py::object {
     if (!k.record.verification) return py::none();
     return pair_array(answer_beside([&] { return k.missed(); }));
@@ -382,6 +413,11 @@ void add_runs(py::module_& module) {
   module.def("plan", &plan_of);
   module.def("check", &check_of);
   module.def("picture", &picture_of);
+  py::class_<KeptClash> clash(module, "Clash");
+  text(clash, "json", [](const KeptClash& k) { return clash_json(*k.scene, k.record, "").dump(); });
+  text(clash, "table", [](const KeptClash& k) { return clash_text(*k.scene, k.record, {}); });
+  text(clash, "page", [](const KeptClash& k) { return clash_page(*k.scene, k.record, ""); });
+  module.def("clash", &clash_of);
 }
 
 }  // namespace farcull::python

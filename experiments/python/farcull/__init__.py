@@ -27,17 +27,19 @@ from . import _farcull
 
 _farcull.require_main_interpreter()  # before the import of numpy, which needs it too
 
-from ._collide import KINDS, Collider, Distance, Part, Report, Result, Stream
-from ._collide import collide, distances, join, stream
+from ._clash import Clash, clash, show
+from ._collide import KINDS, Collider, Part, Report, Result, Stream, collide, join, stream
+from ._distances import FEATURES, INSIDE, Distance, DistanceFinder, Distances, distances
 from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes
 
 __version__ = "0.1"
 
 __all__ = [
-    "Check", "Collider", "Distance", "Error", "Frames", "InputError", "KINDS", "MissingFileError",
-    "Part", "Picture", "Plan", "Record", "Report", "Result", "Scene", "Stream", "builtin_scenes",
-    "check", "collide", "distances", "join", "picture", "plan", "stream",
+    "Check", "Clash", "Collider", "Distance", "DistanceFinder", "Distances", "Error", "FEATURES", "Frames",
+    "INSIDE", "InputError", "KINDS", "MissingFileError", "Part", "Picture", "Plan", "Record", "Report",
+    "Result", "Scene", "Stream", "builtin_scenes", "check", "clash", "collide", "distances", "join",
+    "picture", "plan", "show", "stream",
 ]
 
 del _farcull

@@ -10,23 +10,60 @@ import numpy as np
 from ._errors import InputError
 
 
+def read(name: str, given: Any, remedy: str) -> np.ndarray:
+    """The argument as numpy reads it; through DLPack where it offers nothing else."""
+    if isinstance(given, np.ndarray):
+        return np.asarray(given)
+    try:
+        device = getattr(given, "__dlpack_device__", None)
+        if device is not None and device()[0] not in (1, 3):  # the CPU, and memory that it shares
+            raise InputError(name, "are in the memory of another device", "copy them to the CPU first")
+        if device is not None and not hasattr(given, "__array__"):
+            return np.from_dlpack(given)
+        return np.asarray(given)
+    except (MemoryError, InputError):
+        raise
+    except Exception as error:  # any exception of the argument's methods
+        raise InputError(name, f"cannot be read as an array ({error})", remedy) from error
+
+
 def array(name: str, given: Any) -> np.ndarray:
     """The argument as an array, without a copy if it is one. An empty list becomes (0, 3)."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(name, "are a masked array", "give an array without a mask")
-    try:
-        out = np.asarray(given)
-    except MemoryError:
-        raise
-    except Exception as error:  # any exception of the argument's __array__
-        raise InputError(
-            name, f"cannot be read as an array ({error})", "give rows of three numbers"
-        ) from error
+    out = read(name, given, "give rows of three numbers")
     if not out.dtype.isnative:
         out = out.astype(out.dtype.newbyteorder("="))
     if out.shape == (0,) and out.dtype == np.float64:  # an empty list
         out = np.empty((0, 3), np.int64 if name == "F" else np.float64)
     return out
+
+
+def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a mesh: a pair of arrays, or an object that has them."""
+    remedy = "give (V, F), or an object with vertices and faces, or with points and cells"
+    if isinstance(given, (tuple, list)) and len(given) == 2:
+        V, F = given
+    elif hasattr(given, "vertices") and hasattr(given, "faces"):  # as of trimesh
+        V, F = given.vertices, given.faces
+    elif hasattr(given, "points") and hasattr(given, "cells"):  # as of meshio
+        try:
+            blocks = [(block.type, block.data) for block in given.cells]
+        except AttributeError:
+            raise InputError("meshes", "have cells without type and data", remedy) from None
+        # Lines and vertices are no surface; to pass over other cells would miss collisions.
+        others = {kind for kind, _ in blocks} - {"triangle", "line", "vertex"}
+        if others:
+            raise InputError(
+                "meshes", "have cells of the type " + ", ".join(sorted(others)),
+                "give triangles alone, as in (mesh.points, mesh.cells_dict['triangle'])",
+            )
+        V = given.points
+        found = [array("F", data) for kind, data in blocks if kind == "triangle"]
+        F = np.concatenate(found) if found else []
+    else:
+        raise InputError("meshes", f"hold a {type(given).__name__}", remedy)
+    return array("V", V), array("F", F)
 
 
 class Grouped:
@@ -41,14 +78,7 @@ class Grouped:
             return
         if object_starts is not None:
             raise InputError("labels", "are given beside object_starts", "give one of the two")
-        try:
-            each = np.asarray(labels)
-        except MemoryError:
-            raise
-        except Exception as error:
-            raise InputError(
-                "labels", f"cannot be read as an array ({error})", "give one for each triangle"
-            ) from error
+        each = read("labels", labels, "give one for each triangle")
         if each.ndim != 1 or len(each) != len(self.triangles) or each.dtype.kind not in "iubUS":
             raise InputError(
                 "labels",
@@ -85,14 +115,7 @@ def _starts(given: Any) -> np.ndarray:
     """The first triangle of each object; None stands for one object. The library checks them."""
     if given is None:
         return np.zeros(0, np.int64)
-    try:
-        out = np.asarray(given)
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise InputError(
-            "object_starts", f"cannot be read as an array ({error})", "give whole numbers"
-        ) from error
+    out = read("object_starts", given, "give whole numbers")
     if out.ndim != 1 or (out.dtype.kind not in "iu" and out.size):
         raise InputError(
             "object_starts",
@@ -175,12 +198,7 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
-    try:
-        rows = np.asarray(given)
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise InputError("ignore", f"cannot be read as an array ({error})", remedy) from error
+    rows = read("ignore", given, remedy)
     if rows.size == 0:
         return []
     if scene is not None and rows.dtype.kind == "U" and rows.ndim == 2 and rows.shape[1] == 2:

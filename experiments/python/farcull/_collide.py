@@ -1,15 +1,15 @@
-"""Pairs of triangles that collide, and distances of objects."""
+"""Pairs of triangles that collide."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _farcull
-from ._errors import InputError
+from ._errors import Error, InputError
 
 Device = Literal["cpu", "gl", "best"]
 
@@ -60,10 +60,36 @@ class Result:
     """(k,): how each of ``pairs`` meets, as its place in :data:`KINDS`; None unless asked for."""
     neighbour_kinds: Optional[NDArray[np.uint8]]
     """The same of ``neighbour_pairs``."""
+    segments: Optional[NDArray[np.float64]]
+    """(k, 2, 3): the ends of the segment that each of ``pairs`` has in common, each coordinate rounded
+    once; twice the point where it is one, NaN where there is none or more, as between coplanar
+    triangles. None unless asked for."""
+    neighbour_segments: Optional[NDArray[np.float64]]
+    """The same of ``neighbour_pairs``."""
     complete: bool
     """False: there may be more pairs behind the last one, which the limit leaves out. Before it none is
     missing."""
     report: Report
+    # Vertices, grouped triangles and self of collide(), for show(); None where a page shows other pairs.
+    _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with a row for each pair, sorted: ``a``, ``b``, ``neighbours``, and where they were
+        asked for ``contact``, the kind, and the ends of the segment, ``x0`` to ``z1``."""
+        pairs = np.concatenate([self.pairs, self.neighbour_pairs])
+        order = np.lexsort((pairs[:, 1], pairs[:, 0]))
+        columns: Dict[str, Any] = {"a": pairs[order, 0], "b": pairs[order, 1], "neighbours": order >= len(self.pairs)}
+        if self.kinds is not None and self.neighbour_kinds is not None:
+            codes = np.concatenate([self.kinds, self.neighbour_kinds])
+            columns["contact"] = np.array(KINDS)[codes[order]]
+        if self.segments is not None and self.neighbour_segments is not None:
+            segments = np.concatenate([self.segments, self.neighbour_segments])
+            columns.update(ends(segments[order], "0", "1"))
+        return pandas().DataFrame(columns)
+
+    def __getstate__(self) -> Dict[str, Any]:
+        """For pickle: without the arrays of the call."""
+        return {**self.__dict__, "_input": None}
 
     def __repr__(self) -> str:
         rows = len(self.pairs), len(self.neighbour_pairs)
@@ -71,9 +97,23 @@ class Result:
         return f"<farcull.Result: {rows[0]} pairs, {rows[1]} of neighbours{more}>"
 
 
+def ends(points: NDArray[np.float64], *names: str) -> Dict[str, NDArray[np.float64]]:
+    """Two points in each row (k, 2, 3) as columns."""
+    return {x + name: points[:, e, i] for e, name in enumerate(names) for i, x in enumerate("xyz")}
+
+
+def pandas() -> Any:
+    """The module, if it is there."""
+    try:
+        import pandas
+    except ImportError:
+        raise Error("pandas", "is not installed", "install it, or use the arrays") from None
+    return pandas
+
+
 def _question(
     self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
-    kinds: bool, ignore: Optional[ArrayLike], limit: Optional[int],
+    kinds: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
 ) -> _farcull.Question:
     """What a collider and a stream are asked, checked."""
     all_objects, each = _arguments.selves(self)
@@ -83,7 +123,8 @@ def _question(
         "clearance": _arguments.number("clearance", clearance),
         "neighbours": _arguments.flag("neighbours", neighbours),
         "threads": _arguments.threads(threads),
-        "kinds": _arguments.flag("kinds", kinds),
+        # The place in ColliderContacts of C++: nothing, kinds, or kinds and segments.
+        "contacts": max(_arguments.flag("kinds", kinds), 2 * _arguments.flag("segments", segments)),
         "ignore": _arguments.ignored(ignore),
         "limit": _arguments.limit(limit),
     }
@@ -102,6 +143,7 @@ class Collider:
     - ``clearance``: pairs at this distance or less collide too. World units, finite, 0 or more.
     - ``neighbours``: False: neighbours are counted, not decided.
     - ``kinds``: True: say of each pair how the two triangles meet (:data:`KINDS`).
+    - ``segments``: True: say that, and the points that they have in common.
     - ``ignore``: (k, 2) pairs of different objects, by their numbers from 0, that are not tested
       against each other.
     - ``limit``: only the first so many pairs, neighbours among them, in the order of the rows; 1 or
@@ -118,10 +160,10 @@ class Collider:
     def __init__(
         collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
         neighbours: bool = True, device: Device = "cpu", threads: int = 0, kinds: bool = False,
-        ignore: Optional[ArrayLike] = None, limit: Optional[int] = None, views: str = "auto",
-        resolution: int = 0,
+        segments: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
+        views: str = "auto", resolution: int = 0,
     ) -> None:
-        question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
+        question = _question(self, clearance, neighbours, threads, kinds, segments, ignore, limit)
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(
             question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
@@ -154,15 +196,18 @@ class Collider:
                 "labels", "have no meaning with the ignored numbers or the limit of a Collider",
                 "sort the triangles by label and give object_starts, or call farcull.collide",
             )
-        return self._find(V, grouped)
+        return self._find(_arguments.array("V", V), grouped)
 
-    def _find(self, V: ArrayLike, grouped: _arguments.Grouped) -> Result:
-        found = self._collider.find(
-            _arguments.array("V", V), grouped.triangles, grouped.starts
-        )
-        for pairs, kinds in (("pairs", "kinds"), ("neighbour_pairs", "neighbour_kinds")):
-            found[pairs], found[kinds] = grouped.pairs(found[pairs], found[kinds])
-        return Result(**{**found, "report": Report(**found["report"])})
+    def _find(
+        self, V: NDArray[Any], grouped: _arguments.Grouped, shown: Optional[Tuple[Any, Any, Any]] = None
+    ) -> Result:
+        found = self._collider.find(V, grouped.triangles, grouped.starts)
+        for names in (
+            ("pairs", "kinds", "segments"),
+            ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
+        ):
+            found.update(zip(names, grouped.pairs(*(found[name] for name in names))))
+        return Result(**{**found, "report": Report(**found["report"])}, _input=shown)
 
 
 def collide(
@@ -170,7 +215,7 @@ def collide(
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
     device: Device = "cpu", threads: int = 0, kinds: bool = False,
     ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
-    labels: Optional[ArrayLike] = None,
+    labels: Optional[ArrayLike] = None, segments: bool = False,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
     itself. For many frames, keep a :class:`Collider`.
@@ -194,17 +239,22 @@ def collide(
         None: all. Not with ``labels``.
     labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any
         order. The objects are numbered by their labels in ascending order.
+    segments: True: say of each pair how the two triangles meet, and the points that they have in common.
 
-    Returns a :class:`Result`. Raises InputError for arguments that are not so and where there is nothing
+    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for arguments that are not so and where there is nothing
     to test; Error for a fault of the device, and MemoryError.
     """
     grouped = _arguments.Grouped(F, object_starts, labels)
     _refuse_limit(limit, labels)
+    V = _arguments.array("V", V)
+    all_objects, each = _arguments.selves(self)
+    selves = each or all_objects
     collider = Collider(
-        self=self, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
-        kinds=kinds, ignore=grouped.ignored(ignore), limit=limit,
+        self=selves, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
+        kinds=kinds, segments=segments, ignore=grouped.ignored(ignore), limit=limit,
     )
-    return collider._find(V, grouped)
+    usual = clearance == 0 and ignore is None and limit is None
+    return collider._find(V, grouped, (V, grouped, selves) if usual else None)
 
 
 def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
@@ -222,6 +272,7 @@ class Part:
     pairs: NDArray[np.int64]  # (k, 2), rows sorted, as in Result; neighbours among them
     neighbours: NDArray[np.bool_]  # (k,): which pairs are of neighbours
     kinds: Optional[NDArray[np.uint8]]  # (k,): places in KINDS; None unless asked for
+    segments: Optional[NDArray[np.float64]]  # (k, 2, 3), as in Result
 
     def __repr__(self) -> str:
         return f"<farcull.Part: {len(self.pairs)} pairs>"
@@ -264,7 +315,7 @@ def stream(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
     threads: int = 0, kinds: bool = False, ignore: Optional[ArrayLike] = None,
-    limit: Optional[int] = None, labels: Optional[ArrayLike] = None,
+    limit: Optional[int] = None, labels: Optional[ArrayLike] = None, segments: bool = False,
 ) -> Stream:
     """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
     rows: where they are too many for the memory, or the first ones are wanted at once. ::
@@ -285,7 +336,7 @@ def stream(
     grouped = _arguments.Grouped(F, object_starts, labels)
     _refuse_limit(limit, labels)
     question = _question(
-        self, clearance, neighbours, threads, kinds, grouped.ignored(ignore), limit
+        self, clearance, neighbours, threads, kinds, segments, grouped.ignored(ignore), limit
     )
     made = _farcull.Stream(
         _arguments.array("V", V), grouped.triangles, grouped.starts, question
@@ -293,24 +344,28 @@ def stream(
     return Stream(made, grouped)
 
 
-def join(
-    *meshes: Tuple[ArrayLike, ArrayLike]
-) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Several meshes, each as (V, F), as one V, F and object_starts: the arguments of :func:`collide`."""
+def join(*meshes: Any) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Several meshes, or one, as V, F and object_starts: the arguments of :func:`collide`.
+
+    A mesh is a pair (V, F); or an object with ``vertices`` and ``faces``, as of trimesh; or one with
+    ``points`` and ``cells``, as of meshio, whose cells are triangles (lines and vertices among them are
+    no surface, and are passed over). Raises InputError for anything else, and for a mesh without triangles.
+    """
     if not meshes:
         raise InputError("meshes", "are none", "give (V, F) of each")
-    vertices, triangles, starts = [], [], []
+    vertices, triangles = [], []
+    starts: List[int] = []
     first_vertex = first_triangle = 0
     for mesh in meshes:
-        if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
-            raise InputError("meshes", "hold what is no pair of arrays", "give (V, F) of each")
-        V = _arguments.array("V", mesh[0])
-        F = _arguments.array("F", mesh[1])
+        V, F = _arguments.mesh(mesh)
         for name, given, kinds in (("V", V, "fiu"), ("F", F, "iu")):
             if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in kinds:
                 raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
         if not F.size:
             raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
+        if V.dtype.kind in "iu" and V.size and max(-int(V.min()), int(V.max())) > 2**53:
+            # Beside another type numpy would round them.
+            raise InputError("V", "hold what a double may not hold exactly", "give doubles")
         if not (0 <= F.min() and F.max() < len(V)):
             raise InputError(
                 "F", "names a vertex that the mesh does not have", "correct the index"
@@ -321,64 +376,3 @@ def join(
         first_vertex += len(V)
         first_triangle += len(F)
     return np.concatenate(vertices), np.concatenate(triangles), np.array(starts, np.int64)
-
-
-@dataclass(frozen=True)
-class Distance:
-    """How far two objects are apart, or with kind="all" two triangles."""
-
-    objects: Tuple[Any, Any]  # numbers from 0, or labels
-    triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
-    distance: float  # rounded to nearest; infinity beyond the largest double
-    squared: str  # "numerator/denominator" in lowest terms, nothing rounded
-    points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
-    features: Tuple[str, str]  # where they lie: "vertex 2", "edge 0" or "face"
-    inside: str  # "none", "a" or "b": that object lies inside the other; "not closed"; "unknown"
-
-
-def distances(
-    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
-    kind: Literal["objects", "nearest", "all"] = "objects", k: int = 1,
-    within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
-    inside: bool = True, threads: int = 0, labels: Optional[ArrayLike] = None,
-) -> List[Distance]:
-    """How far objects are apart, exactly, with the points that are nearest.
-
-    Parameters
-    ----------
-    V, F, object_starts, labels: as in :func:`collide`. With ``labels`` the objects of an answer are
-        labels.
-    kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
-        "all": every pair of triangles at the distance ``within`` or less.
-    k: how many others, 1 or more; with "nearest" alone.
-    within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
-    self: as in :func:`collide`, but not with "nearest".
-    inside: whether an object lies inside another; not with "all".
-    threads: up to 1024; 0: one for each core.
-
-    Returns a list of :class:`Distance`, sorted by objects, then by triangles; with ``labels`` in the
-    order of the labels. Raises InputError naming the argument that is wrong, also where there is nothing
-    to ask, and MemoryError.
-    """
-    grouped = _arguments.Grouped(F, object_starts, labels)
-    all_objects, each = _arguments.selves(self)
-    limit = _arguments.optional_number("within", within)
-    if limit is not None and limit < 0:
-        raise InputError("within", f"is {limit}", "give a distance, 0 or more, or None")
-    which = _arguments.choice("kind", kind, ("objects", "nearest", "all"))
-    wanted = _arguments.integer("k", k, 1, 2**32 - 1)
-    if which == "nearest" and (all_objects or any(each)):
-        raise InputError("self", "has no meaning with kind nearest", "leave it out, or give another kind")
-    if which != "nearest" and wanted != 1:
-        raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
-    answers = _farcull.distances(
-        _arguments.array("V", V), grouped.triangles, grouped.starts, which, wanted,
-        -1.0 if limit is None else limit, all_objects, each, _arguments.flag("inside", inside),
-        _arguments.threads(threads),
-    )
-    for answer in answers:
-        if grouped.order is not None:
-            answer["triangles"] = tuple(int(grouped.order[t]) for t in answer["triangles"])
-        if grouped.labels is not None:
-            answer["objects"] = tuple(grouped.labels[o].item() for o in answer["objects"])
-    return [Distance(**answer) for answer in answers]

@@ -6,6 +6,8 @@ from numpy import bool_, float64, int64, uint8, uint32
 from numpy.typing import NDArray
 
 kinds: Tuple[str, ...]
+features: Tuple[str, ...]
+inside: Tuple[str, ...]
 options: Mapping[str, bool]
 
 def require_main_interpreter() -> None: ...
@@ -18,7 +20,7 @@ class Question(TypedDict):
     clearance: float
     neighbours: bool
     threads: int
-    kinds: bool
+    contacts: int
     ignore: Sequence[Sequence[int]]
     limit: int
 
@@ -43,20 +45,26 @@ class Stream:
     ) -> None: ...
     def next(
         self,
-    ) -> Optional[Tuple[NDArray[int64], NDArray[bool_], Optional[NDArray[uint8]]]]: ...
+    ) -> Optional[
+        Tuple[
+            NDArray[int64], NDArray[bool_], Optional[NDArray[uint8]], Optional[NDArray[float64]]
+        ]
+    ]: ...
 
-def distances(
-    vertices: NDArray[Any],
-    triangles: NDArray[Any],
-    starts: NDArray[int64],
-    kind: str,
-    k: int,
-    within: float,
-    all_objects: bool,
-    self_objects: Sequence[bool],
-    inside: bool,
-    threads: int,
-) -> List[dict[str, Any]]: ...
+class DistanceFinder:
+    def __init__(
+        self,
+        kind: str,
+        k: int,
+        within: float,
+        all_objects: bool,
+        self_objects: Sequence[bool],
+        inside: bool,
+        threads: int,
+    ) -> None: ...
+    def find(
+        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
+    ) -> dict[str, Any]: ...
 
 class Scene:
     name: str
@@ -134,4 +142,14 @@ def picture(
     height: int,
     device: str,
     threads: int,
-) -> Tuple[NDArray[uint8], List[dict[str, Any]]]: ...
+    page: bool,
+) -> Tuple[NDArray[uint8], List[dict[str, Any]], str]: ...
+
+class Clash:
+    def json(self) -> str: ...
+    def table(self) -> str: ...
+    def page(self) -> str: ...
+
+def clash(
+    scene: Scene, clearance: float, ignore: Sequence[Sequence[int]], threads: int
+) -> Clash: ...

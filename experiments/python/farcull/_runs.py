@@ -13,7 +13,7 @@ from ._errors import InputError
 if TYPE_CHECKING:
     from ._scenes import Scene
 
-def _scene(given: Any) -> Any:
+def scene_of(given: Any) -> Any:
     from ._scenes import Scene
 
     if not isinstance(given, Scene):
@@ -35,10 +35,13 @@ def _options(method: Any, options: Dict[str, Any]) -> Dict[str, str]:
 class Record:
     """What a run found, and what it took. Made by :meth:`Scene.run`."""
 
-    __slots__ = ("_record", "scene", "method")
+    __slots__ = ("_record", "_options", "scene", "method")
 
-    def __init__(self, record: Any, scene: "Scene", method: str) -> None:
+    def __init__(
+        self, record: Any, scene: "Scene", method: str, options: Optional[Dict[str, Any]]
+    ) -> None:
         self._record = record
+        self._options = options  # for the page of show(); None where that would show other pairs
         self.scene = scene
         self.method = method
 
@@ -127,11 +130,12 @@ def run(
     ignore: Optional[Any] = None, limit: Optional[int] = None, **options: Any,
 ) -> Record:
     made = _farcull.run(
-        _scene(scene), _options(method, options), _arguments.flag("verify", verify),
+        scene_of(scene), _options(method, options), _arguments.flag("verify", verify),
         _arguments.threads(threads), _arguments.flag("kinds", kinds),
         _arguments.ignored(ignore, scene._scene), _arguments.limit(limit),
     )
-    return Record(made, scene, method)
+    usual = ignore is None and limit is None and not options.get("clearance")
+    return Record(made, scene, method, {"method": method, **options} if usual else None)
 
 
 @dataclass(frozen=True)
@@ -152,7 +156,7 @@ def plan(
     """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
     since it stops what comes behind the culling; ``kinds`` is no part of one."""
     given = _options(method, options)
-    made = _scene(scene)
+    made = scene_of(scene)
     text, table = _farcull.plan(
         made, given, _arguments.threads(threads), _arguments.ignored(ignore, made),
         _arguments.limit(limit),
@@ -208,7 +212,7 @@ def check(
             listed = np.empty((0, 2), np.int64)
         if listed.dtype.kind not in "iu" or listed.ndim != 2 or listed.shape[1] != 2:
             raise InputError("pairs", "are no rows of two whole numbers", "give an array (k, 2)")
-    return Check(**_farcull.check(_scene(scene), certificate, listed, distance))
+    return Check(**_farcull.check(scene_of(scene), certificate, listed, distance))
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,12 +221,13 @@ class Picture:
 
     pixels: NDArray[np.uint8]  # (height, width, 4): red, green, blue, opacity; rows from the top
     panels: List[Dict[str, Any]]  # title, headline, and the counts that they show
+    html: str  # the page, if it was asked for; else empty
 
 
 def picture(
     scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("far-pairs",), *,
     view: str = "", up: str = "", zoom: bool = False, depth_view: Optional[str] = None,
-    width: int = 900, height: int = 760, device: str = "", threads: int = 0,
+    width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
     """Draws which triangles collide, which of them a method missed, and which it kept in vain.
 
@@ -230,6 +235,8 @@ def picture(
     - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and what is upwards.
     - ``zoom``: only what collides. ``depth_view``: instead, the depth stored in this view.
     - ``width``, ``height``: px of a panel.
+    - ``page``: True: also write a page in which the scene can be turned, as of ``farcull picture --html``;
+      :func:`show` opens it.
 
     It needs OpenGL, for which Mesa's software device will do. Raises InputError and Error.
     """
@@ -239,12 +246,12 @@ def picture(
     for one in methods:
         options = dict(one) if isinstance(one, dict) else {"method": one}
         panels.append(_options(options.pop("method", "far-pairs"), options))
-    pixels, shown = _farcull.picture(
-        _scene(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
+    pixels, shown, html = _farcull.picture(
+        scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
         _arguments.flag("zoom", zoom),
         None if depth_view is None else _arguments.text("depth_view", depth_view),
         _arguments.integer("width", width, 1, 10**6),
         _arguments.integer("height", height, 1, 10**6), _arguments.text("device", device),
-        _arguments.threads(threads),
+        _arguments.threads(threads), _arguments.flag("page", page),
     )
-    return Picture(pixels, shown)
+    return Picture(pixels, shown, html)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Python module as users install it: by pip into a fresh virtual environment, and by
-# `cmake --install`. Each then answers, and is the one that was installed.
+# The Python module as users install it: as a wheel, by pip, into a fresh virtual environment, and by
+# `cmake --install`. Each then answers from any folder, and is the one that was installed.
 #   tests/experiments/python/install_test.sh PYTHON BUILD_FOLDER SOURCE_FOLDER CMAKE
 # Status 77: PYTHON cannot make virtual environments, or has no numpy.
 set -euo pipefail
@@ -34,6 +34,15 @@ fi
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
 folder=$(dirname "$(dirname "$(find "$work/prefix" -name '_farcull.*.so')")")
 PYTHONPATH=$folder answers "$python" "$work/prefix"
+[[ $folder == */site-packages ]] || { echo "install_test: a prefix of its own got $folder" >&2; exit 1; }
+# Below /usr and /usr/local the package lies where Debian's Python looks: sys.path has the folder.
+for prefix in /usr /usr/local; do
+  [[ -e /etc/debian_version && $python == /usr/bin/* ]] || continue
+  DESTDIR=$work/root "$cmake" --install "$build/experiments/python" --prefix $prefix >/dev/null
+  folder=$(dirname "$(dirname "$(find "$work/root$prefix/lib" -name '_farcull.*.so')")")
+  (cd / && "$python" -c 'import sys; assert sys.argv[1] in sys.path, sys.argv' "${folder#"$work/root"}")
+  rm -rf "$work/root"
+done
 
 # pip writes into the folder that it builds from.
 mkdir -p "$work/source/experiments"
@@ -45,13 +54,14 @@ ln -s "$source/core" "$work/source/core"
 mkdir "$work/bin"
 printf '#!/bin/sh\ntouch "%s"\nexec "%s" "$@" -- -n\n' "$work/asked" "$cmake" >"$work/bin/cmake"
 chmod +x "$work/bin/cmake"
-PATH=$work/bin:$PATH FARCULL_BUILD=$build "$work/venv/bin/pip" install --quiet --no-index --no-build-isolation \
-  --disable-pip-version-check "$work/source/experiments/python"
+PATH=$work/bin:$PATH FARCULL_BUILD=$build "$work/venv/bin/pip" wheel --quiet --no-deps --no-index --no-build-isolation \
+  --disable-pip-version-check --wheel-dir "$work/wheels" "$work/source/experiments/python"
 [[ -e $work/asked ]] || { echo "install_test: pip did not ask for a build" >&2; exit 1; }
+(cd "$work/wheels" && "$work/venv/bin/pip" install --quiet --no-index --disable-pip-version-check farcull-*.whl)
 answers "$work/venv/bin/python" "$work/venv"
 "$work/venv/bin/pip" uninstall --quiet --yes --disable-pip-version-check farcull
 if (answers "$work/venv/bin/python" "$work/venv") 2>/dev/null; then
   echo "install_test: the module answers after it was removed" >&2
   exit 1
 fi
-echo "install_test: installed by CMake and by pip"
+echo "install_test: installed by CMake and as a wheel"

@@ -231,7 +231,7 @@ def test_what_the_package_shows_of_itself():
     assert repr(result) == "<farcull.Result: 1 pairs, 0 of neighbours>"
     said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
     assert said.startswith(f"farcull {farcull.__version__}, ")
-    for call in (farcull.collide, farcull.stream, farcull.distances, farcull.Collider.find):
+    for call in (farcull.collide, farcull.stream, farcull.distances, farcull.Collider.find, farcull.clash, farcull.show):
         for name in inspect.signature(call).parameters:
             assert name in call.__doc__ or call is farcull.stream, (call, name)
     with pytest.raises(FileNotFoundError) as caught:
@@ -259,7 +259,7 @@ def test_what_only_claims_to_be_an_array_is_refused():
 def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
     from farcull import _farcull
 
-    question = dict(threads=0, all_objects=False, self_objects=[], clearance=0.0, neighbours=True, kinds=False,
+    question = dict(threads=0, all_objects=False, self_objects=[], clearance=0.0, neighbours=True, contacts=0,
                     ignore=[], limit=0)
     collider = _farcull.Collider(question, device="cpu", views="auto", resolution=0)
     starts = np.zeros(1, np.int64)

@@ -1,0 +1,124 @@
+"""Which objects clash, and pages to look at answers in a browser."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import tempfile
+import webbrowser
+from typing import Any, Dict, List, Optional, Union
+
+import numpy as np
+
+from . import _arguments, _farcull
+from ._collide import Result, pandas
+from ._errors import Error, InputError
+from ._runs import Record, picture, scene_of
+from ._scenes import Scene
+
+
+class Clash:
+    """Which objects of a scene clash, as ``farcull clash`` says. Made by :func:`clash`."""
+
+    __slots__ = ("_clash", "_json", "scene")
+
+    def __init__(self, clash: Any, scene: Scene) -> None:
+        self._clash = clash
+        self._json: Dict[str, Any] = json.loads(clash.json())
+        self.scene = scene
+
+    @property
+    def rows(self) -> List[Dict[str, Any]]:
+        """The pairs of objects that are not clear, the most serious first: ``a``, ``b``, ``name_a``,
+        ``name_b``, ``verdict`` and the other keys of docs/clash.md."""
+        return self._json["pairs"]
+
+    @property
+    def clean(self) -> bool:
+        """Whether every pair was examined, and none is a clash, contained or unknown."""
+        return self._json["clean"]
+
+    def json(self) -> Dict[str, Any]:
+        """The record as ``farcull clash --json`` writes it."""
+        return self._json
+
+    def to_pandas(self) -> Any:
+        """A DataFrame of ``rows``, with a column such as ``depth.at_least`` for each key of an entry."""
+        return pandas().json_normalize(self.rows)
+
+    def __str__(self) -> str:
+        return self._clash.table()
+
+    def __repr__(self) -> str:
+        return f"<farcull.Clash of {self.scene!r}: {len(self.rows)} pairs of objects>"
+
+
+def clash(
+    scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0
+) -> Clash:
+    """Which objects of a scene clash, touch, lie inside each other or are near, for every two of them.
+
+    Parameters
+    ----------
+    scene: a :class:`Scene` of two objects or more.
+    clearance: objects at this distance or less are near. World units, finite, 0 or more.
+    ignore: pairs of objects that may clash, as of :meth:`Scene.run`; they are listed apart.
+    threads: up to 1024; 0: one for each core.
+
+    Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
+    """
+    given = scene_of(scene)
+    made = _farcull.clash(
+        given, _arguments.number("clearance", clearance), _arguments.ignored(ignore, given),
+        _arguments.threads(threads),
+    )
+    return Clash(made, scene)
+
+
+def show(
+    what: Union[Scene, Record, Result, Clash], path: Union[None, str, os.PathLike[str]] = None, *,
+    browse: bool = True,
+) -> str:
+    """Writes a page on which the answer can be turned and explored, and opens it in the browser.
+
+    - ``what``: a :class:`Clash`: the objects of each pair, and where they cross. A :class:`Record`, a
+      :class:`Scene` or a :class:`Result` of :func:`collide`: the triangles that collide, and with a Record
+      those that its method missed.
+    - ``path``: of the page; None: a new temporary file, which stays.
+    - ``browse``: False: the page is written only.
+
+    Returns the path. The page of a Clash needs no OpenGL; the others do, for which Mesa's software device
+    will do. Raises InputError where no page shows the answer, and Error.
+    """
+    html = _html(what)
+    if path is None:
+        handle, path = tempfile.mkstemp(prefix="farcull-", suffix=".html")
+        os.close(handle)
+    page = pathlib.Path(path).absolute()
+    page.write_text(html, encoding="utf-8")
+    if browse:
+        webbrowser.open(page.as_uri())
+    return str(page)
+
+
+def _html(what: Any) -> str:
+    if isinstance(what, Clash):
+        return what._clash.page()
+    if isinstance(what, Scene):
+        return picture(what, page=True).html
+    remedy = "show the scene, as in farcull.show(farcull.Scene.from_arrays(V, F, object_starts))"
+    unusual = "has no page, since it was asked with a clearance, ignored objects or a limit"
+    if isinstance(what, Record):
+        if what._options is None:
+            raise InputError("what", unusual, "show its scene")
+        return picture(what.scene, [what._options], page=True).html
+    if not isinstance(what, Result):
+        raise InputError("what", f"{what!r} has no page", "give a Scene, Record, Result or Clash")
+    if what._input is None:
+        raise InputError("what", unusual + ", or comes from a Collider or a pickle", remedy)
+    V, grouped, selves = what._input
+    scene = Scene.from_arrays(V, grouped.triangles, grouped.starts, self=selves)
+    if not np.array_equal(grouped.pairs(scene.run(verify=False).pairs)[0], what.pairs):
+        raise Error("what", "its arrays have changed since", "call farcull.collide again")
+    return picture(scene, page=True).html

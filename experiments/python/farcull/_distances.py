@@ -1,0 +1,166 @@
+"""How far objects are apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Dict, Iterator, Literal, Optional, Sequence, Tuple, Union, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arguments, _farcull
+from ._collide import ends, pandas
+from ._errors import InputError
+
+Kind = Literal["objects", "nearest", "all"]
+
+FEATURES: Tuple[str, ...] = _farcull.features
+"""Where on its triangle a nearest point lies; edge i goes from corner i to the next."""
+
+INSIDE: Tuple[str, ...] = _farcull.inside
+"""Which of two objects lies inside the other: "none"; "a" or "b"; "not closed" where one may be inside
+the other, which has no inside; "unknown" where they meet, or where it was not asked."""
+
+
+@dataclass(frozen=True)
+class Distance:
+    """How far two objects are apart, or with kind="all" two triangles."""
+
+    objects: Tuple[Any, Any]  # numbers from 0, or labels
+    triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
+    distance: float  # rounded to nearest; infinity beyond the largest double
+    squared: str  # "numerator/denominator" in lowest terms, nothing rounded
+    points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
+    features: Tuple[str, str]  # where they lie, of FEATURES
+    inside: str  # of INSIDE
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Distances(Sequence[Distance]):
+    """Distances, as arrays with a row for each, and as a sequence of :class:`Distance`.
+
+    ``found[3]`` is a Distance; ``found[found.distance < 1]`` are those that are so near.
+    """
+
+    objects: NDArray[Any]  # (k, 2) numbers from 0, or labels
+    triangles: NDArray[np.int64]  # (k, 2) the first of those that are nearest
+    distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity beyond the largest double
+    squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms, nothing rounded
+    points: NDArray[np.float64]  # (k, 2, 3) nearest points, each coordinate rounded
+    features: NDArray[np.uint8]  # (k, 2) where they lie, as places in FEATURES
+    inside: NDArray[np.uint8]  # (k,) places in INSIDE
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __iter__(self) -> Iterator[Distance]:
+        for objects, triangles, distance, squared, (p, q), (f, g), inside in zip(
+            *(column.tolist() for column in vars(self).values())
+        ):
+            yield Distance(
+                tuple(objects), tuple(triangles), distance, squared, (tuple(p), tuple(q)),
+                (FEATURES[f], FEATURES[g]), INSIDE[inside],
+            )
+
+    @overload
+    def __getitem__(self, rows: int) -> Distance: ...
+    @overload
+    def __getitem__(self, rows: Union[slice, NDArray[Any]]) -> Distances: ...
+    def __getitem__(self, rows: Any) -> Any:
+        if isinstance(rows, (int, np.integer)):
+            row = range(len(self))[rows]
+            return next(iter(self[row : row + 1]))
+        return Distances(**{name: column[rows] for name, column in vars(self).items()})
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with a row for each, and the columns that ``farcull distance --csv`` writes."""
+        columns: Dict[str, Any] = {}
+        for e, end in enumerate("ab"):
+            columns["object_" + end] = self.objects[:, e]
+            columns["triangle_" + end] = self.triangles[:, e]
+        columns.update(distance=self.distance, squared=self.squared, **ends(self.points, "_a", "_b"))
+        for e, end in enumerate("ab"):
+            columns["feature_" + end] = np.array(FEATURES)[self.features[:, e]]
+        columns["inside"] = np.array(INSIDE)[self.inside]
+        return pandas().DataFrame(columns)
+
+    def __repr__(self) -> str:
+        return f"<farcull.Distances: {len(self)} answers>"
+
+
+class DistanceFinder:
+    """Finds distances again and again, as for the frames of an animation.
+
+    The nearest triangles of one call are the first guess of the next, which saves time where little
+    moved; any other scene may follow too. The answers are those of :func:`distances`, whose options it
+    takes by name. One thread at a time may use it.
+    """
+
+    # The first parameter is positional, so that `self` can be a name of an option.
+    def __init__(
+        finder, /, *, kind: Kind = "objects", k: int = 1, within: Optional[float] = None,
+        self: Union[bool, Sequence[bool]] = False, inside: bool = True, threads: int = 0,
+    ) -> None:
+        all_objects, each = _arguments.selves(self)
+        limit = _arguments.optional_number("within", within)
+        if limit is not None and limit < 0:
+            raise InputError("within", f"is {limit}", "give a distance, 0 or more, or None")
+        which = _arguments.choice("kind", kind, ("objects", "nearest", "all"))
+        wanted = _arguments.integer("k", k, 1, 2**32 - 1)
+        if which == "nearest" and (all_objects or any(each)):
+            raise InputError(
+                "self", "has no meaning with kind nearest", "leave it out, or give another kind"
+            )
+        if which != "nearest" and wanted != 1:
+            raise InputError(
+                "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
+            )
+        finder._finder = _farcull.DistanceFinder(
+            which, wanted, -1.0 if limit is None else limit, all_objects, each,
+            _arguments.flag("inside", inside), _arguments.threads(threads),
+        )
+
+    def find(
+        self, V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
+        labels: Optional[ArrayLike] = None,
+    ) -> Distances:
+        """The distances. The parameters are those of :meth:`Collider.find`; with ``labels`` the objects
+        of an answer are labels. The finder can be used again after an error, and after Ctrl-C."""
+        grouped = _arguments.Grouped(F, object_starts, labels)
+        found = self._finder.find(_arguments.array("V", V), grouped.triangles, grouped.starts)
+        found["squared"] = np.array(found["squared"], dtype=object)
+        if grouped.order is not None:
+            found["triangles"] = grouped.order[found["triangles"]]
+        if grouped.labels is not None:
+            found["objects"] = grouped.labels[found["objects"]]
+        return Distances(**found)
+
+
+def distances(
+    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None, kind: Kind = "objects",
+    k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
+    inside: bool = True, threads: int = 0, labels: Optional[ArrayLike] = None,
+) -> Distances:
+    """How far objects are apart, exactly, with the points that are nearest. For many frames, keep a
+    :class:`DistanceFinder`.
+
+    Parameters
+    ----------
+    V, F, object_starts, labels: as in :func:`collide`. With ``labels`` the objects of an answer are
+        labels.
+    kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
+        "all": every pair of triangles at the distance ``within`` or less.
+    k: how many others, 1 or more; with "nearest" alone.
+    within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
+    self: as in :func:`collide`, but not with "nearest".
+    inside: whether an object lies inside another; not with "all".
+    threads: up to 1024; 0: one for each core.
+
+    Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the
+    labels. Raises InputError naming the argument that is wrong, also where there is nothing to ask, and
+    MemoryError.
+    """
+    finder = DistanceFinder(
+        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads
+    )
+    return finder.find(V, F, object_starts, labels)

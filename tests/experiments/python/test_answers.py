@@ -1,0 +1,298 @@
+"""Answers as arrays and tables, against the program's own; pages; and the meshes and arrays that people hold."""
+
+import csv
+import io
+import json
+import pickle
+import subprocess
+import sys
+import types
+
+import farcull
+import numpy as np
+import pytest
+from lab import ALL, PROGRAM, error_of, refused
+from test_contacts import OBJECTS, Program, tangled
+
+
+def asked(*words):
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False)
+    assert done.stdout and done.returncode in (0, 1), done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """Objects that lie apart by some, so that distances are of all kinds."""
+    V, F = tangled(20261127)
+    V = V[F].reshape(-1, 3) + np.repeat([0, 3.25, 0.5, 9], 120)[:, None]
+    F = np.arange(len(V)).reshape(-1, 3)
+    return V, F, Program(tmp_path_factory.mktemp("apart"), V, F)
+
+
+# ---- distances
+
+
+def as_objects(found):
+    """The columns as the objects of before, one row after the other."""
+    return [
+        farcull.Distance(
+            tuple(found.objects[k].tolist()), tuple(found.triangles[k].tolist()), float(found.distance[k]),
+            found.squared[k], tuple(tuple(p) for p in found.points[k].tolist()),
+            tuple(farcull.FEATURES[f] for f in found.features[k]), farcull.INSIDE[found.inside[k]])
+        for k in range(len(found.distance))]
+
+
+def of_program(program, *words):
+    """The distances that the program answers, as objects."""
+    record = json.loads(asked("distance", *sorted(program.folder.glob("*.off")), "--json", "-", *words))
+    return [farcull.Distance(
+        (d["a"], d["b"]), tuple(OBJECTS[o] + t for o, t in zip((d["a"], d["b"]), d["triangles"])), d["distance"],
+        d["squared"], tuple(map(tuple, d["witness"])), tuple(d["features"]), d["inside"] or "unknown")
+        for d in record["pairs"]]
+
+
+QUESTIONS = [dict(kind="objects"), dict(kind="objects", self=True), dict(kind="nearest", k=2), dict(kind="all", within=0.75)]
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_arrays_of_distances_are_the_objects_of_the_program(scene, question):
+    V, F, program = scene
+    words = ["--pairs", question["kind"]] + ["--self"] * ("self" in question)
+    words += [f"--{name}={question[name]}" for name in ("k", "within") if name in question]
+    found = farcull.distances(V, F, OBJECTS, **question)
+    truth = of_program(program, *words)
+    assert as_objects(found) == list(found) == truth and len(found) == len(truth) > 2
+    assert found.objects.dtype == found.triangles.dtype == np.int64
+    # Twin: two columns exchanged in one row are noticed.
+    found.triangles[1] = found.triangles[1, ::-1].copy()
+    assert list(found) != truth
+
+
+def test_the_table_of_distances_is_that_of_the_program(scene):
+    pytest.importorskip("pandas")
+    V, F, program = scene
+    table = farcull.distances(V, F, OBJECTS, self=True).to_pandas()
+    files = sorted(program.folder.glob("*.off"))
+    rows = list(csv.reader(io.StringIO(asked("distance", *files, "--self", "--csv", "-"))))
+    assert list(table.columns) == rows[0]
+    table["triangle_a"] -= 40 * table["object_a"]
+    table["triangle_b"] -= 40 * table["object_b"]
+    theirs = [[cell or "unknown" for cell in row] for row in rows[1:]]
+    numbers = [k for k, name in enumerate(rows[0]) if table[name].dtype.kind in "if"]
+    assert len(table) == len(theirs) == 10
+    for ours, row in zip(table.to_numpy().tolist(), theirs):
+        assert [x if k in numbers else str(x) for k, x in enumerate(ours)] == [
+            float(x) if k in numbers else x for k, x in enumerate(row)]
+
+
+def test_distances_are_a_sequence(scene):
+    V, F, _ = scene
+    found = farcull.distances(V, F, OBJECTS)
+    rows = list(found)
+    assert found[-1] == rows[-1] == found[np.int64(len(rows) - 1)] and list(found[1:3]) == rows[1:3]
+    assert list(found[found.distance > 1]) == [row for row in rows if row.distance > 1] != rows
+    assert found.index(rows[2]) == 2 and rows[2] in found and repr(found) == "<farcull.Distances: 6 answers>"
+    with pytest.raises(IndexError):
+        found[6]
+    none = farcull.distances(V, F, OBJECTS, kind="all", within=0)[:0]
+    assert list(none) == [] and none.points.shape == (0, 2, 3) and none.squared.shape == (0,)
+    assert list(pickle.loads(pickle.dumps(found))) == rows
+
+
+def test_a_finder_answers_frame_after_frame(scene):
+    V, F, _ = scene
+    for question in QUESTIONS:
+        finder = farcull.DistanceFinder(**question)
+        for frame in range(4):
+            moved = V + np.repeat(frame * np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0], [0, 0, 0]]), 120, axis=0)
+            single = farcull.distances(moved, F, OBJECTS, **question)
+            assert list(finder.find(moved, F, OBJECTS)) == list(single)
+            assert refused(finder.find, moved, -F, OBJECTS) == "F"  # and it can be used again
+        labels = np.repeat(["d", "c", "b", "a"], 40)
+        first = finder.find(V, F, labels=labels)[0]
+        assert set(first.objects) <= set("abcd")
+    for wrong in (dict(kind="far"), dict(k=2), dict(within=-1), dict(kind="all"), dict(self=1), dict(threads=-1)):
+        assert refused(farcull.DistanceFinder, **wrong) in (*wrong, "within")
+
+
+# ---- contacts
+
+
+def test_segments_are_those_of_the_program(scene):
+    V, F = tangled(20261128)
+    program = Program(scene[2].folder / "..", V, F)
+    rows = list(csv.DictReader(asked("run", *sorted(program.folder.glob("*.off")), "--self", "--no-verify", "--pairs", "-",
+                                     "--segments").splitlines()))
+    found = farcull.collide(V, F, OBJECTS, self=True, segments=True)
+    ours = {tuple(pair): (farcull.KINDS[kind], ends) for pairs, kinds, segments in (
+        (found.pairs, found.kinds, found.segments),
+        (found.neighbour_pairs, found.neighbour_kinds, found.neighbour_segments))
+        for pair, kind, ends in zip(pairs.tolist(), kinds, segments)}
+    assert len(ours) == len(rows) > 500
+    wrong = 0
+    for row in rows:
+        pair = tuple(OBJECTS[int(row[f"object_{x}"])] + int(row[f"triangle_{x}"]) for x in "ab")
+        kind, ends = ours[pair]
+        theirs = [float(row[c] or "nan") for c in ("x0", "y0", "z0", "x1", "y1", "z1")]
+        assert kind == row["contact"] and np.array_equal(ends.ravel(), theirs, equal_nan=True)
+        wrong += not np.array_equal(ends[::-1].ravel(), theirs, equal_nan=True)
+    assert wrong > 100  # twin: ends exchanged are noticed
+    assert np.isnan(found.segments).any() and np.isfinite(found.segments).any()
+    kinds = farcull.collide(V, F, OBJECTS, **ALL)
+    assert kinds.segments is None and np.array_equal(kinds.kinds, found.kinds)
+
+
+def test_segments_follow_their_pairs():
+    V, F = tangled(7)
+    whole = farcull.collide(V, F, OBJECTS, self=True, segments=True)
+    parts = list(farcull.stream(V, F, OBJECTS, self=True, segments=True))
+    neighbours = np.concatenate([part.neighbours for part in parts])
+    segments = np.concatenate([part.segments for part in parts])
+    assert np.array_equal(segments[~neighbours], whole.segments, equal_nan=True)
+    assert np.array_equal(segments[neighbours], whole.neighbour_segments, equal_nan=True)
+    order = np.random.default_rng(7).permutation(len(F))
+    mixed = farcull.collide(V, F[order], labels=np.repeat(range(4), 40)[order], segments=True)
+    named = {tuple(sorted(order[pair])): ends for pair, ends in zip(mixed.pairs, mixed.segments)}
+    assert len(named) == len(whole.pairs[np.diff(whole.pairs // 40)[:, 0] > 0])
+    for pair, ends in zip(whole.pairs.tolist(), whole.segments):
+        if tuple(pair) in named:
+            assert np.array_equal(named[tuple(pair)], ends, equal_nan=True)
+
+
+def test_the_table_of_pairs(monkeypatch):
+    V, F = tangled(3)
+    result = farcull.collide(V, F, OBJECTS, self=True, segments=True)
+    again = pickle.loads(pickle.dumps(result))
+    assert np.array_equal(again.pairs, result.pairs) and again._input is None
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "pandas", None)
+        for answer in (result, farcull.distances(V, F, OBJECTS), farcull.clash(farcull.Scene("two-tori"))):
+            assert error_of(answer.to_pandas).where == "pandas"
+    pytest.importorskip("pandas")
+    table = result.to_pandas()
+    assert list(table.columns) == ["a", "b", "neighbours", "contact", "x0", "y0", "z0", "x1", "y1", "z1"]
+    assert table[["a", "b"]].to_numpy().tolist() == sorted([*result.pairs.tolist(), *result.neighbour_pairs.tolist()])
+    of_neighbours = table[table.neighbours]
+    assert np.array_equal(of_neighbours[["a", "b"]].to_numpy(), result.neighbour_pairs)
+    assert of_neighbours.contact.tolist() == np.array(farcull.KINDS)[result.neighbour_kinds].tolist()
+    assert np.array_equal(of_neighbours[["x1", "y1", "z1"]].to_numpy(), result.neighbour_segments[:, 1], equal_nan=True)
+    assert list(farcull.collide(V, F, OBJECTS).to_pandas().columns) == ["a", "b", "neighbours"]
+
+
+# ---- clashes and pages
+
+
+def without_times(record):
+    return {key: value for key, value in record.items() if key not in ("stages", "time_ms", "commit")}
+
+
+def test_clashes_are_those_of_the_program(scene, tmp_path):
+    files = sorted(scene[2].folder.glob("*.off"))
+    read = farcull.Scene(*files, self=True)
+    for words, options in (([], {}), (["--clearance", "2"], dict(clearance=2)),
+                           (["--ignore", "o0:o2"], dict(ignore=[("o0", "o2")])), (["--ignore", "o0:o2"], dict(ignore=[(2, 0)]))):
+        theirs = json.loads(asked("clash", *files, *words, "--json", "-"))
+        ours = farcull.clash(read, **options)
+        assert without_times(ours.json()) == without_times(theirs) and ours.rows == theirs["pairs"]
+        assert ours.clean == theirs["clean"] and ours.rows
+        assert str(ours).splitlines()[1] in asked("clash", *files, *words)
+    # Twin: another question has another answer.
+    assert without_times(farcull.clash(read, clearance=2).json()) != without_times(theirs)
+    for wrong in (dict(clearance=-1), dict(clearance="1"), dict(ignore=[(0, 9)]), dict(threads=-1), dict(scene=None)):
+        assert refused(farcull.clash, **{"scene": read, **wrong}) in wrong
+    assert error_of(farcull.clash, farcull.Scene(files[0])).where == "scene"
+    page = tmp_path / "clash.html"
+    assert farcull.show(ours, page, browse=False) == str(page)
+    assert '"verdict":"clash"' in page.read_text()
+    pytest.importorskip("pandas")
+    table = ours.to_pandas()
+    assert table.verdict.tolist() == [row["verdict"] for row in ours.rows]
+    assert table["kinds.crossing"].fillna(0).tolist() == [row["kinds"].get("crossing", 0) for row in ours.rows]
+
+
+def test_answers_are_shown_in_the_browser(tmp_path, monkeypatch):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    scene = farcull.Scene("two-tori")
+    V, F = scene.vertices.copy(), scene.triangles
+    result = farcull.collide(V, F, scene.object_starts)
+    try:
+        path = farcull.show(result)
+    except farcull.InputError:
+        raise
+    except farcull.Error as error:
+        pytest.skip(f"no OpenGL here: {error}")
+    assert opened == ["file://" + path] and path.endswith(".html")
+    with open(path, encoding="utf-8") as file:
+        assert "282 colliding pairs" in file.read()
+    record = scene.run("cullide", resolution=64, device="cpu")
+    page = tmp_path / "record.html"
+    farcull.show(record, page, browse=False)
+    missed = len(record.missed())
+    assert f'"missedPairs":{missed}' in page.read_text() and missed > 0 and len(opened) == 1
+    assert '"command":"farcull picture two-tori --method cullide' in page.read_text()
+    # A page that would show other pairs than the answer is an error.
+    V[0] += 1e-9
+    V[F[result.pairs[0, 0], 0]] += 100
+    assert "changed" in error_of(farcull.show, result, page).reason
+    for unusual in (scene.run(limit=3, verify=False), scene.run(clearance=1e-6, verify=False), farcull.collide(V, F, [0, 7], clearance=1e-6),
+                    farcull.Collider().find(V, F, [0, 7]), pickle.loads(pickle.dumps(result)), 3, None):
+        assert refused(farcull.show, unusual, page) == "what"
+
+
+# ---- what people hold
+
+
+class Held:
+    def __init__(self, **members):
+        self.__dict__.update(members)
+
+
+def test_meshes_of_other_packages_are_joined():
+    V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0]], float)
+    W = np.array([[1, 1, -1], [1, 1, 1], [2, 1, 1], [5, 5, 5]], float)
+    block = types.SimpleNamespace
+    line, triangle = block(type="line", data=np.array([[0, 1]])), block(type="triangle", data=np.array([[0, 1, 2]]))
+    trimesh, meshio = Held(vertices=V, faces=[[0, 1, 2]]), Held(points=W, cells=[line, triangle, triangle])
+    expected = farcull.join((V, [[0, 1, 2]]), (W, [[0, 1, 2], [0, 1, 2]]))
+    for ours, right in zip(farcull.join(trimesh, meshio), expected):
+        assert np.array_equal(ours, right)
+    assert farcull.collide(*farcull.join(trimesh, meshio)).pairs.tolist() == [[0, 1], [0, 2]]
+    # Cells that are passed over could collide, so they are refused.
+    quad = block(type="quad", data=np.array([[0, 1, 2, 3]]))
+    error = error_of(farcull.join, trimesh, Held(points=W, cells=[triangle, quad]))
+    assert error.where == "meshes" and "quad" in error.reason
+    for wrong in (Held(points=W, cells=[line]), Held(points=W, cells=np.array([3, 0, 1, 2])), Held(vertices=V), Held(points=W, cells=[]),
+                  Held(vertices=None, faces=None), farcull.Scene("two-tori"), "mesh.obj", V, 3):
+        assert refused(farcull.join, trimesh, wrong) in ("meshes", "V", "F")
+    # numpy would round whole numbers beside doubles.
+    assert refused(farcull.join, trimesh, (np.array([[0, 0, 0], [1, 0, 0], [0, 2**53 + 1, 0]]), [[0, 1, 2]])) == "V"
+    flat = Held(points=W[:, :2], cells=[triangle])
+    assert refused(farcull.join, flat) == "V"
+
+
+class Tensor:
+    """An array that offers nothing but DLPack; device: 1 for the CPU, 2 for CUDA."""
+
+    def __init__(self, array, device=1):
+        self._array, self._device = array, device
+
+    def __dlpack__(self, *, stream=None):
+        return self._array.__dlpack__()
+
+    def __dlpack_device__(self):
+        return self._device, 0
+
+
+def test_arrays_come_through_dlpack():
+    V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]], np.float32)
+    F = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
+    starts, labels, ignore = np.array([0, 1]), np.array([1, 0]), np.array([[0, 1]])
+    assert farcull.collide(Tensor(V), Tensor(F), Tensor(starts)).pairs.tolist() == [[0, 1]]
+    assert farcull.collide(Tensor(V), Tensor(F), labels=Tensor(labels)).pairs.tolist() == [[0, 1]]
+    assert not len(farcull.collide(Tensor(V), Tensor(F), starts, ignore=Tensor(ignore)).pairs)
+    error = error_of(farcull.collide, Tensor(V, 2), F, starts)
+    assert isinstance(error, farcull.InputError) and error.where == "V" and "device" in error.reason
+    assert refused(farcull.collide, V, Tensor(F, 2), starts) == "F"
+    assert refused(farcull.collide, V, F, Tensor(starts, 2)) == "object_starts"
