@@ -29,12 +29,12 @@ farcull_setup
 [[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
 
-# Without these packages of npm the contestant three-mesh-bvh is named as missing.
+# Without these packages of npm their contestants are named as missing.
 mkdir -p build/contestants
-if [[ ! -e build/contestants/node_modules/three-mesh-bvh ]]; then
-  (cd build/contestants && npm install --no-audit --no-fund three@0.187.0 three-mesh-bvh@0.9.17) ||
-    echo "libraries: npm did not install three-mesh-bvh, which is left out" >&2
-fi
+npm_packages=(three@0.187.0 three-mesh-bvh@0.9.17 @dimforge/rapier3d-compat@0.21.0 cannon-es@0.20.0
+  manifold-3d@3.5.4)
+(cd build/contestants && npm install --no-audit --no-fund "${npm_packages[@]}") ||
+  echo "libraries: npm did not install its packages, which are left out" >&2
 
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)

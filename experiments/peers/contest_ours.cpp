@@ -8,6 +8,7 @@
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/peers/contestant.h"
+#include "verify/closest.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -127,6 +128,17 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
       [method](const Scene& scene) { return pairs_by(method, scene); }, tests_self_alone(method));
 }
 
+/// The method `exact`, which also knows distances (`farcull distance`).
+Contestant exact() {
+  Contestant out = of_method(Method::exact, "every pair whose boxes meet is decided exactly",
+                             "the answer to compare with");
+  out.distance = [](const SuitePair& pair) {
+    const Closest found = closest_points(pair.a, pair.b);
+    return ContestDistance{found.distance, found.points};
+  };
+  return out;
+}
+
 constexpr const char* kWhereNoneIsMissed = "where no pair may be missed";
 
 Contestant far_pairs_of_library(const std::string& says) {
@@ -152,8 +164,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {device() == "native" ? far_pairs_of_library(reliable)
                             : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
-       of_method(Method::exact, "every pair whose boxes meet is decided exactly",
-                 "the answer to compare with"),
+       exact(),
        of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
        of_method(Method::i_collide, reliable, "few objects that move little"),
        of_method(Method::cullide, loses, published),
