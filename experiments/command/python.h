@@ -14,8 +14,8 @@
 namespace farcull {
 
 /// Replaces this process by Python with these arguments: by FARCULL_PYTHON, else by Debian's
-/// Python, which sees the packages of Debian, else by the one in PATH. Throws Error with `remedy` if
-/// there is none.
+/// Python, which sees the packages of Debian, else by the one in PATH. Throws Error with `remedy`
+/// if there is none.
 [[noreturn]] inline void become_python(std::vector<std::string> words, const std::string& remedy) {
   const char* const named = std::getenv("FARCULL_PYTHON");
   constexpr const char* kUsual = "/usr/bin/python3";

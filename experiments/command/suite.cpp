@@ -83,7 +83,8 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
       "  farcull suite pairs-and-meshes --ask 'python3 my_library.py'\n\n"
       "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
       "and integers; a disagreement ends the command. The files depend on the size and the\n"
-      "seed alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without farcull.");
+      "seed alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without "
+      "farcull.");
 }
 
 int SuiteCommand::run() const {

@@ -1,6 +1,7 @@
-// The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes answers. Standard
-// output is kept for the answers: text that a library prints there goes to standard error. Also
-// writes and reads cards (descriptions of contestants, ContestantCard), one line for each field.
+// The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes
+// answers. Standard output is kept for the answers: text that a library prints there goes to
+// standard error. Also writes and reads cards (descriptions of contestants, ContestantCard), one
+// line for each field.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
@@ -46,8 +47,8 @@ std::optional<bool> yes_or_no(const std::string& text) {
 /// Sets a field of a card. False: the key is unknown, or the value is not allowed for it.
 bool set(ContestantCard& card, const std::string& key, const std::string& value) {
   const std::map<std::string, std::string*> texts = {
-      {"name", &card.name}, {"library", &card.library}, {"call", &card.call},
-      {"says", &card.says}, {"source", &card.source},   {"use", &card.use},
+      {"name", &card.name},      {"library", &card.library}, {"call", &card.call},
+      {"says", &card.says},      {"source", &card.source},   {"use", &card.use},
       {"answers", &card.answers}};
   const std::map<std::string, bool*> flags = {{"degenerate", &card.degenerate},
                                               {"neighbours", &card.neighbours},
@@ -152,12 +153,13 @@ void add_obj(const std::string& path, bool self, Scene& out) {
   }
 }
 
-Scene read_scene(const Fields& fields) {
-  if (fields.size() < 4) throw NoQuestion("mesh has at least 4 fields");
+/// The OBJ files of the fields from `first` to before `end` as objects.
+Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool self) {
+  if (fields.size() < std::max(first + 1, end))
+    throw NoQuestion(std::string(fields[1]) + " lacks fields");
   Scene out;
   out.name = "scene";
-  for (std::size_t i = 3; i < fields.size(); ++i)
-    add_obj(std::string(fields[i]), fields[2] == "1", out);
+  for (std::size_t i = first; i < end; ++i) add_obj(std::string(fields[i]), self, out);
   return out;
 }
 
@@ -183,18 +185,44 @@ class Timer {
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 
+/// The answer that is yes or no, with its time.
+template <class Ask>
+std::string verdict(const std::string& begin, const Ask& ask) {
+  const Timer timer;
+  const bool yes = ask();
+  const std::string ns = timer.nanoseconds();
+  return begin + (yes ? "1\t" : "0\t") + ns + "\n";
+}
+
 std::string answer_pair(const Contestant& contestant, const Fields& fields,
                         const std::string& begin) {
   const SuitePair pair = read_pair(fields);
-  const Timer timer;
-  const bool meets = contestant.pair(pair);
-  const std::string ns = timer.nanoseconds();
-  return begin + (meets ? "1\t" : "0\t") + ns + "\n";
+  return verdict(begin, [&] { return contestant.pair(pair); });
+}
+
+std::string answer_self(const Contestant& contestant, const Fields& fields,
+                        const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 3, true);
+  return verdict(begin, [&] { return contestant.self(scene); });
+}
+
+std::string answer_inside(const Contestant& contestant, const Fields& fields,
+                          const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 3, false);
+  if (fields.size() != 6) throw NoQuestion("inside has 6 fields");
+  const Vec3 point(number<double>(fields[3]), number<double>(fields[4]), number<double>(fields[5]));
+  return verdict(begin, [&] { return contestant.inside(scene, point); });
+}
+
+std::string answer_clash(const Contestant& contestant, const Fields& fields,
+                         const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 4, false);
+  return verdict(begin, [&] { return contestant.clash(scene); });
 }
 
 std::string answer_mesh(const Contestant& contestant, const Fields& fields,
                         const std::string& begin) {
-  const Scene scene = read_scene(fields);
+  const Scene scene = read_scene(fields, 3, fields.size(), fields[2] == "1");
   const Timer timer;
   const std::vector<TrianglePair> found = contestant.mesh(scene);
   const std::string ns = timer.nanoseconds();
@@ -227,6 +255,20 @@ std::string answer_card(const Contestant& contestant, const std::string& begin) 
   return out + begin + "done\n";
 }
 
+/// A kind of question, whether a contestant answers it, and its answer.
+struct Question {
+  const char* word;
+  bool (*known)(const Contestant&);
+  std::string (*answer)(const Contestant&, const Fields&, const std::string& begin);
+};
+constexpr std::array kQuestions = {
+    Question{"pair", [](const Contestant& of) { return bool(of.pair); }, answer_pair},
+    Question{"mesh", [](const Contestant& of) { return bool(of.mesh); }, answer_mesh},
+    Question{"distance", [](const Contestant& of) { return bool(of.distance); }, answer_distance},
+    Question{"self", [](const Contestant& of) { return bool(of.self); }, answer_self},
+    Question{"inside", [](const Contestant& of) { return bool(of.inside); }, answer_inside},
+    Question{"clash", [](const Contestant& of) { return bool(of.clash); }, answer_clash}};
+
 /// The answer, or a refusal if the library throws.
 std::string answer_line(const Contestant& contestant, const std::string& line) {
   const Fields fields = fields_of(line);
@@ -235,10 +277,10 @@ std::string answer_line(const Contestant& contestant, const std::string& line) {
   const std::string_view what = fields[1];
   try {
     if (what == "card") return answer_card(contestant, begin);
-    if (what == "pair" && contestant.pair) return answer_pair(contestant, fields, begin);
-    if (what == "mesh" && contestant.mesh) return answer_mesh(contestant, fields, begin);
-    if (what == "distance" && contestant.distance)
-      return answer_distance(contestant, fields, begin);
+    for (const Question& question : kQuestions) {
+      if (what == question.word && question.known(contestant))
+        return question.answer(contestant, fields, begin);
+    }
     return begin + "refused\tit does not answer this kind of question\n";
   } catch (const std::bad_alloc&) {
     throw;
@@ -260,10 +302,11 @@ int contest(int argc, char** argv, std::vector<Contestant> contestants) {
   for (Contestant& contestant : contestants) {
     names += " " + contestant.card.name;
     if (contestant.card.name != name) continue;
-    contestant.card.answers = std::string(contestant.pair ? "pair " : "") +
-                              (contestant.mesh ? "mesh " : "") +
-                              (contestant.distance ? "distance " : "");
-    contestant.card.answers.pop_back();
+    for (const Question& question : kQuestions) {
+      if (!question.known(contestant)) continue;
+      contestant.card.answers += (contestant.card.answers.empty() ? "" : " ");
+      contestant.card.answers += question.word;
+    }
     try {
       for (std::string line; std::getline(std::cin, line);)
         answer(to, answer_line(contestant, line));

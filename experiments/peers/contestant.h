@@ -1,6 +1,6 @@
 // A contestant is a library, called as its documentation says, in a program that reads questions as
-// text and answers them. docs/ask.md has the protocol. Here is its half in C++: `PROGRAM NAME` is the
-// contestant NAME of the program.
+// text and answers them. docs/ask.md has the protocol. Here is its half in C++: `PROGRAM NAME` is
+// the contestant NAME of the program.
 //
 // Each library has its own program, and is not called by farcull, for three reasons. A library may
 // crash, hang or take all memory. Libraries may not be linked together: Bullet exists in float and
@@ -67,11 +67,16 @@ struct Contestant {
   /// objects are tested against themselves too, or none. A triangle with itself is no pair.
   std::function<std::vector<TrianglePair>(const Scene&)> mesh = {};
   std::function<ContestDistance(const SuitePair&)> distance = {};
+  // The other questions, about a scene of one object that is tested against itself, of one closed
+  // object and a point, and of two closed objects.
+  std::function<bool(const Scene&)> self = {};
+  std::function<bool(const Scene&, const Vec3&)> inside = {};
+  std::function<bool(const Scene&)> clash = {};
 };
 
-/// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a refusal,
-/// except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call or a
-/// line that is no question; 3 if memory ran out.
+/// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a
+/// refusal, except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call
+/// or a line that is no question; 3 if memory ran out.
 int contest(int argc, char** argv, std::vector<Contestant> contestants);
 
 /// Calls `ask` for every pair of objects, and with a == b for each object that is tested against

@@ -54,10 +54,10 @@ struct Invited {
 };
 
 struct ContestLimits {
-  double answer_s = 10;          // wall clock from one answer to the next
-  double start_s = 60;           // wall clock to the first answer of the first process; for later
-                                 // processes at most twice answer_s
-  std::uint64_t cpu_s = 3600;    // CPU time of a process
+  double answer_s = 10;        // wall clock from one answer to the next
+  double start_s = 60;         // wall clock to the first answer of the first process; for later
+                               // processes at most twice answer_s
+  std::uint64_t cpu_s = 3600;  // CPU time of a process
   std::uint64_t memory_mib = 4096;  // of data that it may write
   /// When so many processes have ended badly, the questions that are left are not asked.
   std::size_t most_deaths = 100;

@@ -6,6 +6,7 @@ into the folder of the suite, and `farcull suite DIR --ask COMMAND` runs it.
 """
 import argparse
 import collections
+import contextlib
 import csv
 import hashlib
 import math
@@ -24,7 +25,6 @@ from fractions import Fraction
 KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
 AHEAD = 32  # questions that are sent before their answers; so few fit into a pipe, and writing never waits
 AGAIN = 16  # every so many questions one is asked again
-DEATHS = ['crashed', 'hung', 'no memory']
 OFF = 1e-6  # relative errors of distances and of points above this are counted
 
 
@@ -35,7 +35,7 @@ class Wrong(Exception):
 # ---- a process and its answers
 
 class Child:
-    """A process with limits. `line` waits for its next line of output; an empty text is the end of the output."""
+    """A process with limits. `lines` has its output; an empty text is the end."""
 
     def __init__(self, command, options):
         def limit():
@@ -44,11 +44,8 @@ class Child:
             resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
         self.errors = tempfile.TemporaryFile()
         posix = os.name == 'posix'
-        try:
-            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
-                                            start_new_session=posix, preexec_fn=limit if posix else None)
-        except OSError as error:
-            raise Wrong(f'{command[0]}: cannot be started: {error.strerror}') from None
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
+                                        start_new_session=posix, preexec_fn=limit if posix else None)
         self.lines = queue.Queue()
         threading.Thread(target=self.read, daemon=True).start()
 
@@ -57,22 +54,14 @@ class Child:
             self.lines.put(line.decode('utf-8', 'replace'))
         self.lines.put('')
 
-    def line(self, seconds):
-        """The next line; raises queue.Empty if none comes in time."""
-        return self.lines.get(timeout=seconds)
-
     def send(self, text):
-        try:
+        with contextlib.suppress(OSError):  # it may read no longer
             self.process.stdin.write(text.encode())
             self.process.stdin.flush()
-        except OSError:
-            pass  # it no longer reads
 
     def close(self):
-        try:
+        with contextlib.suppress(OSError):
             self.process.stdin.close()
-        except OSError:
-            pass
 
     def end(self, seconds):
         """How the process ended, after it was given some time, and why: an outcome and a reason."""
@@ -93,10 +82,8 @@ class Child:
 
     def kill(self):
         """Ends it and the processes that it started."""
-        try:
+        with contextlib.suppress(OSError):
             os.killpg(self.process.pid, signal.SIGKILL) if os.name == 'posix' else self.process.kill()
-        except OSError:
-            pass
         self.process.wait()
         self.close()
 
@@ -149,7 +136,7 @@ def ask_from(command, questions, first, answers, options, start):
         if following < len(questions):
             allowed = max(allowed, options.limit * (1 if questions[following].kind in ('pair', 'distance') else 10))
         try:
-            line = child.line(allowed)
+            line = child.lines.get(timeout=allowed)
         except queue.Empty:
             child.kill()
             return following, ('hung', 'no answer within the limit')
@@ -209,9 +196,10 @@ def ask_twice(command, questions, options):
     differs = [None] * len(questions)
     for i, second in zip(again, ask(command, [questions[i] for i in again], options)):
         if second.outcome != 'not asked':
-            same = sorted(second.value) == sorted(answers[i].value) if isinstance(second.value, list) and \
-                isinstance(answers[i].value, list) else second.value == answers[i].value
-            differs[i] = second.outcome != answers[i].outcome or not same
+            first = answers[i]
+            if questions[i].kind == 'mesh':  # in any order
+                first, second = (one._replace(value=sorted(one.value or [])) for one in (first, second))
+            differs[i] = (second.outcome, second.value) != (first.outcome, first.value)
     return answers, differs
 
 
@@ -257,41 +245,32 @@ def normal(t):
     return cross(minus(t[1], t[0]), minus(t[2], t[0]))
 
 
+def square(v):
+    return dot(v, v)
+
+
 def edges(t):
     return [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
 
 
-def is_degenerate(triangle):
-    return not any(normal(exact(triangle)))
-
-
-def squared(v):
-    return dot(v, v)
-
-
 def point_to_segment(p, segment):
     start, along = segment[0], minus(segment[1], segment[0])
-    t = dot(minus(p, start), along) / squared(along) if any(along) else 0
-    return squared(minus(p, [x + min(max(t, 0), 1) * d for x, d in zip(start, along)]))
+    t = dot(minus(p, start), along) / square(along) if any(along) else 0
+    return square(minus(p, [x + min(max(t, 0), 1) * d for x, d in zip(start, along)]))
 
 
 def point_to_triangle(p, t):
     """The square of the distance, of rational numbers."""
     n = normal(t)
     if any(n) and all(dot(n, cross(minus(b, a), minus(p, a))) >= 0 for a, b in edges(t)):
-        return dot(n, minus(p, t[0])) ** 2 / squared(n)
+        return dot(n, minus(p, t[0])) ** 2 / square(n)
     return min(point_to_segment(p, edge) for edge in edges(t))
 
 
 def segment_to_segment(e, f):
-    u, v, w = minus(e[1], e[0]), minus(f[1], f[0]), minus(e[0], f[0])
-    below = squared(u) * squared(v) - dot(u, v) ** 2
-    if below:
-        s = (dot(u, v) * dot(v, w) - squared(v) * dot(u, w)) / below
-        t = (squared(u) * dot(v, w) - dot(u, v) * dot(u, w)) / below
-        if 0 <= s <= 1 and 0 <= t <= 1:
-            return squared([x + s * y - t * z for x, y, z in zip(w, u, v)])
-    return min(point_to_segment(e[0], f), point_to_segment(e[1], f), point_to_segment(f[0], e), point_to_segment(f[1], e))
+    """The distance of the origin from all differences of their points, a parallelogram, which is two triangles."""
+    d = [[minus(p, q) for q in f] for p in e]
+    return min(point_to_triangle([0, 0, 0], [d[0][0], corner, d[1][1]]) for corner in (d[0][1], d[1][0]))
 
 
 def within(a, b, margin):
@@ -316,35 +295,18 @@ def interval(t, n, origin, along):
     return min(cuts), max(cuts)
 
 
-def pierces(segment, t, n):
-    """Whether the inside of a segment meets the inside of a triangle in one point."""
-    from_side, to_side = (dot(n, minus(p, t[0])) for p in segment)
-    if from_side * to_side >= 0:
-        return False
-    s = from_side / (from_side - to_side)
-    p = [x + s * (y - x) for x, y in zip(*segment)]
-    return all(dot(n, cross(minus(b, a), minus(p, a))) > 0 for a, b in edges(t))
-
-
 def crosses(a, b):
-    """Whether two triangles cross (docs/suite.md): they share a point that is on no edge of either one. A segment has its
-    inner points besides its edge."""
+    """Whether two triangles cross (docs/suite.md): they share a point that is on no edge of either one."""
     a, b = exact(a), exact(b)
     m, n = normal(a), normal(b)
-    if any(m) and any(n):
-        along = cross(m, n)
-        first, second = interval(a, n, b[0], along), interval(b, m, a[0], along)
-        return bool(any(along) and first and second and max(first[0], second[0]) < min(first[1], second[1]))
-    if not any(m) and not any(n):
-        return False
-    (s, t, n) = (a, b, n) if any(n) else (b, a, m)
-    longest = max(edges(s), key=lambda edge: squared(minus(*edge)))
-    return pierces(longest, t, n)
+    along = cross(m, n)
+    first, second = interval(a, n, b[0], along), interval(b, m, a[0], along)
+    return bool(any(along) and first and second and max(first[0], second[0]) < min(first[1], second[1]))
 
 
 def promised(card, a, b, label, kind=None):
     """Whether the documentation promises the right answer about two triangles. kind: of a pair of the suite."""
-    if card['degenerate'] == 'no' and (is_degenerate(a) or is_degenerate(b)):
+    if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not all(any(normal(exact(t))) for t in (a, b)):
         return False
     if not label:
         return float(card['margin']) == 0 or not within(a, b, card['margin'])
@@ -353,20 +315,12 @@ def promised(card, a, b, label, kind=None):
 
 # ---- the suite
 
-def read_text(path):
-    try:
-        with open(path, 'rb') as file:
-            return file.read()
-    except OSError as error:
-        raise Wrong(f'{path}: {error.strerror}') from None
-
-
 class Suite:
     """The files that suite.txt names, read after their sums were compared."""
 
     def __init__(self, folder):
         self.folder = os.path.abspath(folder)
-        self.files, lines = {}, read_text(os.path.join(folder, 'suite.txt')).decode().split('\n')
+        self.files, lines = {}, self.read('suite.txt').split('\n')
         for line in lines:
             words = line.split(' ')
             if words[0] == 'file':
@@ -378,11 +332,16 @@ class Suite:
     def path(self, name):
         return os.path.join(self.folder, *name.split('/'))
 
+    def read(self, name):
+        with open(self.path(name), encoding='utf-8', newline='') as file:
+            return file.read()
+
     def text(self, name):
-        text = read_text(self.path(name))
-        if hashlib.sha256(text).hexdigest() != self.files.get(name):
+        """The text of a file; its sum has to be that of suite.txt."""
+        text = self.read(name)
+        if hashlib.sha256(text.encode()).hexdigest() != self.files.get(name):
             raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
-        return text.decode()
+        return text
 
     def lists(self, folder):
         """The name and the lines, as words, of each list in a folder."""
@@ -420,48 +379,80 @@ class Suite:
 class Row(collections.Counter):
     """The counts of one family for one kind of question."""
 
-    def take(self, answer, differs):
-        self['asked'] += answer.outcome != 'not asked'
-        self['answered' if answer.outcome == 'answered' else answer.outcome] += 1
-        self['ns'] += answer.ns
-        self['differs'] += differs is True
-        if answer.reason and not self.reason:
-            self.reason = answer.reason
-
     def __init__(self):
         super().__init__()
-        self.reason = ''
+        self.reason, self.worst = '', 0
+
+    def take(self, answer, differs):
+        self['asked'] += answer.outcome != 'not asked'
+        self[answer.outcome] += 1
+        self['ns'] += answer.ns
+        self['differs'] += differs is True
+        self.reason = self.reason or answer.reason
 
 
 def corners_of(numbers):
     return [[numbers[3 * i + k] for k in range(3)] for i in range(3)]
 
 
-def ask_pairs(command, card, suite, options):
+# A line of a list: the question, its label (a kind of contact, yes, no, LOW,HIGH or ?), and its coordinates.
+Listed = collections.namedtuple('Listed', 'question label numbers')
+
+
+def lists_of(card, suite):
+    """The kind, the family and the lines of each list of questions."""
     for family, lines in suite.lists('pairs'):
-        lines = [words for words in lines if words[2] == '-' or card['neighbours'] == 'yes']
-        numbers = [[float.fromhex(word) for word in words[4:]] for words in lines]
-        questions = [Question('pair', [words[2], *map(repr, of)]) for words, of in zip(lines, numbers)]
-        row = Row()
-        for words, of, answer, differs in zip(lines, numbers, *ask_twice(command, questions, options)):
-            row.take(answer, differs)
-            kind = words[3]
-            if answer.outcome != 'answered' or kind == '?':
-                continue
-            label = kind not in ('apart', 'neighbours-apart')
-            if label != answer.value:
-                fault = 'missed' if label else 'wrong'
-                row[fault] += 1
-                row['own ' + fault] += promised(card, corners_of(of), corners_of(of[9:]), label, kind)
-        yield family, row
+        listed = []
+        for _, _, shared, label, *words in lines:
+            if shared == '-' or card['neighbours'] == 'yes':
+                numbers = [float.fromhex(word) for word in words]
+                listed.append(Listed(Question('pair', [shared, *map(repr, numbers)]), label, numbers))
+        yield 'pair', family, listed
+    for family, lines in suite.lists('questions'):
+        for kind in KINDS[2:]:
+            listed, paths = [], {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
+            for _, _, _, label, *words in (words for words in lines if words[2] == kind):
+                numbers = [float.fromhex(word) for word in words[paths:]]
+                fields = [*map(suite.path, words[:paths]), *map(repr, numbers)]
+                listed.append(Listed(Question(kind, fields), label, numbers))
+            yield kind, family, listed
+
+
+def score(card, listed, value, row):
+    question, label, numbers = listed
+    if question.kind == 'distance':
+        score_distance(label, numbers, value, row)
+        return
+    right = label not in ('no', 'apart', 'neighbours-apart')
+    if value != right:
+        fault = 'missed' if right else 'wrong'
+        row[fault] += 1
+        if question.kind == 'pair':
+            row['own ' + fault] += promised(card, corners_of(numbers), corners_of(numbers[9:]), right, label)
+
+
+def score_distance(label, numbers, value, row):
+    low, high = (float.fromhex(word) for word in label.split(','))
+    distance, points = value[0], value[1:]
+    row['zero'] += distance == 0 < low
+    row['not zero'] += distance > 0 == high
+    row['negative'] += distance < 0
+    if distance > 0 and low > 0:
+        error = max(low - distance, distance - high, 0) / low
+        row['off'] += error > OFF
+        row.worst = max(row.worst, error)
+    triangles = [corners_of(numbers), corners_of(numbers[9:])]
+    size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
+    if points:
+        row['points'] += 1
+        row['points off'] += any(
+            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > (Fraction(OFF) * Fraction(size)) ** 2
+            for point, triangle in zip((points[:3], points[3:]), triangles))
 
 
 def score_mesh(card, objects, rows, reported, row):
     def shared(a, b):
         return len({*objects[a[0]][a[1]][0]} & {*objects[b[0]][b[1]][0]}) if a[0] == b[0] else 0
-
-    def own(pair, label):
-        return promised(card, *(objects[o][t][1] for o, t in pair), label)
     counts = card['neighbours'] == 'yes'
     found = {pair for pair in reported if pair[0] != pair[1] and (counts or not shared(*pair))}
     truth = {((a, i), (b, j)) for a, i, b, j, common in rows if counts or common == 0}
@@ -469,7 +460,7 @@ def score_mesh(card, objects, rows, reported, row):
     row['reported'] += len(found)
     for fault, pairs in ('missed', truth - found), ('wrong', found - truth):
         row[fault] += len(pairs)
-        row['own ' + fault] += sum(own(pair, fault == 'missed') for pair in pairs)
+        row['own ' + fault] += sum(promised(card, *(objects[o][t][1] for o, t in pair), fault == 'missed') for pair in pairs)
 
 
 def ask_meshes(command, card, suite, options):
@@ -489,53 +480,9 @@ def ask_meshes(command, card, suite, options):
         yield family, row
 
 
-def score_distance(label, numbers, value, row):
-    low, high = (float.fromhex(word) for word in label.split(','))
-    distance, points = value[0], value[1:]
-    row['zero'] += distance == 0 < low
-    row['not zero'] += distance != 0 and high == 0
-    row['negative'] += distance < 0
-    if distance > 0 and low > 0:
-        error = max(low - distance, distance - high, 0) / low
-        row['off'] += error > OFF
-        row.worst = max(row.worst, error)
-    triangles = [corners_of(numbers), corners_of(numbers[9:])]
-    size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
-    if points:
-        row['points'] += 1
-        row['points off'] += any(
-            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > (Fraction(OFF) * Fraction(size)) ** 2
-            for point, triangle in zip((points[:3], points[3:]), triangles))
-
-
-def ask_others(command, card, suite, options):
-    """The questions beyond pairs and meshes: the kind, the family and the row."""
-    for family, lines in suite.lists('questions'):
-        for kind in KINDS[2:]:
-            some = [words for words in lines if words[2] == kind]
-            if not some or kind not in options.asked:
-                continue
-            paths = {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
-            numbers = [[float.fromhex(word) for word in words[4 + paths:]] for words in some]
-            questions = [Question(kind, [*map(suite.path, words[4:4 + paths]), *map(repr, of)])
-                         for words, of in zip(some, numbers)]
-            row = Row()
-            row.worst = 0
-            for words, of, answer, differs in zip(some, numbers, *ask_twice(command, questions, options)):
-                row.take(answer, differs)
-                if answer.outcome != 'answered' or words[3] == '?':
-                    continue
-                if kind == 'distance':
-                    score_distance(words[3], of, answer.value, row)
-                else:
-                    row['missed'] += words[3] == 'yes' and not answer.value
-                    row['wrong'] += words[3] == 'no' and answer.value
-            yield kind, family, row
-
-
 # ---- tables
 
-OUTCOMES = ['refused', 'unanswered', *DEATHS, 'not asked', 'differs']
+OUTCOMES = ['refused', 'unanswered', 'crashed', 'hung', 'no memory', 'not asked', 'differs']
 COLUMNS = {'pair': ['asked', 'missed', 'wrong', 'own missed', 'own wrong'],
            'mesh': ['asked', 'colliding', 'reported', 'missed', 'wrong', 'own missed', 'own wrong'],
            'distance': ['asked', 'zero', 'not zero', 'negative', 'off', 'points', 'points off'],
@@ -546,59 +493,56 @@ TITLES = {'pair': 'pairs of triangles: do they meet?', 'mesh': 'meshes: which tr
 
 
 def cells_of(kind, name, row):
-    worst = [f'{row.worst:.1e}'] if kind == 'distance' else []
-    each = row['ns'] / max(row['answered'], 1) / 1e3
-    return [name, *(f"{row[column]:,}" for column in COLUMNS[kind]), *worst, *(f'{row[word]:,}' for word in OUTCOMES),
-            f'{each:,.1f}']
+    return [name, *(f'{row[column]:,}' for column in COLUMNS[kind]), *([f'{row.worst:.1e}'] if kind == 'distance' else []),
+            *(f'{row[word]:,}' for word in OUTCOMES), f"{row['ns'] / max(row['answered'], 1) / 1e3:,.1f}"]
 
 
 def table_of(kind, rows):
-    """The rows of one kind of question, and their sum, as aligned text."""
+    """The rows of one kind of question, by family, and their sum, as aligned text."""
     total = Row()
-    total.worst = max((getattr(row, 'worst', 0) for _, row in rows), default=0)
-    for _, row in rows:
+    total.worst = max(row.worst for row in rows.values())
+    for row in rows.values():
         total.update(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
-    lines = [head] + [cells_of(kind, name, row) for name, row in [*rows, ('all', total)]]
-    # A column in which all is 0 says nothing, but for what is asked and what is wrong.
-    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]
+    lines = [head] + [cells_of(kind, name, row) for name, row in [*rows.items(), ('all', total)]]
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # without outcomes that never came
     widths = [max(len(line[i]) for line in lines) for i in kept]
-    text = '\n'.join('  '.join(line[i].ljust(width) if i == 0 else line[i].rjust(width) for i, width in zip(kept, widths))
-                     .rstrip() for line in lines)
-    first = next((row.reason for _, row in rows if row.reason), '')
+    text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
+                     for line in lines)
+    first = next((row.reason for row in rows.values() if row.reason), '')
     return f'{TITLES[kind]}\n{text}\n' + (f'the first reason of a refusal or a death: {first}\n' if first else '')
+
+
+def write_csv(path, name, rows):
+    columns = [*dict.fromkeys(column for kind in KINDS for column in COLUMNS[kind]), *OUTCOMES]
+    with open(path, 'w', encoding='utf-8', newline='') as file:
+        writer = csv.writer(file, lineterminator='\n')
+        writer.writerow(['contestant', 'question', 'family', *columns, 'worst', 'ns', 'reason'])
+        for kind in KINDS:
+            for family, row in rows[kind].items():
+                writer.writerow([name, kind, family, *(row[column] for column in columns), row.worst, int(row['ns']), row.reason])
 
 
 def measure(command, options):
     suite = Suite(options.suite)
     card = card_of(command, options)
-    options.asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
-    rows = {kind: [] for kind in KINDS}
-
-    def add(kind, family, row):
-        if sys.stderr.isatty():
-            print(f'\r\033[K{kind} {family}', end='', file=sys.stderr)
-        rows[kind].append((family, row))
-    for kind, asker in ('pair', ask_pairs), ('mesh', ask_meshes):
-        if kind in options.asked:
-            for family, row in asker(command, card, suite, options):
-                add(kind, family, row)
-    for kind, family, row in ask_others(command, card, suite, options):
-        add(kind, family, row)
-    if sys.stderr.isatty():
-        print('\r\033[K', end='', file=sys.stderr)
+    asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
+    rows = {kind: {} for kind in KINDS}
+    for kind, family, listed in lists_of(card, suite):
+        if kind not in asked or not listed:
+            continue
+        row = rows[kind].setdefault(family, Row())
+        for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
+            row.take(answer, differs)
+            if answer.outcome == 'answered' and one.label != '?':
+                score(card, one, answer.value, row)
+    if 'mesh' in asked:
+        rows['mesh'] = dict(ask_meshes(command, card, suite, options))
     print(f"{card['name']}{', ' + card['library'] if card['library'] else ''}, asked about the suite {suite.sum[:8]}; "
           f"own: as its documentation promises, {card['means']}\n")
     print('\n'.join(table_of(kind, rows[kind]) for kind in KINDS if rows[kind]), end='')
     if options.csv:
-        with open(options.csv, 'w', encoding='utf-8', newline='') as file:
-            columns = list(dict.fromkeys(column for kind in KINDS for column in COLUMNS[kind]))
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow(['contestant', 'question', 'family', *columns, 'worst', *OUTCOMES, 'ns', 'reason'])
-            for kind in KINDS:
-                for family, row in rows[kind]:
-                    writer.writerow([card['name'], kind, family, *(row[column] for column in columns),
-                                     getattr(row, 'worst', ''), *(row[word] for word in OUTCOMES), int(row['ns']), row.reason])
+        write_csv(options.csv, card['name'], rows)
     return 0
 
 
@@ -609,11 +553,10 @@ def check(command, options):
     near, far = '0 0 0 4 0 0 0 4 0 1 1 -1 1 1 1 2 2 1', '0 0 0 4 0 0 0 4 0 0 0 1 4 0 1 0 4 1'
     faces = '1 3 2 2 3 4 5 6 7 6 8 7 1 2 5 2 6 5 3 7 4 4 7 8 1 5 3 3 5 7 2 4 6 4 8 6'.split()
     with tempfile.TemporaryDirectory() as folder:
-        for name, side in ('a', 0), ('b', 0.5):
-            with open(f'{folder}/{name}.obj', 'w', encoding='utf-8') as file:
+        for path, side in (a := f'{folder}/a.obj', 0), (b := f'{folder}/b.obj', 0.5):
+            with open(path, 'w', encoding='utf-8') as file:
                 file.writelines(f'v {side + i % 2} {side + i // 2 % 2} {side + i // 4}\n' for i in range(8))
                 file.writelines('f ' + ' '.join(faces[i:i + 3]) + '\n' for i in range(0, 36, 3))
-        a, b = f'{folder}/a.obj', f'{folder}/b.obj'
         asked = [('card', [], None), ('pair', ['-', *near.split()], True), ('pair', ['-', *far.split()], False),
                  ('mesh', ['0', a, b], None), ('mesh', ['1', a], None), ('distance', far.split(), 1.0), ('distance', near.split(), 0.0),
                  ('self', [a], False), ('inside', [a, '0.5', '0.25', '0.75'], True), ('inside', [a, '2', '0.25', '0.75'], False),
@@ -638,9 +581,9 @@ def main(arguments):
     parser.add_argument('--suite', metavar='DIR', default=here, help='the folder of the suite; default: that of this file')
     parser.add_argument('--check', action='store_true', help='only compare the answers to a few questions with the grammar')
     parser.add_argument('--only', metavar='KINDS', type=lambda text: text.split(','), help=f"of {','.join(KINDS)}")
-    parser.add_argument('--limit', metavar='S', type=float, default=5, help='seconds for an answer, ten times as many for meshes; default 5')
-    parser.add_argument('--memory', metavar='MIB', type=int, default=4096, help='the most memory of a process; default 4096')
-    parser.add_argument('--deaths', metavar='N', type=int, default=20, help='after so many in a family its rest is not asked; default 20')
+    for name, value, what in ('limit', 5.0, 'seconds for an answer, ten times as many for meshes'), \
+            ('memory', 4096, 'MiB of a process'), ('deaths', 20, 'after so many in a family its rest is not asked'):
+        parser.add_argument('--' + name, metavar='N', type=type(value), default=value, help=f'{what}; default {value:g}')
     parser.add_argument('--csv', metavar='FILE', help='also write all rows to this file')
     options = parser.parse_args(arguments)
     try:
@@ -648,11 +591,9 @@ def main(arguments):
         if not command or not {*(options.only or [])} <= {*KINDS}:
             raise Wrong('COMMAND is empty' if not command else f"--only: choose of {','.join(KINDS)}")
         return check(command, options) if options.check else measure(command, options)
-    except (Wrong, ValueError) as error:
+    except (Wrong, ValueError, OSError) as error:
         print(f'ask.py: {error}', file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        return 130
 
 
 if __name__ == '__main__':
