@@ -261,7 +261,7 @@ std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3,
   else if (!at_least(root))
     low = std::nextafter(root, -kInfinity);
   if (low < 0 || !std::isfinite(high) || !at_least(low) || more_than(high))
-    throw Error(where, "CGAL's numbers and integers disagree about the distance", kReport);
+    throw Error(where, "fractions and directions disagree about the distance", kReport);
   return hexadecimal(low) + "," + hexadecimal(high);
 }
 

@@ -48,7 +48,7 @@ SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 // disagree.
 
 /// "LOW,HIGH": the distance of two triangles lies between these doubles, which are equal or
-/// neighbours. By CGAL's numbers (verify/closest.h), and by the directions of the certificate
+/// neighbours. By exact fractions (verify/closest.h), and by the directions of the certificate
 /// checker, in integers.
 std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);

@@ -13,7 +13,8 @@ SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
 # Panels of figures: contestants by the first word of their library; the last panel has all others.
 GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet and ODE": ["Bullet", "ODE"],
-          "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"], "tests of papers, others": []}
+          "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"],
+          "engines for the web": ["rapier3d-compat", "cannon-es"], "tests of papers, others": []}
 PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
               "far-away": "distance from the origin, in sizes"}
 WRONG = "wrong answers per million"
