@@ -15,6 +15,7 @@
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 #include "verify/certificate/integer_distance.h"
+#include "verify/certificate/integer_pair.h"
 #include "verify/closest.h"
 #include "verify/inside.h"
 
@@ -96,11 +97,11 @@ Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bo
   return out;
 }
 
-struct Box {
+struct Extent {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
 };
-Box box_of(const Scene& scene, std::size_t o) {
-  Box out;
+Extent box_of(const Scene& scene, std::size_t o) {
+  Extent out;
   const Object& object = scene.objects[o];
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
     for (const Vec3& p : scene.corners(object.first_triangle + t)) {
@@ -111,7 +112,7 @@ Box box_of(const Scene& scene, std::size_t o) {
   return out;
 }
 
-Vec3 point_in(RandomDraws& draws, const Box& box) {
+Vec3 point_in(RandomDraws& draws, const Extent& box) {
   Vec3 out;
   for (int k = 0; k < 3; ++k) out[k] = draws.between(box.lo[k], box.hi[k]);
   return out;
@@ -119,7 +120,7 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
 
 /// Points where a test of a point is hard. The parameter: 0 anywhere in the box; 1 above or below a
 /// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
-Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
+Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Extent& box, int parameter) {
   const Object& object = scene.objects[0];
   const auto corners = scene.corners(object.first_triangle + draws.below(object.triangle_count));
   Vec3 p = point_in(draws, box);
@@ -224,7 +225,7 @@ SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed) {
     if (!is_closed(alone, 0)) continue;
     closed.push_back(o);
     RandomDraws draws(seed_of_item(seed, mesh.name, o));
-    const Box box = box_of(alone, 0);
+    const Extent box = box_of(alone, 0);
     std::vector<Vec3> points;
     for (int i = 0; i < kPoints; ++i) points.push_back(hard_point(draws, alone, box, i % 4));
     const std::vector<bool> labels = decide_inside(alone, points, mesh.name);
@@ -284,8 +285,14 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    const std::optional<InsideClaim> claim = integers.which(0, before + i);
-    if (by_rays != (!claim || *claim == InsideClaim::b))
+    // which() holds for points off the mesh alone.
+    bool by_integers = false;
+    for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
+      const auto corners = scene.corners(scene.objects[0].first_triangle + t);
+      by_integers = IntegerPair(corners, {points[i], points[i], points[i]}).has_common_point();
+    }
+    by_integers = by_integers || integers.which(0, before + i) == InsideClaim::b;
+    if (by_rays != by_integers)
       throw Error(where, fmt::format("rays and integers disagree about point {}", i), kReport);
     out.push_back(by_rays);
   }
@@ -293,8 +300,8 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
 }
 
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where) {
-  const std::array<Box, 2> boxes = {box_of(scene, 0), box_of(scene, 1)};
-  const Box common{boxes[0].lo.cwiseMax(boxes[1].lo), boxes[0].hi.cwiseMin(boxes[1].hi)};
+  const std::array<Extent, 2> boxes = {box_of(scene, 0), box_of(scene, 1)};
+  const Extent common{boxes[0].lo.cwiseMax(boxes[1].lo), boxes[0].hi.cwiseMin(boxes[1].hi)};
   if ((common.lo.array() >= common.hi.array()).any()) return false;
   constexpr int kTries = 256;
   RandomDraws draws(seed_of_item(0, "clash", 0));

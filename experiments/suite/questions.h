@@ -20,15 +20,15 @@ struct SuiteQuestion {
   std::uint64_t id = 0;
   double parameter = 0;
   SuiteQuestionKind kind = SuiteQuestionKind::distance;
-  std::string label;                // as in the file; "?" if nobody knows it
-  std::vector<std::string> paths;   // of OBJ files, relative to the folder of the suite
-  std::vector<double> coordinates;  // 18 of two triangles, 3 of a point, or none
+  std::string label = {};                // as in the file; "?" if nobody knows it
+  std::vector<std::string> paths = {};   // of OBJ files, relative to the folder of the suite
+  std::vector<double> coordinates = {};  // 18 of two triangles, 3 of a point, or none
 };
 
 /// One file of questions.
 struct SuiteQuestions {
-  std::string family;
-  std::vector<SuiteQuestion> questions;
+  std::string family = {};
+  std::vector<SuiteQuestion> questions = {};
 };
 
 /// Reads a file of questions. Throws Error naming the file, the line and a remedy if it has another
