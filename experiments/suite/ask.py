@@ -29,7 +29,7 @@ OFF = 1e-6  # relative errors of distances and of points above this are counted
 
 
 class Wrong(Exception):
-    """A file of the suite, or the command, is not as it has to be."""
+    """The suite or the command is not as it has to be."""
 
 
 # ---- a process and its answers
@@ -443,10 +443,11 @@ def score_distance(label, numbers, value, row):
         row.worst = max(row.worst, error)
     triangles = [corners_of(numbers), corners_of(numbers[9:])]
     size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
+    near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)  # or as near as doubles are
     if points:
         row['points'] += 1
         row['points off'] += any(
-            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > (Fraction(OFF) * Fraction(size)) ** 2
+            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > near ** 2
             for point, triangle in zip((points[:3], points[3:]), triangles))
 
 
@@ -562,11 +563,10 @@ def check(command, options):
                  ('self', [a], False), ('inside', [a, '0.5', '0.25', '0.75'], True), ('inside', [a, '2', '0.25', '0.75'], False),
                  ('clash', [a, b], True), ('pair', ['-', *far.split()], False)]
         answers = ask(command, [Question(kind, fields) for kind, fields, _ in asked], options)
-    broken = False
+    broken = any(answer.outcome not in ('answered', 'refused') for answer in answers)
     for (kind, fields, right), answer in zip(asked, answers):
         value = answer.value[0] if kind == 'distance' and answer.value else answer.value
         bad = answer.outcome not in ('answered', 'refused')
-        broken |= bad
         said = f'{answer.outcome} {answer.reason}' if answer.outcome != 'answered' else \
             'answered' if right is None or value == right else f'answered {value}, and {right} is right'
         print(f"{'BROKEN' if bad else 'ok':6}  {kind} {' '.join(os.path.basename(field) for field in fields)}: {said}".rstrip())

@@ -289,6 +289,10 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);
+      const auto& [a, b, c] = corners;
+      if ((points[i].array() < a.cwiseMin(b).cwiseMin(c).array()).any() ||
+          (points[i].array() > a.cwiseMax(b).cwiseMax(c).array()).any())
+        continue;
       by_integers = IntegerPair(corners, {points[i], points[i], points[i]}).has_common_point();
     }
     by_integers = by_integers || integers.which(0, before + i) == InsideClaim::b;

@@ -9,7 +9,9 @@ namespace {
 
 /// Two cubes with sides of length 1, the second one moved by `by` along each axis.
 SuiteMesh two_cubes(double by) {
-  SuiteMesh out{.name = "cubes-1", .family = "cubes"};
+  SuiteMesh out;
+  out.name = "cubes-1";
+  out.family = "cubes";
   for (std::uint32_t o = 0; o < 2; ++o) {
     out.scene.objects.push_back(
         {.name = std::to_string(o), .first_triangle = 12 * o, .triangle_count = 12});
