@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +12,7 @@
 #include "core/canvas/canvas.h"
 #include "core/view/regions.h"
 #include "experiments/command/command.h"
+#include "experiments/command/python.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
@@ -118,19 +117,11 @@ std::string python_folder() {
   return folder;
 }
 
-// FARCULL_PYTHON; else Debian's Python, whose packages the remedy names; else the one in PATH.
-std::string python() {
-  const char* const named = std::getenv("FARCULL_PYTHON");
-  if (named != nullptr && *named != '\0') return named;
-  constexpr const char* kUsual = "/usr/bin/python3";
-  return ::access(kUsual, X_OK) == 0 ? kUsual : "python3";
-}
-
 int ReportCommand::run() {
   if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
   while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
   check_store_outside(folder_);
-  std::vector<std::string> words = {python(), "-B", python_folder(), folder_};
+  std::vector<std::string> words = {"-B", python_folder(), folder_};
   {
     const Store store(store_of(folder_), Store::Access::read);
     for (const std::string& name : store.studies()) {
@@ -141,13 +132,9 @@ int ReportCommand::run() {
   words.push_back(context_for_python());
   if (no_pictures_) words.push_back("--no-pictures");
   if (device_) words.push_back("--device=" + *device_);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  ::execvp(arguments.front(), arguments.data());
-  throw Error(words.front(), std::string("cannot be run: ") + std::strerror(errno),
-              "install it (Debian: python3-matplotlib python3-pandas), or run "
-              "experiments/setup.sh");
+  become_python(std::move(words),
+                "install it (Debian: python3-matplotlib python3-pandas), or run "
+                "experiments/setup.sh");
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
-// Reads the options and prints the counts; experiments/suite writes and checks the files.
+// Reads the options and prints the counts; experiments/suite writes and checks the files, and its
+// ask.py asks a program about them.
 #include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "embedded/ask_py.h"
 #include "experiments/command/command.h"
+#include "experiments/command/python.h"
 #include "experiments/suite/writer.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
@@ -56,7 +59,7 @@ class SuiteCommand {
 
  private:
   std::string folder_;
-  Text size_, seed_;
+  Text size_, seed_, ask_;
   bool check_ = false;
 };
 
@@ -69,21 +72,31 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
         "44 meshes, minutes"},
        {"--seed", &seed_, "N", "seed of all draws; default 1"},
        {"--check", &check_, "",
-        "read the suite in DIR, compare its sums and decide\nevery label anew"}},
+        "read the suite in DIR, compare its sums and decide\nevery label anew"},
+       {"--ask", &ask_, "COMMAND",
+        "ask the program that COMMAND starts about the suite in\nDIR, and print what it gets "
+        "wrong (docs/ask.md)"}},
       "Examples:\n"
       "  farcull suite pairs-and-meshes\n"
       "  farcull suite pairs-and-meshes --check\n"
-      "  farcull suite large --size full\n\n"
+      "  farcull suite large --size full\n"
+      "  farcull suite pairs-and-meshes --ask 'python3 my_library.py'\n\n"
       "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
       "and integers; a disagreement ends the command. The files depend on the size and the\n"
-      "seed alone. docs/suite.md has the format.");
+      "seed alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without "
+      "farcull.");
 }
 
 int SuiteCommand::run() const {
   if (folder_.empty()) throw Error("DIR", "the folder's name is empty", "name a folder");
-  if (check_ && (size_ || seed_)) {
-    throw Error("--check", "the suite itself says its size and its seed",
+  if ((check_ || ask_) && (size_ || seed_)) {
+    throw Error(ask_ ? "--ask" : "--check", "the suite itself says its size and its seed",
                 "leave --size and --seed out");
+  }
+  if (ask_ && check_) throw Error("--ask", "--check is another question", "give one of them");
+  if (ask_) {
+    become_python({"-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
+                  "install Python 3.8 or later");
   }
   const SuiteSettings settings = settings_of(size_, seed_);
   check_output("-");
@@ -91,6 +104,7 @@ int SuiteCommand::run() const {
   const Progress progress = terminal.callback();
   const SuiteSummary summary =
       check_ ? check_suite(folder_, progress) : write_suite(folder_, settings, progress);
+  if (!check_) write_output(folder_ + "/ask.py", embedded::ask_py);
   terminal.clear();
   write_output("-", pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
                         fmt::format("\n{} {}: seed {}, size {}\nsum {}\n",

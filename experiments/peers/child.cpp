@@ -76,7 +76,7 @@ constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 5);
   limit(RLIMIT_FSIZE, kMostPrinted, kMostPrinted);
-  if (limits.memory_mib > 0) limit(RLIMIT_AS, limits.memory_mib << 20, limits.memory_mib << 20);
+  if (limits.memory_mib > 0) limit(RLIMIT_DATA, limits.memory_mib << 20, limits.memory_mib << 20);
   for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
   ::signal(SIGXFSZ, SIG_IGN);
   ::dup2(in, STDIN_FILENO);

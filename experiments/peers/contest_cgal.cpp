@@ -1,5 +1,6 @@
 // CGAL's test of two triangles, with the kernel whose predicates are exact and with plain doubles.
-// Also CGAL's self-intersections of a mesh, intersections of meshes, and tree of boxes.
+// Also CGAL's self-intersections of a mesh, intersections of meshes, tree of boxes, and side of a
+// mesh on which a point is.
 //
 // CGAL's checks are on here, by undefining NDEBUG: a broken precondition then gives an error, not
 // an answer.
@@ -10,6 +11,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/intersection.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
@@ -55,12 +57,18 @@ void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
     throw Refusal("Surface_mesh holds no mesh that is not manifold");
 }
 
-/// The self-intersections of one mesh that holds all objects; face i is triangle i.
-std::vector<TrianglePair> self_scene(const Scene& scene) {
+/// One mesh that holds all objects; face i is triangle i.
+Mesh mesh_of(const Scene& scene) {
   Mesh mesh;
   std::vector<Mesh::Vertex_index> at;
   for (const Vec3& p : scene.vertices) at.push_back(mesh.add_vertex(point<Exact>(p)));
   for (const auto& [a, b, c] : scene.triangles) add_face(mesh, {at[a], at[b], at[c]});
+  return mesh;
+}
+
+/// The self-intersections of all objects as one mesh.
+std::vector<TrianglePair> self_scene(const Scene& scene) {
+  const Mesh mesh = mesh_of(scene);
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
   PMP::self_intersections(mesh, std::back_inserter(pairs));
   std::vector<TrianglePair> out;
@@ -70,6 +78,13 @@ std::vector<TrianglePair> self_scene(const Scene& scene) {
 }
 
 bool self_pair(const SuitePair& pair) { return !self_scene(scene_of(pair)).empty(); }
+
+bool side_of_mesh(const Scene& scene, const Vec3& p) {
+  const Mesh mesh = mesh_of(scene);
+  if (!CGAL::is_closed(mesh)) throw Refusal("Side_of_triangle_mesh takes closed meshes alone");
+  const CGAL::Side_of_triangle_mesh<Mesh, Exact> side(mesh);
+  return side(point<Exact>(p)) != CGAL::ON_UNBOUNDED_SIDE;
+}
 
 bool mesh_pair(const SuitePair& pair) {
   std::array<Mesh, 2> meshes;
@@ -120,7 +135,7 @@ int main(int argc, char** argv) {
                  .library = kLibrary,
                  .degenerate = false,
                  .call = "CGAL::do_intersect(Triangle_3, Triangle_3); meshes by AABB_tree's "
-                         "all_intersected_primitives(); kernel "
+                         "all_intersected_primitives(); points by Side_of_triangle_mesh; kernel "
                          "Exact_predicates_inexact_constructions_kernel",
                  .says =
                      "the kernel \"provides exact geometric predicates\"; two objects intersect "
@@ -131,7 +146,8 @@ int main(int argc, char** argv) {
                            "Triangle_3_Triangle_3_do_intersect.h",
                  .use = kExact},
         .pair = do_intersect<Exact>,
-        .mesh = tree_scene},
+        .mesh = tree_scene,
+        .inside = side_of_mesh},
        {.card = {.name = "cgal-double",
                  .library = kLibrary,
                  .degenerate = false,
@@ -149,14 +165,16 @@ int main(int argc, char** argv) {
                  .degenerate = false,
                  .neighbours = true,
                  .call = "Polygon_mesh_processing::self_intersections() of a Surface_mesh of "
-                         "both triangles, or of all objects; the kernel of cgal-exact",
+                         "both triangles, or of all objects; does_self_intersect(); the kernel "
+                         "of cgal-exact",
                  .says = "faces intersect if \"the corresponding triangles intersect and the "
                          "intersection is not an edge nor a vertex incident to both faces\"; "
                          "degenerate faces are reported by themselves; exact as its kernel",
                  .source = "CGAL 5.5 manual, Polygon Mesh Processing, self_intersections()",
                  .use = kExact},
         .pair = self_pair,
-        .mesh = self_scene},
+        .mesh = self_scene,
+        .self = [](const Scene& scene) { return PMP::does_self_intersect(mesh_of(scene)); }},
        {.card = {.name = "cgal-do-intersect",
                  .library = kLibrary,
                  .degenerate = false,

@@ -6,9 +6,12 @@
 #include <map>
 
 #include "experiments/library/farcull.h"
+#include "experiments/method/clash.h"
 #include "experiments/method/run.h"
 #include "experiments/peers/contestant.h"
+#include "verify/closest.h"
 #include "verify/exact.h"
+#include "verify/inside.h"
 
 namespace farcull {
 namespace {
@@ -127,6 +130,34 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
       [method](const Scene& scene) { return pairs_by(method, scene); }, tests_self_alone(method));
 }
 
+/// Whether the insides of two objects overlap, as `farcull clash` says it.
+bool clash_of(const Scene& scene) {
+  const ClashRecord record = clashes(scene, {.penetration = false, .threads = 1});
+  if (record.rows.empty()) return false;
+  const ClashRow& row = record.rows.front();
+  if (row.verdict == ClashVerdict::unknown || !row.proved)
+    throw Refusal("it is not proved whether the insides overlap");
+  return row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
+}
+
+/// The method `exact`, and the exact tests that `farcull distance` and `farcull clash` use.
+Contestant exact() {
+  Contestant out = of_method(Method::exact, "every pair whose boxes meet is decided exactly",
+                             "the answer to compare with");
+  out.distance = [](const SuitePair& pair) {
+    const Closest found = closest_points(pair.a, pair.b);
+    return ContestDistance{found.distance, found.points};
+  };
+  out.self = [mesh = out.mesh](const Scene& scene) { return !mesh(scene).empty(); };
+  out.inside = [](const Scene& scene, const Vec3& point) {
+    const Inside where = inside(scene, 0, point);
+    if (where == Inside::not_closed) throw Refusal("the mesh is not closed");
+    return where != Inside::no;
+  };
+  out.clash = clash_of;
+  return out;
+}
+
 constexpr const char* kWhereNoneIsMissed = "where no pair may be missed";
 
 Contestant far_pairs_of_library(const std::string& says) {
@@ -152,9 +183,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {device() == "native" ? far_pairs_of_library(reliable)
                             : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
-       of_method(Method::exact, "every pair whose boxes meet is decided exactly",
-                 "the answer to compare with"),
-       of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
+       exact(), of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
        of_method(Method::i_collide, reliable, "few objects that move little"),
        of_method(Method::cullide, loses, published),
        of_method(Method::quick_cullide, loses, published),

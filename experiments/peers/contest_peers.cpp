@@ -3,6 +3,7 @@
 // exact, the broad phase has lost it.
 #include "experiments/peers/peer.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "experiments/peers/contestant.h"
@@ -76,6 +77,29 @@ Contestant narrow(const Peer& peer) {
   return out;
 }
 
+/// The distance that a library gives for two triangles, each an object of its own. It says no
+/// points.
+std::function<ContestDistance(const SuitePair&)> distance_by(const DistancePeer& peer) {
+  return [peer](const SuitePair& pair) {
+    const Scene scene = two_objects(pair);
+    const std::string why = peer.refuses ? peer.refuses(scene) : "";
+    if (!why.empty()) throw Refusal(why);
+    const PeerDistances found = peer.run(scene, {}, 1);
+    if (found.distances.empty()) throw Refusal("it gives no distance");
+    return ContestDistance{found.distances[0].distance};
+  };
+}
+
+Contestant distance_alone(const DistancePeer& peer) {
+  return {.card = {.name = peer.name,
+                   .library = peer.library,
+                   .call = "squared_distance() of two triangles in doubles",
+                   .says = "nothing is quoted: how far its distances are off is what is measured",
+                   .source = "experiments/peers/cgal.cpp",
+                   .use = "distances near the size of the objects"},
+          .distance = distance_by(peer)};
+}
+
 Contestant broad(const Peer& peer) {
   Contestant out = contestant(
       peer, {.name = peer.name + "-exact",
@@ -96,6 +120,16 @@ int main(int argc, char** argv) {
   std::vector<Contestant> all;
   for (const Peer& peer : narrow_peers()) {
     if (peer.missing.empty()) all.push_back(narrow(peer));
+  }
+  for (const DistancePeer& peer : distance_peers()) {
+    if (!peer.missing.empty()) continue;
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Contestant& contestant) {
+      return contestant.card.name == peer.name;
+    });
+    if (same != all.end())
+      same->distance = distance_by(peer);
+    else if (peer.name == "cgal-aabb")
+      all.push_back(distance_alone(peer));
   }
   for (const Peer& peer : all_peers(1)) {
     if (peer.missing.empty()) all.push_back(broad(peer));

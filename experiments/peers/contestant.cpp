@@ -1,6 +1,7 @@
-// The loop of a contestant's program: reads questions, times the library, writes answers. Standard
-// output is kept for the answers: text that a library prints there goes to standard error. Also
-// writes and reads cards (descriptions of contestants, ContestantCard), one line for each field.
+// The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes
+// answers. Standard output is kept for the answers: text that a library prints there goes to
+// standard error. Also writes and reads cards (descriptions of contestants, ContestantCard), one
+// line for each field.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
@@ -15,6 +16,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -45,13 +47,12 @@ std::optional<bool> yes_or_no(const std::string& text) {
 /// Sets a field of a card. False: the key is unknown, or the value is not allowed for it.
 bool set(ContestantCard& card, const std::string& key, const std::string& value) {
   const std::map<std::string, std::string*> texts = {
-      {"name", &card.name}, {"library", &card.library}, {"call", &card.call},
-      {"says", &card.says}, {"source", &card.source},   {"use", &card.use}};
+      {"name", &card.name},      {"library", &card.library}, {"call", &card.call},
+      {"says", &card.says},      {"source", &card.source},   {"use", &card.use},
+      {"answers", &card.answers}};
   const std::map<std::string, bool*> flags = {{"degenerate", &card.degenerate},
                                               {"neighbours", &card.neighbours},
-                                              {"promises", &card.promises},
-                                              {"pairs", &card.pairs},
-                                              {"meshes", &card.meshes}};
+                                              {"promises", &card.promises}};
   if (const auto text = texts.find(key); text != texts.end()) {
     *text->second = value;
     return !value.empty();
@@ -70,19 +71,16 @@ bool set(ContestantCard& card, const std::string& key, const std::string& value)
     if (margin) card.margin = *margin;
     return margin.has_value() && *margin >= 0 && std::isfinite(*margin);
   }
-  if (key == "memory") {
-    const auto mib = parse_number<std::uint64_t>(value);
-    if (mib) card.memory_mib = *mib;
-    return mib.has_value() && *mib > 0;
-  }
   return false;
 }
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
-/// The fields of a line between tabulators.
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> out;
+/// The fields of a line between tabulators: its number, the question, and what is asked about.
+using Fields = std::vector<std::string_view>;
+
+Fields fields_of(std::string_view line) {
+  Fields out;
   for (std::size_t from = 0;;) {
     const std::size_t at = line.find('\t', from);
     out.push_back(line.substr(from, at - from));
@@ -104,12 +102,19 @@ Number number(std::string_view text) {
   return out;
 }
 
-SuitePair read_pair(const std::vector<std::string_view>& fields) {
-  if (fields.size() != 20) throw NoQuestion("a pair has 20 fields");
+/// The last 18 fields as two triangles.
+SuitePair read_triangles(const Fields& fields, std::size_t count) {
+  if (fields.size() != count)
+    throw NoQuestion(std::string(fields[1]) + " has " + std::to_string(count) + " fields");
   SuitePair out;
   for (std::size_t i = 0; i < 18; ++i)
-    (i < 9 ? out.a : out.b)[i / 3 % 3][i % 3] = number<double>(fields[i + 2]);
-  std::string_view shared = fields[1];
+    (i < 9 ? out.a : out.b)[i / 3 % 3][i % 3] = number<double>(fields[count - 18 + i]);
+  return out;
+}
+
+SuitePair read_pair(const Fields& fields) {
+  SuitePair out = read_triangles(fields, 21);
+  std::string_view shared = fields[2];
   if (shared == "-") return out;
   for (; shared.size() >= 3; shared.remove_prefix(std::min<std::size_t>(shared.size(), 4))) {
     out.shared.push_back(
@@ -148,12 +153,13 @@ void add_obj(const std::string& path, bool self, Scene& out) {
   }
 }
 
-Scene read_scene(const std::vector<std::string_view>& fields) {
-  if (fields.size() < 3) throw NoQuestion("a scene has at least 3 fields");
+/// The OBJ files of the fields from `first` to before `end` as objects.
+Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool self) {
+  if (fields.size() < std::max(first + 1, end))
+    throw NoQuestion(std::string(fields[1]) + " lacks fields");
   Scene out;
   out.name = "scene";
-  for (std::size_t i = 2; i < fields.size(); ++i)
-    add_obj(std::string(fields[i]), fields[1] == "1", out);
+  for (std::size_t i = first; i < end; ++i) add_obj(std::string(fields[i]), self, out);
   return out;
 }
 
@@ -164,21 +170,6 @@ void answer(int to, const std::string& text) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
     if (wrote <= 0) std::_Exit(kWrongCall);  // nobody reads the output
     done += static_cast<std::size_t>(wrote);
-  }
-}
-
-/// The answer that `ask` gives, or a refusal if it throws.
-template <class Ask>
-std::string asked(std::string_view number, const Ask& ask) {
-  const std::string begin = std::string(number) + "\t";
-  try {
-    return ask(begin);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const NoQuestion&) {
-    throw;
-  } catch (const std::exception& error) {
-    return begin + "refused\t" + one_line(error.what()).substr(0, 300) + "\n";
   }
 }
 
@@ -194,18 +185,44 @@ class Timer {
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 
-std::string ask_pair(const Contestant& contestant, const std::vector<std::string_view>& fields,
-                     const std::string& begin) {
-  const SuitePair pair = read_pair(fields);
+/// The answer that is yes or no, with its time.
+template <class Ask>
+std::string verdict(const std::string& begin, const Ask& ask) {
   const Timer timer;
-  const bool meets = contestant.pair(pair);
+  const bool yes = ask();
   const std::string ns = timer.nanoseconds();
-  return begin + (meets ? "1\t" : "0\t") + ns + "\n";
+  return begin + (yes ? "1\t" : "0\t") + ns + "\n";
 }
 
-std::string ask_mesh(const Contestant& contestant, const std::vector<std::string_view>& fields,
-                     const std::string& begin) {
-  const Scene scene = read_scene(fields);
+std::string answer_pair(const Contestant& contestant, const Fields& fields,
+                        const std::string& begin) {
+  const SuitePair pair = read_pair(fields);
+  return verdict(begin, [&] { return contestant.pair(pair); });
+}
+
+std::string answer_self(const Contestant& contestant, const Fields& fields,
+                        const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 3, true);
+  return verdict(begin, [&] { return contestant.self(scene); });
+}
+
+std::string answer_inside(const Contestant& contestant, const Fields& fields,
+                          const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 3, false);
+  if (fields.size() != 6) throw NoQuestion("inside has 6 fields");
+  const Vec3 point(number<double>(fields[3]), number<double>(fields[4]), number<double>(fields[5]));
+  return verdict(begin, [&] { return contestant.inside(scene, point); });
+}
+
+std::string answer_clash(const Contestant& contestant, const Fields& fields,
+                         const std::string& begin) {
+  const Scene scene = read_scene(fields, 2, 4, false);
+  return verdict(begin, [&] { return contestant.clash(scene); });
+}
+
+std::string answer_mesh(const Contestant& contestant, const Fields& fields,
+                        const std::string& begin) {
+  const Scene scene = read_scene(fields, 3, fields.size(), fields[2] == "1");
   const Timer timer;
   const std::vector<TrianglePair> found = contestant.mesh(scene);
   const std::string ns = timer.nanoseconds();
@@ -222,14 +239,56 @@ std::string ask_mesh(const Contestant& contestant, const std::vector<std::string
   return out + begin + "done\t" + ns + "\n";
 }
 
-int answer_all(const Contestant& contestant, bool pairs, int to) {
-  for (std::string line; std::getline(std::cin, line);) {
-    const std::vector<std::string_view> fields = fields_of(line);
-    answer(to, asked(fields[0], [&](const std::string& begin) {
-             return (pairs ? ask_pair : ask_mesh)(contestant, fields, begin);
-           }));
+std::string answer_distance(const Contestant& contestant, const Fields& fields,
+                            const std::string& begin) {
+  const ContestDistance found = contestant.distance(read_triangles(fields, 20));
+  std::string out = begin + shortest(found.distance);
+  for (std::size_t i = 0; found.points && i < 6; ++i)
+    out += "\t" + shortest((*found.points)[i / 3][static_cast<Eigen::Index>(i % 3)]);
+  return out + "\n";
+}
+
+std::string answer_card(const Contestant& contestant, const std::string& begin) {
+  std::string out;
+  std::istringstream lines(card_text(contestant.card));
+  for (std::string line; std::getline(lines, line);) out += begin + "card\t" + line + "\n";
+  return out + begin + "done\n";
+}
+
+/// A kind of question, whether a contestant answers it, and its answer.
+struct Question {
+  const char* word;
+  bool (*known)(const Contestant&);
+  std::string (*answer)(const Contestant&, const Fields&, const std::string& begin);
+};
+constexpr std::array kQuestions = {
+    Question{"pair", [](const Contestant& of) { return bool(of.pair); }, answer_pair},
+    Question{"mesh", [](const Contestant& of) { return bool(of.mesh); }, answer_mesh},
+    Question{"distance", [](const Contestant& of) { return bool(of.distance); }, answer_distance},
+    Question{"self", [](const Contestant& of) { return bool(of.self); }, answer_self},
+    Question{"inside", [](const Contestant& of) { return bool(of.inside); }, answer_inside},
+    Question{"clash", [](const Contestant& of) { return bool(of.clash); }, answer_clash}};
+
+/// The answer, or a refusal if the library throws.
+std::string answer_line(const Contestant& contestant, const std::string& line) {
+  const Fields fields = fields_of(line);
+  if (fields.size() < 2) throw NoQuestion("'" + line + "' is no question");
+  const std::string begin = std::string(fields[0]) + "\t";
+  const std::string_view what = fields[1];
+  try {
+    if (what == "card") return answer_card(contestant, begin);
+    for (const Question& question : kQuestions) {
+      if (what == question.word && question.known(contestant))
+        return question.answer(contestant, fields, begin);
+    }
+    return begin + "refused\tit does not answer this kind of question\n";
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const NoQuestion&) {
+    throw;
+  } catch (const std::exception& error) {
+    return begin + "refused\t" + one_line(error.what()).substr(0, 300) + "\n";
   }
-  return 0;
 }
 
 }  // namespace
@@ -238,23 +297,20 @@ int contest(int argc, char** argv, std::vector<Contestant> contestants) {
   const int to = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
   std::ios::sync_with_stdio(false);
-  const std::string name = argc > 1 ? argv[1] : "", what = argc > 2 ? argv[2] : "";
-  if (argc == 2 && name == "list") {
-    std::string text;
-    for (Contestant& contestant : contestants) {
-      contestant.card.pairs = contestant.pair != nullptr;
-      contestant.card.meshes = contestant.mesh != nullptr;
-      text += card_text(contestant.card);
+  const std::string name = argc == 2 ? argv[1] : "";
+  std::string names;
+  for (Contestant& contestant : contestants) {
+    names += " " + contestant.card.name;
+    if (contestant.card.name != name) continue;
+    for (const Question& question : kQuestions) {
+      if (!question.known(contestant)) continue;
+      contestant.card.answers += (contestant.card.answers.empty() ? "" : " ");
+      contestant.card.answers += question.word;
     }
-    answer(to, text);
-    return 0;
-  }
-  for (const Contestant& contestant : contestants) {
-    if (argc != 3 || contestant.card.name != name) continue;
-    const bool pairs = what == "pairs" && contestant.pair;
-    if (!pairs && !(what == "meshes" && contestant.mesh)) continue;
     try {
-      return answer_all(contestant, pairs, to);
+      for (std::string line; std::getline(std::cin, line);)
+        answer(to, answer_line(contestant, line));
+      return 0;
     } catch (const std::bad_alloc&) {
       std::fputs("std::bad_alloc: out of memory\n", stderr);
       return kNoMemory;
@@ -263,7 +319,7 @@ int contest(int argc, char** argv, std::vector<Contestant> contestants) {
       return kWrongCall;
     }
   }
-  std::fprintf(stderr, "usage: %s list | NAME pairs | NAME meshes\n", argv[0]);
+  std::fprintf(stderr, "usage: %s NAME, one of%s\n", argv[0], names.c_str());
   return kWrongCall;
 }
 
@@ -307,50 +363,37 @@ Scene scene_of(const SuitePair& pair) {
 std::string card_text(const ContestantCard& card) {
   std::string out;
   const auto add = [&out](const char* key, const std::string& value) {
-    out += std::string(key) + " " + one_line(value) + "\n";
+    if (!value.empty()) out += std::string(key) + "\t" + one_line(value) + "\n";
   };
   const auto flag = [&add](const char* key, bool value) { add(key, value ? "yes" : "no"); };
   add("name", card.name);
   add("library", card.library);
+  add("answers", card.answers);
   add("means", card.means == Means::closed ? "closed" : "crossing");
   flag("degenerate", card.degenerate);
   flag("neighbours", card.neighbours);
   flag("promises", card.promises);
-  flag("pairs", card.pairs);
-  flag("meshes", card.meshes);
   if (card.margin > 0) add("margin", shortest(card.margin));
-  add("memory", std::to_string(card.memory_mib));
   add("call", card.call);
   add("says", card.says);
-  if (!card.source.empty()) add("source", card.source);
+  add("source", card.source);
   add("use", card.use);
-  return out + "\n";
+  return out;
 }
 
-std::vector<ContestantCard> read_cards(std::string_view text, const std::string& where) {
-  std::vector<ContestantCard> out;
-  bool open = false;
-  long line = 0;
-  while (!text.empty()) {
-    ++line;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string row(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (row.empty()) {
-      open = false;
-      continue;
-    }
-    if (!open) out.emplace_back();
-    open = true;
-    const std::size_t blank = std::min(row.find(' '), row.size() - 1);
-    if (!set(out.back(), row.substr(0, blank), row.substr(blank + 1)))
-      throw Error(where, "the card says '" + row + "'", "see experiments/peers/contestant.h", line);
+ContestantCard read_card(std::string_view text, const std::string& where) {
+  ContestantCard out;
+  constexpr const char* kPage = "docs/ask.md has the keys of a card";
+  std::istringstream lines{std::string(text)};
+  long number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::size_t tab = std::min(line.find('\t'), line.size() - 1);
+    if (line.empty() || !set(out, line.substr(0, tab), line.substr(tab + 1)))
+      throw Error(where, "the card says '" + line + "'", kPage, number);
   }
-  for (const ContestantCard& card : out) {
-    if (card.name.empty() || card.library.empty() || (!card.pairs && !card.meshes))
-      throw Error(where, "a card lacks its name, its library, or what it can be asked",
-                  "see experiments/peers/contestant.h");
-  }
+  if (out.name.empty() || out.library.empty() || out.answers.empty())
+    throw Error(where, "the card lacks its name, its library, or what it answers", kPage);
   return out;
 }
 

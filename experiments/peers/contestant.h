@@ -1,29 +1,16 @@
-// The protocol of contestants. A contestant of the study "libraries" is a library, called as its
-// documentation says, in its own program that reads questions as text and answers them.
+// A contestant is a library, called as its documentation says, in a program that reads questions as
+// text and answers them. docs/ask.md has the protocol. Here is its half in C++: `PROGRAM NAME` is
+// the contestant NAME of the program.
 //
 // Each library has its own program, and is not called by farcull, for three reasons. A library may
 // crash, hang or take all memory. Libraries may not be linked together: Bullet exists in float and
 // in double under the same names. And a program in any language can take part.
-//
-// The program is called in one of three ways. Tabulators divide the fields of a line. NUMBER is the
-// number of the question, which the answer repeats.
-//   PROGRAM list          prints a card for each of its contestants (ContestantCard)
-//   PROGRAM NAME pairs    reads lines, each with a pair of triangles:
-//                           NUMBER SHARED, then 18 coordinates as decimal numbers that a reader of
-//                           doubles gives back exactly; SHARED as in a suite, `-` for none
-//                         and answers in the same order, one line for each pair:
-//                           NUMBER 0|1 NANOSECONDS, or NUMBER refused REASON
-//   PROGRAM NAME meshes   reads lines, each with a scene:
-//                           NUMBER SELF (0 or 1: each object against itself too), then the OBJ
-//                           file of each object, whose triangles count from 0
-//                         and answers with any number of lines
-//                           NUMBER pair OBJECT TRIANGLE OBJECT TRIANGLE
-//                         and one more: NUMBER done NANOSECONDS, or NUMBER refused REASON
-// Nothing else may be on standard output. The program ends at the end of its input.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,20 +34,19 @@ struct ContestantCard {
   bool degenerate = true;   // the library takes triangles that are segments or points
   bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
-  bool promises = false;               // only for farcull's methods: a miss breaks a promise
-  bool pairs = false, meshes = false;  // which questions it can be asked
-  std::uint64_t memory_mib = 4096;     // the most address space of its process
-  std::string call = {};               // the function that is called, and its arguments
-  std::string says = {};               // what its documentation says of exactness and of touching
-  std::string source = {};             // where the documentation says so; others may omit it
-  std::string use = {};                // for which purpose it is the right choice
+  bool promises = false;     // only for farcull's methods: a miss breaks a promise
+  std::string answers = {};  // the questions that it answers, such as "pair mesh"
+  std::string call = {};     // the function that is called, and its arguments
+  std::string says = {};     // what its documentation says of exactness and of touching
+  std::string source = {};   // where the documentation says so; others may omit it
+  std::string use = {};      // for which purpose it is the right choice
 };
 
-/// The card as lines `KEY VALUE`, with an empty line at the end. The keys are the names of the
-/// members, but `memory` for memory_mib. `means` is closed or crossing, and a bool is yes or no.
+/// The card as lines KEY TAB VALUE. The keys are the names of the members. `means` is closed or
+/// crossing, and a bool is yes or no.
 std::string card_text(const ContestantCard& card);
-/// Reads what `PROGRAM list` printed. Throws Error naming `where` and the line.
-std::vector<ContestantCard> read_cards(std::string_view text, const std::string& where);
+/// The inverse. Throws Error naming `where` and the line.
+ContestantCard read_card(std::string_view text, const std::string& where);
 
 /// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
 /// documentation says that it is not made for the question.
@@ -68,17 +54,29 @@ struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How far two triangles are apart, and a point of each at that distance if the library says one.
+struct ContestDistance {
+  double distance = 0;
+  std::optional<std::array<Vec3, 2>> points = {};
+};
+
 struct Contestant {
-  ContestantCard card;  // `pairs` and `meshes` are set if the functions below are not null
+  ContestantCard card;  // `answers` is set by the functions below that are not null
   std::function<bool(const SuitePair&)> pair = {};
   /// The pairs of triangles of the scene that the library calls colliding, in any order. Either all
   /// objects are tested against themselves too, or none. A triangle with itself is no pair.
   std::function<std::vector<TrianglePair>(const Scene&)> mesh = {};
+  std::function<ContestDistance(const SuitePair&)> distance = {};
+  // The other questions, about a scene of one object that is tested against itself, of one closed
+  // object and a point, and of two closed objects.
+  std::function<bool(const Scene&)> self = {};
+  std::function<bool(const Scene&, const Vec3&)> inside = {};
+  std::function<bool(const Scene&)> clash = {};
 };
 
-/// main() of a program of contestants: the protocol above. Any exception of a library is a refusal,
-/// except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call or a
-/// line that is no question; 3 if memory ran out.
+/// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a
+/// refusal, except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call
+/// or a line that is no question; 3 if memory ran out.
 int contest(int argc, char** argv, std::vector<Contestant> contestants);
 
 /// Calls `ask` for every pair of objects, and with a == b for each object that is tested against

@@ -1,4 +1,4 @@
-// Turns questions into lines and lines into answers (contestant.h has the protocol), and starts a
+// Turns questions into lines and lines into answers (docs/ask.md has the protocol), and starts a
 // new process after one ended. Also lists the contestants that the study knows.
 #include "experiments/peers/runner.h"
 
@@ -19,18 +19,11 @@
 namespace farcull {
 namespace {
 
-ChildLimits child_limits(const Invited& invited, const ContestLimits& limits) {
+ChildLimits child_limits(const ContestLimits& limits) {
   return {.start_s = limits.start_s,
           .line_s = limits.answer_s,
           .cpu_s = limits.cpu_s,
-          .memory_mib = limits.memory_mib > 0 ? limits.memory_mib : invited.card.memory_mib};
-}
-
-std::vector<std::string> command_of(const Invited& invited, const char* what) {
-  std::vector<std::string> out = invited.program;
-  out.push_back(invited.card.name);
-  out.emplace_back(what);
-  return out;
+          .memory_mib = limits.memory_mib};
 }
 
 ContestOutcome outcome_of(ChildEnd::How how) {
@@ -44,7 +37,7 @@ void add_corners(const std::array<Vec3, 3>& corners, std::string& out) {
 }
 
 std::string question(std::size_t number, const SuitePair& pair) {
-  std::string out = fmt::format("{}\t", number);
+  std::string out = fmt::format("{}\tpair\t", number);
   for (const SharedCorner& corner : pair.shared)
     out += fmt::format("{}{}-{}", out.back() == '\t' ? "" : ",", corner.a, corner.b);
   if (pair.shared.empty()) out += "-";
@@ -65,7 +58,7 @@ std::string_view take_field(std::string_view& line) {
 std::optional<ContestAnswer> read_answer(std::string_view line) {
   const std::string_view word = take_field(line);
   if (word == "refused") return ContestAnswer{ContestOutcome::refused, 0, std::string(line)};
-  const auto ns = parse_number<double>(line);
+  const auto ns = line.empty() ? 0.0 : parse_number<double>(line);
   if (!ns || *ns < 0 || (word != "0" && word != "1")) return {};
   return ContestAnswer{word == "1" ? ContestOutcome::meets : ContestOutcome::apart, *ns, ""};
 }
@@ -117,10 +110,10 @@ class PairAsker {
       answers[next++] = std::move(*answer);
       return true;
     };
-    ChildLimits limits = child_limits(invited_, limits_);
+    ChildLimits limits = child_limits(limits_);
     // After the first start the program and its libraries are in memory, so a start is faster.
     if (processes > 1) limits.start_s = std::min(limits.start_s, 2 * limits.line_s);
-    return run_child(command_of(invited_, "pairs"), limits, more, line);
+    return run_child(invited_.program, limits, more, line);
   }
 
   static constexpr std::size_t kPart = 1 << 15;  // bytes of questions at a time
@@ -144,11 +137,11 @@ std::optional<TrianglePair> read_found(std::string_view line, const Scene& scene
 
 // A program that reports pairs without end would take all memory.
 constexpr std::size_t kMostFound = 50'000'000;
-constexpr std::size_t kMostCards = 1 << 20;  // bytes
+constexpr std::size_t kMostCard = 1 << 20;  // bytes
 
 MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const std::string& folder,
                          const ContestLimits& limits) {
-  std::string input = fmt::format("0\t{}", mesh.self ? 1 : 0);
+  std::string input = fmt::format("0\tmesh\t{}", mesh.self ? 1 : 0);
   for (std::size_t o = 0; o < mesh.scene.objects.size(); ++o)
     input += fmt::format("\t{}/{}.obj", folder, o);
   input += "\n";
@@ -162,7 +155,7 @@ MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const st
       if (pair && pair->a != pair->b) out.pairs.push_back(*pair);
       return pair.has_value() && out.pairs.size() <= kMostFound;
     }
-    const auto ns = parse_number<double>(text);
+    const auto ns = text.empty() ? 0.0 : parse_number<double>(text);
     done = word == "refused" || (word == "done" && ns);
     out.outcome = word == "refused" ? ContestOutcome::refused : ContestOutcome::meets;
     if (word == "refused") out.reason = std::string(text);
@@ -171,10 +164,10 @@ MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const st
   };
   // The whole answer about a scene may come at the end, so the first line may take the time of a
   // line.
-  ChildLimits child = child_limits(invited, limits);
+  ChildLimits child = child_limits(limits);
   child.start_s = std::max(child.start_s, child.line_s);
   const ChildEnd end = run_child(
-      command_of(invited, "meshes"), child, [&] { return std::exchange(input, {}); }, line);
+      invited.program, child, [&] { return std::exchange(input, {}); }, line);
   if (!done) {
     out = MeshAnswer{.outcome = outcome_of(end.how), .ns = 0, .reason = end.reason, .pairs = {}};
   }
@@ -210,8 +203,9 @@ std::vector<KnownContestant> make_list() {
   add(all, "vtk", "libvtk9-dev", {"vtk-collision"});
   add(all, "vtk", "libvtk9-dev", {"vtk-triangle", "vtk-intersection"}, true, false);
   add(all, "open3d", "libopen3d-dev", {"open3d"});
-  add(all, "three_mesh_bvh", "nodejs, npm and then the npm package three-mesh-bvh",
-      {"three-mesh-bvh"});
+  constexpr const char* kNode = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
+  add(all, "node", kNode, {"three-mesh-bvh"});
+  add(all, "node", kNode, {"rapier3d", "cannon-es"}, true, false);
   add(all, "textbook", "",
       {"moeller-double", "moeller-double-0", "moeller-float", "guigue-devillers-double",
        "guigue-devillers-float", "edge-face-double"},
@@ -229,28 +223,6 @@ std::string folder() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   return (self.parent_path() / "contestants").string();
-}
-
-/// The contestants of a program, asked for once; or why there are none.
-struct Cards {
-  std::vector<Invited> invited;
-  std::string missing;
-};
-const Cards& cards_of(const std::string& path) {
-  static std::map<std::string, Cards> known;
-  const auto at = known.find(path);
-  if (at != known.end()) return at->second;
-  Cards cards;
-  if (::access(path.c_str(), X_OK) != 0) {
-    cards.missing = "its program was not built";
-  } else {
-    try {
-      cards.invited = invite({path});
-    } catch (const Error& error) {
-      cards.missing = error.reason;
-    }
-  }
-  return known.emplace(path, std::move(cards)).first->second;
 }
 
 }  // namespace
@@ -305,23 +277,22 @@ MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::st
   return out;
 }
 
-std::vector<Invited> invite(const ContestProgram& program, const ContestLimits& limits) {
-  ContestProgram command = program;
-  command.emplace_back("list");
-  std::string text;
+Invited invite(const ContestProgram& program, const ContestLimits& limits) {
+  std::string question = "0\tcard\n", text;
+  bool done = false;
   const ChildEnd end = run_child(
-      command, {.start_s = limits.start_s, .line_s = limits.answer_s, .cpu_s = limits.cpu_s},
-      [] { return std::string(); },
-      [&text](std::string_view line) {
-        text += std::string(line) + "\n";
-        return text.size() <= kMostCards;
+      program, {.start_s = limits.start_s, .line_s = limits.answer_s, .cpu_s = limits.cpu_s},
+      [&question] { return std::exchange(question, {}); },
+      [&](std::string_view line) {
+        if (done || take_field(line) != "0") return false;
+        const std::string_view word = take_field(line);
+        done = word == "done" && line.empty();
+        if (word == "card") text += std::string(line) + "\n";
+        return done || (word == "card" && text.size() <= kMostCard);
       });
-  if (end.how != ChildEnd::How::peace)
-    throw Error(program.back(), "says not who it is: " + end.reason, "start it with `list`");
-  std::vector<Invited> out;
-  for (ContestantCard& card : read_cards(text, program.back()))
-    out.push_back({std::move(card), program});
-  return out;
+  if (!done)
+    throw Error(program.back(), "gives no card: " + end.reason, "docs/ask.md has the protocol");
+  return {read_card(text, program.back()), program};
 }
 
 const std::vector<KnownContestant>& known_contestants() {
@@ -342,14 +313,21 @@ const KnownContestant& known_contestant(const std::string& name) {
 }
 
 Invitation invite_known(const KnownContestant& contestant) {
-  const Cards& cards = cards_of(folder() + "/farcull_contestant_" + contestant.program);
-  for (const Invited& invited : cards.invited) {
-    if (invited.card.name == contestant.name) return {invited, ""};
+  static std::map<std::pair<std::string, std::string>, Invitation> known;
+  const std::string path = folder() + "/farcull_contestant_" + contestant.program;
+  Invitation& out = known[{path, contestant.name}];
+  if (out.invited || !out.missing.empty()) return out;
+  try {
+    if (::access(path.c_str(), X_OK) == 0) {
+      out.invited = invite({path, contestant.name});
+      return out;
+    }
+    out.missing = contestant.name + ": its program was not built";
+  } catch (const Error& error) {
+    out.missing = contestant.name + ": " + error.reason;
   }
-  std::string missing =
-      contestant.name + ": " + (cards.missing.empty() ? "not part of this build" : cards.missing);
-  if (!contestant.package.empty()) missing += " (Debian: " + contestant.package + ")";
-  return {{}, missing};
+  if (!contestant.package.empty()) out.missing += " (Debian: " + contestant.package + ")";
+  return out;
 }
 
 }  // namespace farcull

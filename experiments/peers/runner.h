@@ -22,7 +22,7 @@ struct ChildLimits {
   double start_s = 60;           // wall clock until the first line
   double line_s = 10;            // from one line to the next
   std::uint64_t cpu_s = 3600;    // CPU time
-  std::uint64_t memory_mib = 0;  // of address space; 0: no limit
+  std::uint64_t memory_mib = 0;  // of data that it may write; 0: no limit
 };
 
 struct ChildEnd {
@@ -44,7 +44,7 @@ ChildEnd run_child(const std::vector<std::string>& command, const ChildLimits& l
 
 // ---- contestants ----
 
-/// The words of a command line that starts a program of contestants, up to NAME.
+/// The words of a command line that starts a contestant.
 using ContestProgram = std::vector<std::string>;
 
 /// A contestant that can be asked.
@@ -54,11 +54,11 @@ struct Invited {
 };
 
 struct ContestLimits {
-  double answer_s = 10;          // wall clock from one answer to the next
-  double start_s = 60;           // wall clock to the first answer of the first process; for later
-                                 // processes at most twice answer_s
-  std::uint64_t cpu_s = 3600;    // CPU time of a process
-  std::uint64_t memory_mib = 0;  // of address space; 0: as the card says
+  double answer_s = 10;        // wall clock from one answer to the next
+  double start_s = 60;         // wall clock to the first answer of the first process; for later
+                               // processes at most twice answer_s
+  std::uint64_t cpu_s = 3600;  // CPU time of a process
+  std::uint64_t memory_mib = 4096;  // of data that it may write
   /// When so many processes have ended badly, the questions that are left are not asked.
   std::size_t most_deaths = 100;
 };
@@ -113,9 +113,9 @@ struct MeshAnswer {
 MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::string& folder,
                     const ContestLimits& limits = {}, bool twice = true);
 
-/// The contestants of a program. Throws Error if the program does not start, does not end within
-/// the limit, or prints no cards.
-std::vector<Invited> invite(const ContestProgram& program, const ContestLimits& limits = {});
+/// The contestant that a command starts, asked for its card. Throws Error if the program does not
+/// start, does not end within the limit, or gives no card.
+Invited invite(const ContestProgram& program, const ContestLimits& limits = {});
 
 /// A contestant that the study knows, whether this build has it or not.
 struct KnownContestant {
@@ -137,7 +137,7 @@ struct Invitation {
   std::string missing = {};
 };
 /// Looks for the contestant's program in the folder that the variable FARCULL_CONTESTANTS names,
-/// else in the folder `contestants` beside this program, and asks it for its cards, once in this
+/// else in the folder `contestants` beside this program, and asks it for its card, once in this
 /// process.
 Invitation invite_known(const KnownContestant& contestant);
 

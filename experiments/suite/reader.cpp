@@ -394,7 +394,7 @@ void check_files(const std::string& folder, const SuiteIndex& index) {
       throw Error(path, "its SHA-256 is not the one of suite.txt, so it was changed", kAgain);
   }
   std::vector<std::string> there;
-  for (const char* part : {"pairs", "meshes"}) {
+  for (const char* part : {"pairs", "meshes", "questions"}) {
     std::error_code error;
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(folder + "/" + part, error)) {

@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/suite/questions.h"
 #include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 
@@ -81,6 +82,10 @@ class Folder {
     make_parent(name);
     write_output(path_ + "/" + name, text);
     index_.files.push_back({name, text.size(), sum_of(text), items});
+  }
+  void write(const std::string& name, const SuiteQuestions& questions) {
+    const std::size_t count = questions.questions.size();
+    if (count > 0) write("questions/" + name + ".txt", questions_text(questions), count);
   }
   void finish() {
     std::sort(index_.files.begin(), index_.files.end(),
@@ -300,6 +305,7 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
     if (progress) progress("pairs, " + family.name);
     const SuitePairs pairs = make_pairs(family.name, settings);
     files.write("pairs/" + family.name + ".txt", pairs_text(pairs), pairs.pairs.size());
+    files.write(family.name, questions_of(pairs));
     out.families.push_back(counts_of(pairs));
   }
   for (const std::string& name : mesh_names(settings.size)) {
@@ -307,6 +313,7 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
     const SuiteMesh mesh = make_mesh(name, settings);
     for (const SuiteText& file : mesh_texts(mesh))
       files.write("meshes/" + name + "/" + file.name, file.text, file.items);
+    files.write(name, questions_of(mesh, settings.seed));
     out.meshes.push_back(counts_of(mesh));
   }
   files.finish();
@@ -330,6 +337,13 @@ SuiteSummary check_suite(const std::string& folder, const Progress& progress) {
     require_items(file, pairs.pairs.size());
     check_pairs(pairs, folder + "/" + file);
     out.families.push_back(counts_of(pairs));
+  }
+  for (const SuiteIndex::File& file : out.index.files) {
+    if (!file.path.starts_with("questions/") || !file.path.ends_with(".txt")) continue;
+    if (progress) progress(file.path);
+    const SuiteQuestions questions = read_questions(folder + "/" + file.path);
+    require_items(file.path, questions.questions.size());
+    check_questions(questions, folder, folder + "/" + file.path);
   }
   for (const std::string& name : out.index.mesh_folders()) {
     if (progress) progress(name);

@@ -39,11 +39,15 @@ const std::vector<SuitePair>& pairs() {
   return all;
 }
 
-Invited liar(const std::string& name) {
-  for (Invited& invited : invite({FARCULL_LIAR}))
-    if (invited.card.name == name) return invited;
-  ADD_FAILURE() << "no liar is called " << name;
-  return {};
+Invited liar(const std::string& name) { return invite({FARCULL_LIAR, name}); }
+
+/// The contestants of the program of textbook tests.
+std::vector<Invited> textbook() {
+  std::vector<Invited> out;
+  for (const KnownContestant& known : known_contestants()) {
+    if (known.program == "textbook") out.push_back(invite({FARCULL_TEXTBOOK, known.name}));
+  }
+  return out;
 }
 
 // No answer takes this long: what takes longer, as beside other tests, is not taken for a hang.
@@ -205,8 +209,13 @@ TEST(ContestRunner, AskingEndsAfterManyDeaths) {
 
 TEST(ContestRunner, ProgramsWithoutCardsAreRefused) {
   EXPECT_TRUE(refuses("cannot be started", [] { (void)invite({"/no/such/program"}); }));
-  EXPECT_TRUE(refuses("lacks", [] { (void)invite({"/bin/sh", "-c", "echo name x"}); }));
-  EXPECT_TRUE(refuses("colour", [] { (void)invite({"/bin/sh", "-c", "echo colour red"}); }));
+  const auto says = [](const std::string& text) {
+    return invite({"/bin/sh", "-c", "printf '" + text + "'"});
+  };
+  EXPECT_TRUE(refuses("lacks", [&] { (void)says("0\\tcard\\tname\\tx\\n0\\tdone\\n"); }));
+  EXPECT_TRUE(refuses("colour", [&] { (void)says("0\\tcard\\tcolour\\tred\\n0\\tdone\\n"); }));
+  EXPECT_TRUE(refuses("gives no card", [&] { (void)says("0\\trefused\\tno\\n"); }));
+  EXPECT_TRUE(refuses("gives no card", [&] { (void)says("0\\tcard\\tname\\tx\\n"); }));
 }
 
 /// Fans of triangles that cross each other many times.
@@ -320,7 +329,7 @@ TEST(ContestAdapters, NameWhereTheirDocumentationSaysIt) {
 
 // Written from the papers: on pairs that are far from touching, rounding decides nothing.
 TEST(ContestTextbook, AgreesWithExactPredicatesFarFromContact) {
-  const std::vector<Invited> all = invite({FARCULL_TEXTBOOK});
+  const std::vector<Invited> all = textbook();
   EXPECT_GE(all.size(), 6u);
   for (const Invited& invited : all) {
     const Score sum = sum_of(invited, ask_pairs(invited, pairs(), kShort, 0));
@@ -335,7 +344,7 @@ TEST(ContestTextbook, RoundingIsSeenNearContact) {
   pair.a = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   pair.b = {Vec3(0, 0, 1e-9), Vec3(1, 0, 1e-9), Vec3(0, 1, 1e-9)};
   pair.kind = SuiteKind::apart;
-  for (const Invited& invited : invite({FARCULL_TEXTBOOK})) {
+  for (const Invited& invited : textbook()) {
     if (invited.card.name != "moeller-float" && invited.card.name != "guigue-devillers-double")
       continue;
     const PairsAnswer answer = ask_pairs(invited, std::span(&pair, 1), kShort, 0);
@@ -434,40 +443,35 @@ TEST(ContestCard, IsReadBackFromItsText) {
                       .degenerate = false,
                       .neighbours = true,
                       .margin = 0.1,
-                      .pairs = true,
-                      .memory_mib = 12,
+                      .answers = "pair mesh",
                       .call = "f()",
                       .says = "nothing\nat all",
                       .source = "README,\nsection 1",
                       .use = "here"};
-  const std::vector<ContestantCard> read = read_cards(card_text(card) + card_text(card), "test");
-  ASSERT_EQ(read.size(), 2u);
+  const ContestantCard read = read_card(card_text(card), "test");
   card.says = "nothing at all";
   card.source = "README, section 1";
-  EXPECT_EQ(card_text(read[1]), card_text(card));
-  EXPECT_EQ(read[0].means, Means::crossing);
-  EXPECT_EQ(read[0].source, "README, section 1");
-  EXPECT_EQ(read[0].margin, 0.1);
+  EXPECT_EQ(card_text(read), card_text(card));
+  EXPECT_EQ(read.means, Means::crossing);
+  EXPECT_EQ(read.source, "README, section 1");
+  EXPECT_EQ(read.margin, 0.1);
 }
 
 TEST(ContestCard, MayLeaveOutItsSourceButNotName) {
   const ContestantCard card{.name = "x",
                             .library = "x 1",
-                            .pairs = true,
+                            .answers = "pair",
                             .call = "f()",
                             .says = "nothing",
                             .use = "here"};
   const std::string text = card_text(card);
   EXPECT_FALSE(has_text(text, "source"));
-  const std::vector<ContestantCard> read = read_cards(text, "test");
-  ASSERT_EQ(read.size(), 1u);
-  EXPECT_EQ(read[0].source, "");
-  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nsource \n", "t"); }),
-            "");
-  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nsauce a\n", "t"); }),
-            "");
-  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nmargin -1\n", "t"); }),
-            "");
+  const ContestantCard read = read_card(text, "test");
+  EXPECT_EQ(read.source, "");
+  const std::string good = "name\tx\nlibrary\tx\nanswers\tpair\n";
+  EXPECT_EQ(message_of([&] { (void)read_card(good, "t"); }), "");
+  for (const char* bad : {"source\t\n", "sauce\ta\n", "margin\t-1\n", "means\tx\n"})
+    EXPECT_NE(message_of([&] { (void)read_card(good + bad, "t"); }), "") << bad;
 }
 
 }  // namespace

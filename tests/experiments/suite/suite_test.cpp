@@ -15,7 +15,7 @@ namespace {
 // The small suite of seed 1, as it was published. Where this changes, so do the answers of everyone
 // who measures with it.
 constexpr const char* kSmallSuite =
-    "87a146da64ae0cd87e515eeae708caeed5617169260c606bc0cb350281b1aa36";
+    "1c09cfc4dd9225c1cebe65bb37febbf688e4f77cb2c0b510deb55d3349e523d4";
 
 TEST(Suite, TheSmallOneHasItsChecksumAndEveryLabelIsRight) {
   const ScratchFolder folder;

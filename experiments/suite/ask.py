@@ -1,0 +1,600 @@
+#!/usr/bin/env python3
+"""Asks a program about a suite of labelled triangles and meshes, and prints what it gets wrong.
+
+docs/ask.md has the protocol, docs/suite.md the files. This file needs Python 3.8 alone. `farcull suite DIR` writes it
+into the folder of the suite, and `farcull suite DIR --ask COMMAND` runs it.
+"""
+import argparse
+import collections
+import contextlib
+import csv
+import hashlib
+import math
+import os
+import queue
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from fractions import Fraction
+
+KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
+AHEAD = 32  # questions that are sent before their answers; so few fit into a pipe, and writing never waits
+AGAIN = 16  # every so many questions one is asked again
+OFF = 1e-6  # relative errors of distances and of points above this are counted
+
+
+class Wrong(Exception):
+    """The suite or the command is not as it has to be."""
+
+
+# ---- a process and its answers
+
+class Child:
+    """A process with limits. `lines` has its output; an empty text is the end."""
+
+    def __init__(self, command, options):
+        def limit():
+            import resource  # pylint: disable=import-outside-toplevel  # not on Windows
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
+        self.errors = tempfile.TemporaryFile()
+        posix = os.name == 'posix'
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
+                                        start_new_session=posix, preexec_fn=limit if posix else None)
+        self.lines = queue.Queue()
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        for line in self.process.stdout:
+            self.lines.put(line.decode('utf-8', 'replace'))
+        self.lines.put('')
+
+    def send(self, text):
+        with contextlib.suppress(OSError):  # it may read no longer
+            self.process.stdin.write(text.encode())
+            self.process.stdin.flush()
+
+    def close(self):
+        with contextlib.suppress(OSError):
+            self.process.stdin.close()
+
+    def end(self, seconds):
+        """How the process ended, after it was given some time, and why: an outcome and a reason."""
+        try:
+            status = self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            return 'hung', 'no answer within the limit'
+        self.kill()
+        size = self.errors.seek(0, os.SEEK_END)
+        self.errors.seek(max(0, size - 16384))
+        words = ' '.join(self.errors.read().decode('utf-8', 'replace').split())
+        if status == 0:
+            return 'unanswered', ''
+        reason = (signal.Signals(-status).name if status < 0 else f'exit status {status}') + f' {words[-300:]}'.rstrip()
+        memory = re.search('bad_alloc|out of memory|failed to allocate|heap limit|MemoryError', words, re.IGNORECASE)
+        return 'no memory' if memory or status == -9 else 'crashed', reason
+
+    def kill(self):
+        """Ends it and the processes that it started."""
+        with contextlib.suppress(OSError):
+            os.killpg(self.process.pid, signal.SIGKILL) if os.name == 'posix' else self.process.kill()
+        self.process.wait()
+        self.close()
+
+
+Answer = collections.namedtuple('Answer', 'outcome value ns reason')
+NOT_ASKED = Answer('not asked', None, 0, '')
+# kind: one of KINDS or card; fields: of the question, after its kind.
+Question = collections.namedtuple('Question', 'kind fields')
+
+
+def real(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
+
+
+def parse(kind, fields, so_far):
+    """Reads the fields of one line of an answer. True: the answer is whole, and `so_far` holds its value and perhaps a
+    time. Raises ValueError for a line that the grammar does not have."""
+    word, rest = fields[0], fields[1:]
+    if kind == 'card' and word == 'card' and len(rest) == 2:
+        so_far.append(rest)
+        return False
+    if kind == 'mesh' and word == 'pair' and len(rest) == 4:
+        so_far.append(tuple(map(int, rest)))
+        return False
+    if kind == 'distance' and len(fields) in (1, 7):
+        so_far.append([real(field) for field in fields])
+        return True
+    last = {'mesh': ['done'], 'card': ['done']}.get(kind, ['0', '1'])
+    if kind == 'distance' or word not in last or len(rest) > 1 or (rest and real(rest[0]) < 0):
+        raise ValueError(word)
+    so_far.append((word, real(rest[0]) if rest else None))
+    return True
+
+
+def ask_from(command, questions, first, answers, options, start):
+    """Asks one process from question `first` on; fills `answers` and gives the next question that has none, and how the
+    process ended."""
+    child = Child(command, options)
+    following, sent, so_far = first, first, []
+    allowed, since = start, time.monotonic()
+    while True:
+        while sent < len(questions) and sent < following + AHEAD:
+            child.send('\t'.join([str(sent), questions[sent].kind, *questions[sent].fields]) + '\n')
+            sent += 1
+            if sent == len(questions):
+                child.close()
+        if following < len(questions):
+            allowed = max(allowed, options.limit * (1 if questions[following].kind in ('pair', 'distance') else 10))
+        try:
+            line = child.lines.get(timeout=allowed)
+        except queue.Empty:
+            child.kill()
+            return following, ('hung', 'no answer within the limit')
+        if not line:
+            return following, child.end(options.limit)
+        allowed = 0
+        number, *fields = line.rstrip('\r\n').split('\t')
+        try:
+            at = int(number)
+            if not fields or not following <= at < sent or (at > following and so_far):
+                raise ValueError(number)
+            refused = fields[0] == 'refused' and len(fields) > 1
+            whole = refused or parse(questions[at].kind, fields, so_far)
+        except ValueError:
+            child.kill()
+            return following, ('crashed', f'wrote what is no answer: {line.rstrip()[:80]}')
+        for skipped in range(following, at):
+            answers[skipped] = Answer('unanswered', None, 0, '')
+        following = at
+        if not whole:
+            continue
+        now = time.monotonic()
+        if refused:
+            answers[at] = Answer('refused', None, 0, ' '.join(fields[1:])[:160])
+        else:
+            last = so_far.pop()
+            timed = isinstance(last, tuple) and last[1] is not None
+            value = so_far if questions[at].kind in ('mesh', 'card') else last[0] == '1' if isinstance(last, tuple) else last
+            answers[at] = Answer('answered', value, last[1] if timed else (now - since) * 1e9, '')
+        following, so_far, since = at + 1, [], now
+
+
+def ask(command, questions, options):
+    """An Answer to each question. A death counts for the question at which it happened; a new process gets the next."""
+    answers = [NOT_ASKED] * len(questions)
+    following = deaths = 0
+    start = max(30, 6 * options.limit)
+    while following < len(questions) and deaths < options.deaths:
+        first = following
+        following, (outcome, reason) = ask_from(command, questions, first, answers, options, start)
+        start = 2 * options.limit
+        if following == len(questions):
+            break
+        if outcome == 'no memory' and following > first:
+            continue  # earlier questions may have taken it: it is blamed only if it is the first of a process
+        answers[following] = Answer(outcome, None, 0, reason)
+        following += 1
+        deaths += 1
+    return answers
+
+
+def ask_twice(command, questions, options):
+    """The answers, and for each question whether a second answer was another one (None: it was not asked again)."""
+    answers = ask(command, questions, options)
+    step = AGAIN if questions and questions[0].kind != 'mesh' else 1
+    again = [i for i in range(0, len(questions), step) if answers[i].outcome in ('answered', 'refused')][::-1]
+    differs = [None] * len(questions)
+    for i, second in zip(again, ask(command, [questions[i] for i in again], options)):
+        if second.outcome != 'not asked':
+            first = answers[i]
+            if questions[i].kind == 'mesh':  # in any order
+                first, second = (one._replace(value=sorted(one.value or [])) for one in (first, second))
+            differs[i] = (second.outcome, second.value) != (first.outcome, first.value)
+    return answers, differs
+
+
+# ---- the card
+
+CARD = {'name': '', 'library': '', 'answers': ' '.join(KINDS), 'means': 'closed', 'degenerate': 'yes', 'neighbours': 'no',
+        'margin': '0', 'promises': 'no', 'call': '', 'says': '', 'source': '', 'use': ''}
+VALUES = {'means': ('closed', 'crossing'), **dict.fromkeys(('degenerate', 'neighbours', 'promises'), ('yes', 'no'))}
+
+
+def card_of(command, options):
+    """The card of the program; if it gives none, that of a program that is asked everything."""
+    answer = ask(command, [Question('card', [])], options)[0]
+    card = {**CARD, 'name': ' '.join(command)}
+    if answer.outcome not in ('answered', 'refused'):
+        raise Wrong(f'{command[0]}: has no answer to the first question, `card`: {answer.outcome} {answer.reason}')
+    for key, value in answer.value or []:
+        if key not in CARD or value not in VALUES.get(key, [value]):
+            raise Wrong(f'{command[0]}: its card says "{key} {value}", which docs/ask.md does not have')
+        card[key] = value
+    return card
+
+
+# ---- exact geometry: of what a library's own documentation promises, and of points that it gives
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def exact(triangle):
+    return [[Fraction(x) for x in corner] for corner in triangle]
+
+
+def normal(t):
+    return cross(minus(t[1], t[0]), minus(t[2], t[0]))
+
+
+def square(v):
+    return dot(v, v)
+
+
+def edges(t):
+    return [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
+
+
+def point_to_segment(p, segment):
+    start, along = segment[0], minus(segment[1], segment[0])
+    t = dot(minus(p, start), along) / square(along) if any(along) else 0
+    return square(minus(p, [x + min(max(t, 0), 1) * d for x, d in zip(start, along)]))
+
+
+def point_to_triangle(p, t):
+    """The square of the distance, of rational numbers."""
+    n = normal(t)
+    if any(n) and all(dot(n, cross(minus(b, a), minus(p, a))) >= 0 for a, b in edges(t)):
+        return dot(n, minus(p, t[0])) ** 2 / square(n)
+    return min(point_to_segment(p, edge) for edge in edges(t))
+
+
+def segment_to_segment(e, f):
+    """The distance of the origin from all differences of their points, a parallelogram, which is two triangles."""
+    d = [[minus(p, q) for q in f] for p in e]
+    return min(point_to_triangle([0, 0, 0], [d[0][0], corner, d[1][1]]) for corner in (d[0][1], d[1][0]))
+
+
+def within(a, b, margin):
+    """Whether two triangles that are apart are no farther apart than the margin."""
+    a, b = exact(a), exact(b)
+    least = min([point_to_triangle(p, t) for s, t in ((a, b), (b, a)) for p in s] +
+                [segment_to_segment(e, f) for e in edges(a) for f in edges(b)])
+    return least <= Fraction(margin) ** 2
+
+
+def interval(t, n, origin, along):
+    """The part of the line along `along` in the plane (n, origin) that is in triangle t; empty if t is not on both sides."""
+    side = [dot(n, minus(p, origin)) for p in t]
+    if not min(side) < 0 < max(side):
+        return None
+    at = [dot(along, p) for p in t]
+    cuts = [at[i] for i in range(3) if side[i] == 0]
+    for i in range(3):
+        k = (i + 1) % 3
+        if side[i] * side[k] < 0:
+            cuts.append(at[i] + (at[k] - at[i]) * side[i] / (side[i] - side[k]))
+    return min(cuts), max(cuts)
+
+
+def crosses(a, b):
+    """Whether two triangles cross (docs/suite.md): they share a point that is on no edge of either one."""
+    a, b = exact(a), exact(b)
+    m, n = normal(a), normal(b)
+    along = cross(m, n)
+    first, second = interval(a, n, b[0], along), interval(b, m, a[0], along)
+    return bool(any(along) and first and second and max(first[0], second[0]) < min(first[1], second[1]))
+
+
+def promised(card, a, b, label, kind=None):
+    """Whether the documentation promises the right answer about two triangles. kind: of a pair of the suite."""
+    if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not all(any(normal(exact(t))) for t in (a, b)):
+        return False
+    if not label:
+        return float(card['margin']) == 0 or not within(a, b, card['margin'])
+    return card['means'] == 'closed' or (kind == 'crossing' if kind and not kind.startswith('neighbours') else crosses(a, b))
+
+
+# ---- the suite
+
+class Suite:
+    """The files that suite.txt names, read after their sums were compared."""
+
+    def __init__(self, folder):
+        self.folder = os.path.abspath(folder)
+        self.files, lines = {}, self.read('suite.txt').split('\n')
+        for line in lines:
+            words = line.split(' ')
+            if words[0] == 'file':
+                self.files[words[1]] = words[3]
+        self.sum = lines[-2][4:]
+        if hashlib.sha256('\n'.join([*lines[:-2], '']).encode()).hexdigest() != self.sum:
+            raise Wrong(f'{folder}/suite.txt: the sum is not that of the lines before it')
+
+    def path(self, name):
+        return os.path.join(self.folder, *name.split('/'))
+
+    def read(self, name):
+        with open(self.path(name), encoding='utf-8', newline='') as file:
+            return file.read()
+
+    def text(self, name):
+        """The text of a file; its sum has to be that of suite.txt."""
+        text = self.read(name)
+        if hashlib.sha256(text.encode()).hexdigest() != self.files.get(name):
+            raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
+        return text
+
+    def lists(self, folder):
+        """The name and the lines, as words, of each list in a folder."""
+        for name in self.files:
+            if re.fullmatch(f'{folder}/[^/]*[.]txt', name):
+                lines = self.text(name).split('\n')
+                yield lines[0].split(' ')[2], [line.split() for line in lines[1:] if line and line[0] != '#']
+
+    def meshes(self):
+        """The folders of each family of meshes, by their numbers."""
+        out = {}
+        for name in (os.path.dirname(name) for name in self.files if name.endswith('/mesh.txt')):
+            out.setdefault(self.properties(name)['family'], []).append(name)
+        return {family: sorted(names, key=lambda name: [int(n) for n in re.findall('[0-9]+', name)])
+                for family, names in out.items()}
+
+    def properties(self, name):
+        return dict(line.split(' ', 1) for line in self.text(name + '/mesh.txt').split('\n') if line)
+
+    def objects(self, name):
+        """The objects of a mesh: their paths in the suite, and of each the corners and the vertices of its triangles."""
+        paths = sorted((path for path in self.files if os.path.dirname(path) == name and path.endswith('.obj')),
+                       key=lambda path: int(os.path.basename(path)[:-4]))
+        objects = []
+        for path in paths:
+            rows = [line.split() for line in self.text(path).split('\n')]
+            vertices = [[float(x) for x in row[1:]] for row in rows if row and row[0] == 'v']
+            objects.append([[int(word) - 1 for word in row[1:]] for row in rows if row and row[0] == 'f'])
+            objects[-1] = [(corners, [vertices[v] for v in corners]) for corners in objects[-1]]
+        return paths, objects
+
+
+# ---- questions, scores
+
+class Row(collections.Counter):
+    """The counts of one family for one kind of question."""
+
+    def __init__(self):
+        super().__init__()
+        self.reason, self.worst = '', 0
+
+    def take(self, answer, differs):
+        self['asked'] += answer.outcome != 'not asked'
+        self[answer.outcome] += 1
+        self['ns'] += answer.ns
+        self['differs'] += differs is True
+        self.reason = self.reason or answer.reason
+
+
+def corners_of(numbers):
+    return [[numbers[3 * i + k] for k in range(3)] for i in range(3)]
+
+
+# A line of a list: the question, its label (a kind of contact, yes, no, LOW,HIGH or ?), and its coordinates.
+Listed = collections.namedtuple('Listed', 'question label numbers')
+
+
+def lists_of(card, suite):
+    """The kind, the family and the lines of each list of questions."""
+    for family, lines in suite.lists('pairs'):
+        listed = []
+        for _, _, shared, label, *words in lines:
+            if shared == '-' or card['neighbours'] == 'yes':
+                numbers = [float.fromhex(word) for word in words]
+                listed.append(Listed(Question('pair', [shared, *map(repr, numbers)]), label, numbers))
+        yield 'pair', family, listed
+    for family, lines in suite.lists('questions'):
+        for kind in KINDS[2:]:
+            listed, paths = [], {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
+            for _, _, _, label, *words in (words for words in lines if words[2] == kind):
+                numbers = [float.fromhex(word) for word in words[paths:]]
+                fields = [*map(suite.path, words[:paths]), *map(repr, numbers)]
+                listed.append(Listed(Question(kind, fields), label, numbers))
+            yield kind, family, listed
+
+
+def score(card, listed, value, row):
+    question, label, numbers = listed
+    if question.kind == 'distance':
+        score_distance(label, numbers, value, row)
+        return
+    right = label not in ('no', 'apart', 'neighbours-apart')
+    if value != right:
+        fault = 'missed' if right else 'wrong'
+        row[fault] += 1
+        if question.kind == 'pair':
+            row['own ' + fault] += promised(card, corners_of(numbers), corners_of(numbers[9:]), right, label)
+
+
+def score_distance(label, numbers, value, row):
+    low, high = (float.fromhex(word) for word in label.split(','))
+    distance, points = value[0], value[1:]
+    row['zero'] += distance == 0 < low
+    row['not zero'] += distance > 0 == high
+    row['negative'] += distance < 0
+    if distance > 0 and low > 0:
+        error = max(low - distance, distance - high, 0) / low
+        row['off'] += error > OFF
+        row.worst = max(row.worst, error)
+    triangles = [corners_of(numbers), corners_of(numbers[9:])]
+    size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
+    near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)  # or as near as doubles are
+    if points:
+        row['points'] += 1
+        row['points off'] += any(
+            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > near ** 2
+            for point, triangle in zip((points[:3], points[3:]), triangles))
+
+
+def score_mesh(card, objects, rows, reported, row):
+    def shared(a, b):
+        return len({*objects[a[0]][a[1]][0]} & {*objects[b[0]][b[1]][0]}) if a[0] == b[0] else 0
+    counts = card['neighbours'] == 'yes'
+    found = {pair for pair in reported if pair[0] != pair[1] and (counts or not shared(*pair))}
+    truth = {((a, i), (b, j)) for a, i, b, j, common in rows if counts or common == 0}
+    row['colliding'] += len(truth)
+    row['reported'] += len(found)
+    for fault, pairs in ('missed', truth - found), ('wrong', found - truth):
+        row[fault] += len(pairs)
+        row['own ' + fault] += sum(promised(card, *(objects[o][t][1] for o, t in pair), fault == 'missed') for pair in pairs)
+
+
+def ask_meshes(command, card, suite, options):
+    for family, names in suite.meshes().items():
+        meshes = [suite.objects(name) for name in names]
+        questions = [Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
+                     for name, (paths, _) in zip(names, meshes)]
+        row = Row()
+        for name, (_, objects), answer, differs in zip(names, meshes, *ask_twice(command, questions, options)):
+            pairs = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []]
+            if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
+                answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
+            row.take(answer, differs)
+            if answer.outcome == 'answered' and name + '/pairs.csv' in suite.files:
+                lines = suite.text(name + '/pairs.csv').split('\n')[1:-1]
+                score_mesh(card, objects, [[int(cell) for cell in line.split(',')] for line in lines], pairs, row)
+        yield family, row
+
+
+# ---- tables
+
+OUTCOMES = ['refused', 'unanswered', 'crashed', 'hung', 'no memory', 'not asked', 'differs']
+COLUMNS = {'pair': ['asked', 'missed', 'wrong', 'own missed', 'own wrong'],
+           'mesh': ['asked', 'colliding', 'reported', 'missed', 'wrong', 'own missed', 'own wrong'],
+           'distance': ['asked', 'zero', 'not zero', 'negative', 'off', 'points', 'points off'],
+           **dict.fromkeys(('self', 'inside', 'clash'), ['asked', 'missed', 'wrong'])}
+TITLES = {'pair': 'pairs of triangles: do they meet?', 'mesh': 'meshes: which triangles meet?',
+          'distance': 'distances of triangles: wrong zeros, relative errors and points above a millionth',
+          'self': 'meshes: do they meet themselves?', 'inside': 'points: are they inside?', 'clash': 'solids: do their insides meet?'}
+
+
+def cells_of(kind, name, row):
+    return [name, *(f'{row[column]:,}' for column in COLUMNS[kind]), *([f'{row.worst:.1e}'] if kind == 'distance' else []),
+            *(f'{row[word]:,}' for word in OUTCOMES), f"{row['ns'] / max(row['answered'], 1) / 1e3:,.1f}"]
+
+
+def table_of(kind, rows):
+    """The rows of one kind of question, by family, and their sum, as aligned text."""
+    total = Row()
+    total.worst = max(row.worst for row in rows.values())
+    for row in rows.values():
+        total.update(row)
+    head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
+    lines = [head] + [cells_of(kind, name, row) for name, row in [*rows.items(), ('all', total)]]
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # without outcomes that never came
+    widths = [max(len(line[i]) for line in lines) for i in kept]
+    text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
+                     for line in lines)
+    first = next((row.reason for row in rows.values() if row.reason), '')
+    return f'{TITLES[kind]}\n{text}\n' + (f'the first reason of a refusal or a death: {first}\n' if first else '')
+
+
+def write_csv(path, name, rows):
+    columns = [*dict.fromkeys(column for kind in KINDS for column in COLUMNS[kind]), *OUTCOMES]
+    with open(path, 'w', encoding='utf-8', newline='') as file:
+        writer = csv.writer(file, lineterminator='\n')
+        writer.writerow(['contestant', 'question', 'family', *columns, 'worst', 'ns', 'reason'])
+        for kind in KINDS:
+            for family, row in rows[kind].items():
+                writer.writerow([name, kind, family, *(row[column] for column in columns), row.worst, int(row['ns']), row.reason])
+
+
+def measure(command, options):
+    suite = Suite(options.suite)
+    card = card_of(command, options)
+    asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
+    rows = {kind: {} for kind in KINDS}
+    for kind, family, listed in lists_of(card, suite):
+        if kind not in asked or not listed:
+            continue
+        row = rows[kind].setdefault(family, Row())
+        for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
+            row.take(answer, differs)
+            if answer.outcome == 'answered' and one.label != '?':
+                score(card, one, answer.value, row)
+    if 'mesh' in asked:
+        rows['mesh'] = dict(ask_meshes(command, card, suite, options))
+    print(f"{card['name']}{', ' + card['library'] if card['library'] else ''}, asked about the suite {suite.sum[:8]}; "
+          f"own: as its documentation promises, {card['means']}\n")
+    print('\n'.join(table_of(kind, rows[kind]) for kind in KINDS if rows[kind]), end='')
+    if options.csv:
+        write_csv(options.csv, card['name'], rows)
+    return 0
+
+
+# ---- the check of a program's grammar
+
+def check(command, options):
+    """Asks a few questions of every kind; prints each with what came. Status 1: something broke the protocol."""
+    near, far = '0 0 0 4 0 0 0 4 0 1 1 -1 1 1 1 2 2 1', '0 0 0 4 0 0 0 4 0 0 0 1 4 0 1 0 4 1'
+    faces = '1 3 2 2 3 4 5 6 7 6 8 7 1 2 5 2 6 5 3 7 4 4 7 8 1 5 3 3 5 7 2 4 6 4 8 6'.split()
+    with tempfile.TemporaryDirectory() as folder:
+        for path, side in (a := f'{folder}/a.obj', 0), (b := f'{folder}/b.obj', 0.5):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.writelines(f'v {side + i % 2} {side + i // 2 % 2} {side + i // 4}\n' for i in range(8))
+                file.writelines('f ' + ' '.join(faces[i:i + 3]) + '\n' for i in range(0, 36, 3))
+        asked = [('card', [], None), ('pair', ['-', *near.split()], True), ('pair', ['-', *far.split()], False),
+                 ('mesh', ['0', a, b], None), ('mesh', ['1', a], None), ('distance', far.split(), 1.0), ('distance', near.split(), 0.0),
+                 ('self', [a], False), ('inside', [a, '0.5', '0.25', '0.75'], True), ('inside', [a, '2', '0.25', '0.75'], False),
+                 ('clash', [a, b], True), ('pair', ['-', *far.split()], False)]
+        answers = ask(command, [Question(kind, fields) for kind, fields, _ in asked], options)
+    broken = any(answer.outcome not in ('answered', 'refused') for answer in answers)
+    for (kind, fields, right), answer in zip(asked, answers):
+        value = answer.value[0] if kind == 'distance' and answer.value else answer.value
+        bad = answer.outcome not in ('answered', 'refused')
+        said = f'{answer.outcome} {answer.reason}' if answer.outcome != 'answered' else \
+            'answered' if right is None or value == right else f'answered {value}, and {right} is right'
+        print(f"{'BROKEN' if bad else 'ok':6}  {kind} {' '.join(os.path.basename(field) for field in fields)}: {said}".rstrip())
+    print('the protocol is broken: docs/ask.md has its grammar' if broken else 'every answer obeys the grammar')
+    return int(broken)
+
+
+def main(arguments):
+    here = os.path.dirname(os.path.abspath(globals().get('__file__', './ask.py')))
+    parser = argparse.ArgumentParser(prog='ask.py', description='Asks a program about a suite and prints what it gets wrong.')
+    parser.add_argument('command', metavar='COMMAND', help='starts the program; one argument, as in "python3 my_library.py"')
+    parser.add_argument('--suite', metavar='DIR', default=here, help='the folder of the suite; default: that of this file')
+    parser.add_argument('--check', action='store_true', help='only compare the answers to a few questions with the grammar')
+    parser.add_argument('--only', metavar='KINDS', type=lambda text: text.split(','), help=f"of {','.join(KINDS)}")
+    for name, value, what in ('limit', 5.0, 'seconds for an answer, ten times as many for meshes'), \
+            ('memory', 4096, 'MiB of a process'), ('deaths', 20, 'after so many in a family its rest is not asked'):
+        parser.add_argument('--' + name, metavar='N', type=type(value), default=value, help=f'{what}; default {value:g}')
+    parser.add_argument('--csv', metavar='FILE', help='also write all rows to this file')
+    options = parser.parse_args(arguments)
+    try:
+        command = shlex.split(options.command)
+        if not command or not {*(options.only or [])} <= {*KINDS}:
+            raise Wrong('COMMAND is empty' if not command else f"--only: choose of {','.join(KINDS)}")
+        return check(command, options) if options.check else measure(command, options)
+    except (Wrong, ValueError, OSError) as error:
+        print(f'ask.py: {error}', file=sys.stderr)
+        return 2
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,365 @@
+// Makes, reads and decides the questions of a suite beyond pairs.
+#include "experiments/suite/questions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/generators/pair_generators.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/text.h"
+#include "verify/certificate/integer_distance.h"
+#include "verify/certificate/integer_pair.h"
+#include "verify/closest.h"
+#include "verify/inside.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kReport = "one of the oracles is wrong; report the question";
+constexpr const char* kFormat = "docs/suite.md has the format; write the suite again";
+constexpr std::array<const char*, 4> kKinds = {"distance", "self", "inside", "clash"};
+
+/// How many paths and coordinates follow the label.
+constexpr std::array<std::size_t, 4> kPaths = {0, 1, 1, 2}, kCoordinates = {18, 0, 3, 0};
+
+std::size_t number_of(SuiteQuestionKind kind) { return static_cast<std::size_t>(kind); }
+
+std::string hexadecimal(double value) {
+  std::string out;
+  append_hexadecimal(out, value);
+  return out;
+}
+
+const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
+
+SuiteQuestion parse_question(const std::string& line, const std::string& path, long number) {
+  const auto fail = [&](const std::string& why) { throw Error(path, why, kFormat, number); };
+  SuiteQuestion out;
+  std::istringstream words(line);
+  std::string id, parameter, kind, word;
+  words >> id >> parameter >> kind >> out.label;
+  const auto read_id = parse_number<std::uint64_t>(id);
+  const auto read_parameter = parse_number<double>(parameter);
+  const auto* const at = std::find(kKinds.begin(), kKinds.end(), kind);
+  if (!read_id || !read_parameter || at == kKinds.end() || out.label.empty())
+    fail("the line is not 'ID PARAMETER QUESTION LABEL ARGUMENTS...'");
+  out.id = *read_id;
+  out.parameter = *read_parameter;
+  out.kind = static_cast<SuiteQuestionKind>(at - kKinds.begin());
+  for (std::size_t i = 0; i < kPaths[number_of(out.kind)]; ++i) {
+    words >> out.paths.emplace_back();
+    if (out.paths.back().empty()) fail("a path is missing");
+  }
+  while (words >> word) {
+    const std::optional<double> value = parse_hexadecimal(word);
+    if (!value) fail(quote_token(word) + " is no number such as 0x1.8p+1");
+    out.coordinates.push_back(*value);
+  }
+  if (out.coordinates.size() != kCoordinates[number_of(out.kind)])
+    fail(fmt::format("{} has {} coordinates", kind, kCoordinates[number_of(out.kind)]));
+  return out;
+}
+
+Vec3 corner(const std::vector<double>& from, std::size_t i) {
+  return {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
+}
+std::array<Vec3, 3> triangle(const std::vector<double>& from, std::size_t first) {
+  return {corner(from, first), corner(from, first + 1), corner(from, first + 2)};
+}
+
+/// The objects with these numbers as a scene of their own.
+Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bool self) {
+  Scene out;
+  out.name = scene.name;
+  for (const std::size_t o : numbers) {
+    const Object& object = scene.objects[o];
+    const auto first = static_cast<std::uint32_t>(out.triangles.size());
+    out.objects.push_back({.name = object.name,
+                           .first_triangle = first,
+                           .triangle_count = object.triangle_count,
+                           .self = self});
+    const auto shift = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), scene.vertices.begin(), scene.vertices.end());
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      auto corners = scene.triangles[object.first_triangle + t];
+      for (std::uint32_t& v : corners) v += shift;
+      out.triangles.push_back(corners);
+      out.source_face.push_back(t);
+    }
+  }
+  return out;
+}
+
+struct Extent {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+};
+Extent box_of(const Scene& scene, std::size_t o) {
+  Extent out;
+  const Object& object = scene.objects[o];
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    for (const Vec3& p : scene.corners(object.first_triangle + t)) {
+      out.lo = out.lo.cwiseMin(p);
+      out.hi = out.hi.cwiseMax(p);
+    }
+  }
+  return out;
+}
+
+Vec3 point_in(RandomDraws& draws, const Extent& box) {
+  Vec3 out;
+  for (int k = 0; k < 3; ++k) out[k] = draws.between(box.lo[k], box.hi[k]);
+  return out;
+}
+
+/// Points where a test of a point is hard. The parameter: 0 anywhere in the box; 1 above or below a
+/// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
+Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Extent& box, int parameter) {
+  const Object& object = scene.objects[0];
+  const auto corners = scene.corners(object.first_triangle + draws.below(object.triangle_count));
+  Vec3 p = point_in(draws, box);
+  if (parameter == 1) {
+    const int axis = draws.below(3);
+    for (int k = 0; k < 3; ++k) {
+      if (k != axis) p[k] = corners[0][k];
+    }
+  }
+  if (parameter == 2) p = corners[0];
+  if (parameter == 3) {
+    p = (corners[0] + corners[1] + corners[2]) / 3;
+    p[draws.below(3)] += std::ldexp(draws.sign() * (box.hi - box.lo).maxCoeff(), -draws.below(50));
+  }
+  return p;
+}
+
+SuiteQuestion about(SuiteQuestionKind kind, const SuiteMesh& mesh,
+                    const std::vector<std::size_t>& objects, const std::string& label) {
+  SuiteQuestion out{.parameter = mesh.parameter, .kind = kind, .label = label};
+  for (const std::size_t o : objects)
+    out.paths.push_back(fmt::format("meshes/{}/{}.obj", mesh.name, o));
+  return out;
+}
+
+/// Whether the object meets itself; empty if it has two vertices at one position, so that its
+/// triangles may be neighbours by position alone.
+std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
+  try {
+    return !decide_mesh(scene, where).empty();
+  } catch (const Error& error) {
+    if (error.reason.find("has two vertices at") != std::string::npos) return {};
+    throw;
+  }
+}
+
+constexpr int kPoints = 24;              // of each closed object
+constexpr std::size_t kDistances = 530;  // of each family of pairs: those of the small suite
+
+}  // namespace
+
+SuiteQuestions read_questions(const std::string& path) {
+  std::istringstream lines(read_file(path, std::numeric_limits<std::uint64_t>::max()));
+  SuiteQuestions out;
+  std::string line, format, version, more;
+  std::getline(lines, line);
+  std::istringstream words(line);
+  words >> format >> version >> out.family;
+  if (format != "farcull-questions" || version != "1" || out.family.empty() || words >> more)
+    throw Error(path, "the first line is not 'farcull-questions 1 FAMILY'", kFormat, 1);
+  for (long number = 2; std::getline(lines, line); ++number) {
+    if (line.starts_with('#')) continue;
+    out.questions.push_back(parse_question(line, path, number));
+    if (out.questions.back().id != out.questions.size() - 1)
+      throw Error(path, "questions do not count from 0", kFormat, number);
+  }
+  return out;
+}
+
+std::string questions_text(const SuiteQuestions& questions) {
+  std::string out = "farcull-questions 1 " + questions.family + "\n";
+  for (const SuiteQuestion& question : questions.questions) {
+    out += fmt::format("{} {} {} {}", question.id, decimal(question.parameter),
+                       kKinds[number_of(question.kind)], question.label);
+    for (const std::string& path : question.paths) out += " " + path;
+    for (const double x : question.coordinates) out += " " + hexadecimal(x);
+    out += "\n";
+  }
+  return out;
+}
+
+SuiteQuestions questions_of(const SuitePairs& pairs) {
+  SuiteQuestions out{.family = pairs.family};
+  const std::size_t count = std::min(pairs.pairs.size(), kDistances);
+  for (std::size_t i = 0; i < count; ++i) {
+    const SuitePair& pair = pairs.pairs[i];
+    if (!pair.shared.empty()) continue;
+    SuiteQuestion question{.id = out.questions.size(), .parameter = pair.parameter};
+    question.label =
+        decide_distance(pair.a, pair.b, fmt::format("pair {} of {}", pair.id, pairs.family));
+    for (const auto* t : {&pair.a, &pair.b}) {
+      for (const Vec3& p : *t)
+        question.coordinates.insert(question.coordinates.end(), p.data(), p.data() + 3);
+    }
+    out.questions.push_back(std::move(question));
+  }
+  return out;
+}
+
+SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed) {
+  using enum SuiteQuestionKind;
+  SuiteQuestions out{.family = mesh.family};
+  const auto add = [&](SuiteQuestion question) {
+    question.id = out.questions.size();
+    out.questions.push_back(std::move(question));
+  };
+  std::vector<std::size_t> closed;
+  for (std::size_t o = 0; o < mesh.scene.objects.size(); ++o) {
+    const Scene alone = objects_of(mesh.scene, {o}, true);
+    if (const auto meets = decide_self(alone, mesh.name))
+      add(about(self, mesh, {o}, yes_or_no(*meets)));
+    if (!is_closed(alone, 0)) continue;
+    closed.push_back(o);
+    RandomDraws draws(seed_of_item(seed, mesh.name, o));
+    const Extent box = box_of(alone, 0);
+    std::vector<Vec3> points;
+    for (int i = 0; i < kPoints; ++i) points.push_back(hard_point(draws, alone, box, i % 4));
+    const std::vector<bool> labels = decide_inside(alone, points, mesh.name);
+    for (int i = 0; i < kPoints; ++i) {
+      SuiteQuestion question = about(inside, mesh, {o}, yes_or_no(labels[i]));
+      question.parameter = i % 4;
+      question.coordinates.assign(points[i].data(), points[i].data() + 3);
+      add(std::move(question));
+    }
+  }
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    for (std::size_t k = i + 1; k < closed.size(); ++k) {
+      const Scene both = objects_of(mesh.scene, {closed[i], closed[k]}, false);
+      if (const auto meet = decide_clash(both, mesh.name))
+        add(about(clash, mesh, {closed[i], closed[k]}, yes_or_no(*meet)));
+    }
+  }
+  return out;
+}
+
+std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                            const std::string& where) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double root = squared_distance(a, b).root();
+  const auto at_least = [&](double length) {
+    return is_beyond(a, b, Length(square_of(length)), true);
+  };
+  const auto more_than = [&](double length) {
+    return is_beyond(a, b, Length(square_of(length)), false);
+  };
+  double low = root, high = root;
+  if (more_than(root))
+    high = std::nextafter(root, kInfinity);
+  else if (!at_least(root))
+    low = std::nextafter(root, -kInfinity);
+  if (low < 0 || !std::isfinite(high) || !at_least(low) || more_than(high))
+    throw Error(where, "fractions and directions disagree about the distance", kReport);
+  return hexadecimal(low) + "," + hexadecimal(high);
+}
+
+std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
+                                const std::string& where) {
+  const Surface surface = surface_of(scene, 0);
+  Scene with_points = scene;
+  for (const Vec3& p : points) {
+    const auto v = static_cast<std::uint32_t>(with_points.vertices.size());
+    with_points.objects.push_back(
+        {.name = "point",
+         .first_triangle = static_cast<std::uint32_t>(with_points.triangles.size()),
+         .triangle_count = 1});
+    with_points.vertices.push_back(p);
+    with_points.triangles.push_back({v, v, v});
+    with_points.source_face.push_back(0);
+  }
+  const auto before = static_cast<std::uint32_t>(scene.objects.size());
+  const IntegerInside integers(with_points);
+  std::vector<bool> out;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
+    // which() holds for points off the mesh alone.
+    bool by_integers = false;
+    for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
+      const auto corners = scene.corners(scene.objects[0].first_triangle + t);
+      const auto& [a, b, c] = corners;
+      if ((points[i].array() < a.cwiseMin(b).cwiseMin(c).array()).any() ||
+          (points[i].array() > a.cwiseMax(b).cwiseMax(c).array()).any())
+        continue;
+      by_integers = IntegerPair(corners, {points[i], points[i], points[i]}).has_common_point();
+    }
+    by_integers = by_integers || integers.which(0, before + i) == InsideClaim::b;
+    if (by_rays != by_integers)
+      throw Error(where, fmt::format("rays and integers disagree about point {}", i), kReport);
+    out.push_back(by_rays);
+  }
+  return out;
+}
+
+std::optional<bool> decide_clash(const Scene& scene, const std::string& where) {
+  const std::array<Extent, 2> boxes = {box_of(scene, 0), box_of(scene, 1)};
+  const Extent common{boxes[0].lo.cwiseMax(boxes[1].lo), boxes[0].hi.cwiseMin(boxes[1].hi)};
+  if ((common.lo.array() >= common.hi.array()).any()) return false;
+  constexpr int kTries = 256;
+  RandomDraws draws(seed_of_item(0, "clash", 0));
+  std::array<Scene, 2> alone = {objects_of(scene, {0}, false), objects_of(scene, {1}, false)};
+  const std::array<Surface, 2> surfaces = {surface_of(alone[0], 0), surface_of(alone[1], 0)};
+  for (int i = 0; i < kTries; ++i) {
+    const Vec3 p = point_in(draws, common);
+    bool both = true;
+    for (int o = 0; o < 2; ++o) both = both && inside(alone[o], 0, p, surfaces[o]) == Inside::yes;
+    if (!both) continue;
+    for (int o = 0; o < 2; ++o) (void)decide_inside(alone[o], {p}, where);
+    return true;
+  }
+  return {};
+}
+
+void check_questions(const SuiteQuestions& questions, const std::string& folder,
+                     const std::string& path) {
+  const std::vector<SuiteQuestion>& all = questions.questions;
+  const auto check = [&](const SuiteQuestion& question, std::optional<std::string> right) {
+    if (question.label == "?" || right == question.label) return;
+    throw Error(path,
+                fmt::format("question {} has the label {}, and {}", question.id, question.label,
+                            right ? *right + " is right" : "nothing decides it"),
+                "correct the label, or write the suite again");
+  };
+  const auto check_yes = [&](const SuiteQuestion& question, std::optional<bool> yes) {
+    check(question, yes ? std::optional<std::string>(yes_or_no(*yes)) : std::nullopt);
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string where = fmt::format("{}: question {}", path, all[i].id);
+    if (all[i].kind == SuiteQuestionKind::distance) {
+      const std::vector<double>& x = all[i].coordinates;
+      check(all[i], decide_distance(triangle(x, 0), triangle(x, 3), where));
+      continue;
+    }
+    SceneBuilder builder(questions.family, where);
+    for (const std::string& obj : all[i].paths) {
+      builder.add(load_mesh(folder + "/" + obj), obj, Split::kNone, {},
+                  all[i].kind == SuiteQuestionKind::self);
+    }
+    const Scene scene = builder.finish();
+    if (all[i].kind == SuiteQuestionKind::self) check_yes(all[i], decide_self(scene, where));
+    if (all[i].kind == SuiteQuestionKind::clash) check_yes(all[i], decide_clash(scene, where));
+    if (all[i].kind != SuiteQuestionKind::inside) continue;
+    // Points that are asked about one object are decided together.
+    std::vector<Vec3> points;
+    for (std::size_t k = i; k < all.size() && all[k].kind == SuiteQuestionKind::inside; ++k) {
+      if (all[k].paths != all[i].paths) break;
+      points.push_back(corner(all[k].coordinates, 0));
+    }
+    for (const bool in : decide_inside(scene, points, where)) check_yes(all[i++], in);
+    --i;
+  }
+}
+
+}  // namespace farcull

@@ -1,0 +1,69 @@
+// Questions of a suite beyond "which triangles collide": distances of triangles, whether a mesh
+// meets itself, whether a point is inside, whether two solids overlap. docs/suite.md has the
+// format.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/suite/reader.h"
+
+namespace farcull {
+
+enum class SuiteQuestionKind : std::uint8_t { distance, self, inside, clash };
+
+struct SuiteQuestion {
+  std::uint64_t id = 0;
+  double parameter = 0;
+  SuiteQuestionKind kind = SuiteQuestionKind::distance;
+  std::string label = {};                // as in the file; "?" if nobody knows it
+  std::vector<std::string> paths = {};   // of OBJ files, relative to the folder of the suite
+  std::vector<double> coordinates = {};  // 18 of two triangles, 3 of a point, or none
+};
+
+/// One file of questions.
+struct SuiteQuestions {
+  std::string family = {};
+  std::vector<SuiteQuestion> questions = {};
+};
+
+/// Reads a file of questions. Throws Error naming the file, the line and a remedy if it has another
+/// form.
+SuiteQuestions read_questions(const std::string& path);
+/// The inverse: the text of such a file.
+std::string questions_text(const SuiteQuestions& questions);
+
+/// Questions about the first pairs of a family, as many as in the small suite: how far are they
+/// apart?
+SuiteQuestions questions_of(const SuitePairs& pairs);
+/// Questions about the objects of a mesh: whether each meets itself, and of closed ones which
+/// points are inside, and which two clash. Where the oracles do not decide, there is no question.
+SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
+
+// Each label is decided by two programs that share no code. Throws Error naming `where` if they
+// disagree.
+
+/// "LOW,HIGH": the distance of two triangles lies between these doubles, which are equal or
+/// neighbours. By exact fractions (verify/closest.h), and by the directions of the certificate
+/// checker, in integers.
+std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                            const std::string& where);
+/// Whether each point is in the closed object 0 of the scene or on its surface: by rays in rational
+/// numbers (verify/inside.h), and in integers (verify/certificate/integer_distance.h).
+std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
+                                const std::string& where);
+/// Whether the insides of the closed objects 0 and 1 have a point in common. Yes rests on a point
+/// that both oracles of decide_inside() call inside both; no on a plane along an axis between them.
+/// Empty if neither is found.
+std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
+
+/// Throws Error naming the file and the line of the first label that is wrong. folder: of the
+/// suite.
+void check_questions(const SuiteQuestions& questions, const std::string& folder,
+                     const std::string& path);
+
+}  // namespace farcull

@@ -1,0 +1,243 @@
+"""farcull suite --ask and ask.py, on a small suite and on contestants that are right, or wrong in one way.
+   ask_test.py FARCULL CONTESTANTS, the folder of the programs of contestants"""
+import csv
+import hashlib
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+program, contestants = (os.path.realpath(path) for path in sys.argv[1:3])
+root = os.path.realpath(os.path.dirname(__file__) + '/../../..')
+# A folder without farcull: a suite, the examples, and the contestants below.
+work = tempfile.mkdtemp()
+os.chdir(work)
+EXAMPLES = root + '/docs/example/ask/'
+for name in 'separate.py', 'separate.js', 'separate.cpp':
+    shutil.copy(EXAMPLES + name, name)
+
+PAIRS = 40  # the even ones cross, the odd ones are apart
+FAULTY = r'''
+import os, sys, time
+fault = sys.argv[1]
+for line in sys.stdin:
+    number, question, *fields = line.rstrip('\n').split('\t')
+    if question != 'pair':
+        print(number, 'refused', 'no', sep='\t', flush=True)
+        continue
+    i = int(float(fields[1]))  # the first coordinate numbers the pairs
+    answer = str(1 - i % 2)
+    if i == 9 and fault == 'late': time.sleep(60)
+    if i == 9 and fault == 'dies': os.kill(os.getpid(), 11)
+    if i == 9 and fault == 'ends': sys.exit(0)
+    if i == 9 and fault == 'nonsense': answer = 'perhaps'
+    if i == 9 and fault == 'longer': answer += '\t1\t1'
+    if i == 9 and fault == 'takes': kept = [bytearray(1 << 24) for _ in range(1 << 10)]
+    if i == 9 and fault == 'leaves-out': continue
+    if fault == 'yes': answer = '1'
+    if fault == 'no': answer = '0'
+    print(number, answer, sep='\t', flush=True)
+    if i == 9 and fault == 'twice': print(number, answer, sep='\t', flush=True)
+'''
+
+
+def hexadecimal(numbers):
+    return ' '.join(float(x).hex() for x in numbers)
+
+
+def make_suite(folder):
+    files = {'pairs/few.txt': 'farcull-pairs 1 few\n', 'questions/few.txt': 'farcull-questions 1 few\n'}
+    for i in range(PAIRS):
+        z = [-1, 1, 1] if i % 2 == 0 else [1, 2, 1.5]
+        numbers = [i, 0, 0, i + 4, 0, 0, i, 4, 0, i + 1, 1, z[0], i + 1, 1, z[1], i + 2, 2, z[2]]
+        files['pairs/few.txt'] += f"{i} {i % 4} - {'apart' if i % 2 else 'crossing'} {hexadecimal(numbers)}\n"
+        label = hexadecimal([i % 2]).replace(' ', '')
+        files['questions/few.txt'] += f'{i} 0 distance {label},{label} {hexadecimal(numbers)}\n'
+    faces = '132 234 567 687 125 265 374 478 153 357 246 486'.split()
+    for o, side in (0, 0), (1, 0.5):
+        files[f'meshes/cubes-1/{o}.obj'] = \
+            ''.join(f'v {side + i % 2} {side + i // 2 % 2} {side + i // 4}\n' for i in range(8)) + \
+            ''.join('f ' + ' '.join(face) + '\n' for face in faces)
+    files['meshes/cubes-1/mesh.txt'] = 'self no\nparameter 0\nfamily cubes\n'
+    files.update({'meshes/cross-1/0.obj': 'v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 -1 0\nf 1 2 3\nf 1 4 2\n',
+                  'meshes/cross-1/1.obj': 'v 1 1 -1\nv 1 1 1\nv 2 2 1\nf 1 2 3\n',
+                  'meshes/cross-1/mesh.txt': 'self yes\nparameter 0\nfamily cross\n',
+                  'meshes/cross-1/pairs.csv': 'object_a,triangle_a,object_b,triangle_b,shared\n0,0,1,0,0\n'})
+    files['questions/cubes-1.txt'] = 'farcull-questions 1 cubes\n0 0 self no meshes/cubes-1/0.obj\n' \
+        f'1 0 inside yes meshes/cubes-1/0.obj {hexadecimal([0.5, 0.25, 0.75])}\n' \
+        f'2 0 inside no meshes/cubes-1/0.obj {hexadecimal([1.5, 0.25, 0.75])}\n' \
+        '3 0 clash yes meshes/cubes-1/0.obj meshes/cubes-1/1.obj\n'
+    return files
+
+
+def write_suite(folder, files):
+    text = 'farcull-suite 1\nseed 1\nsize small\nlicence CC0-1.0\n'
+    for path, content in sorted(files.items()):
+        os.makedirs(os.path.dirname(f'{folder}/{path}'), exist_ok=True)
+        with open(f'{folder}/{path}', 'w', encoding='utf-8') as file:
+            file.write(content)
+        items = content.count('\n') - 1 if path[-4:] in ('.txt', '.csv') else content.count('f ')
+        items = 0 if path.endswith('mesh.txt') else items
+        text += f'file {path} {len(content)} {hashlib.sha256(content.encode()).hexdigest()} {items}\n'
+    with open(folder + '/suite.txt', 'w', encoding='utf-8') as file:
+        file.write(text + f'sum {hashlib.sha256(text.encode()).hexdigest()}\n')
+
+
+def run(*words, status=0):
+    """The output of a command; its status has to be this one."""
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=100)
+    assert done.returncode == status, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout if status == 0 else done.stdout + done.stderr
+
+
+def ask(command, *options):
+    """The rows that ask.py counts, by question and family."""
+    run('python3', 'suite/ask.py', '--csv', 'rows.csv', *options, command)
+    with open('rows.csv', encoding='utf-8') as file:
+        return {(row['question'], row['family']): row for row in csv.DictReader(file)}
+
+
+def faulty(fault, *options):
+    return ask(f'python3 faulty.py {fault}', '--only', 'pair', *options)['pair', 'few']
+
+
+write_suite('suite', make_suite('suite'))
+shutil.copy(root + '/experiments/suite/ask.py', 'suite/ask.py')
+with open('faulty.py', 'w', encoding='utf-8') as script:
+    script.write(FAULTY)
+
+
+class Ask(unittest.TestCase):
+    def expect(self, row, **counts):
+        """All counts but the sizes of questions are these, or 0."""
+        for name in ('missed', 'wrong', 'own missed', 'own wrong', 'refused', 'unanswered', 'crashed', 'hung', 'no memory',
+                     'not asked', 'differs'):
+            self.assertEqual(int(row[name]), counts.get(name.replace(' ', '_'), 0), (name, row))
+
+    def test_the_right_one_has_no_fault(self):
+        row = faulty('none')
+        self.expect(row)
+        self.assertEqual(row['asked'], str(PAIRS))
+
+    def test_one_that_is_late_hung_there(self):
+        self.expect(faulty('late', '--limit', '0.3'), hung=1)
+
+    def test_one_that_dies_crashed_there_and_the_rest_is_asked(self):
+        row = faulty('dies')
+        self.expect(row, crashed=1)
+        self.assertEqual((row['asked'], row['reason']), (str(PAIRS), 'SIGSEGV'))
+
+    def test_nonsense_is_a_crash_with_its_words(self):
+        for fault, words in ('nonsense', 'perhaps'), ('longer', '0 1 1'), ('twice', ''):
+            row = faulty(fault)
+            self.assertEqual(row['crashed'], '1', (fault, row))
+            self.assertIn(words, ' '.join(row['reason'].split()))
+
+    def test_an_answer_that_is_left_out_or_not_given_is_unanswered(self):
+        self.expect(faulty('leaves-out'), unanswered=1)
+        self.expect(faulty('ends'), unanswered=1)
+
+    def test_one_that_takes_all_memory_is_named(self):
+        self.expect(faulty('takes', '--memory', '300'), no_memory=1)
+
+    def test_always_yes_is_wrong_at_half_and_always_no_misses_half(self):
+        self.expect(faulty('yes'), wrong=PAIRS // 2, own_wrong=PAIRS // 2)
+        self.expect(faulty('no'), missed=PAIRS // 2, own_missed=PAIRS // 2)
+
+    def test_after_many_deaths_the_rest_is_not_asked(self):
+        row = faulty('dies', '--deaths', '1')
+        self.expect(row, crashed=1, not_asked=PAIRS - 10)
+
+    def test_a_refusal_is_honest(self):
+        rows = ask('python3 faulty.py none', '--only', 'self,inside,clash')
+        self.expect(rows['inside', 'cubes'], refused=2)
+        self.expect(rows['clash', 'cubes'], refused=1)
+
+    def test_a_command_that_does_not_start_and_a_changed_suite_are_errors(self):
+        self.assertIn('/no/such/program', run('python3', 'suite/ask.py', '/no/such/program', status=2))
+        shutil.copytree('suite', 'changed')
+        with open('changed/pairs/few.txt', 'a', encoding='utf-8') as file:
+            file.write('# more\n')
+        self.assertIn('SHA-256', run('python3', 'changed/ask.py', 'python3 separate.py', status=2))
+
+    def test_the_examples_answer_from_a_folder_without_farcull(self):
+        commands = {'Python': 'python3 separate.py', 'C++': './separate'}
+        subprocess.run(['c++', '-std=c++17', '-O0', '-o', 'separate', 'separate.cpp'], check=True)
+        if shutil.which('node'):
+            commands['JavaScript'] = 'node separate.js'
+        for language, command in commands.items():
+            with self.subTest(language):
+                row = ask(command)['pair', 'few']
+                self.expect(row)
+                self.assertEqual(row['asked'], str(PAIRS))
+                self.assertIn('every answer obeys', run('python3', 'suite/ask.py', '--check', command))
+
+    def test_the_check_finds_what_breaks_the_grammar(self):
+        self.assertIn('BROKEN', run('python3', 'suite/ask.py', '--check', 'cat', status=1))
+        self.assertIn('True is right', run('python3', 'suite/ask.py', '--check', 'python3 faulty.py no'))
+
+    def test_farcull_runs_the_same_file(self):
+        def without_times(text):
+            return [line.rpartition(' ')[0] for line in text.split('\n')]
+        command = 'python3 separate.py'
+        self.assertEqual(without_times(run(program, 'suite', 'suite', '--ask', command)),
+                         without_times(run('python3', 'suite/ask.py', command)))
+        self.assertIn('suite.txt', run(program, 'suite', 'nowhere', '--ask', command, status=2))
+
+    def test_distances_have_their_own_table(self):
+        with open('far.py', 'w', encoding='utf-8') as file:
+            file.write('import sys\nfor line in sys.stdin:\n  number, question, *x = line.split()\n'
+                       '  i = int(float(x[0])) if question == "distance" else 0\n'
+                       '  d = 0 if i == 1 else 1.5 if i == 3 else -1 if i == 2 else 0.5 if i == 4 else i % 2\n'
+                       '  z = 7 if i == 5 else i % 2\n'
+                       '  print(number, *([d, i + 1, 1, 0, i + 1, 1, z] if question == "distance" else ["refused", "x"]),'
+                       ' sep="\\t", flush=True)\n')
+        row = ask('python3 far.py', '--only', 'distance')['distance', 'few']
+        self.expect(row)
+        self.assertEqual([row[name] for name in ('zero', 'not zero', 'negative', 'off', 'points', 'points off')],
+                         ['1', '1', '1', '1', str(PAIRS), '1'])
+        self.assertEqual(float(row['worst']), 0.5)
+
+    def test_our_own_contestants_answer_all_kinds_rightly(self):
+        ours = f'{contestants}/farcull_contestant_ours'
+        for row in ask(ours + ' exact').values():
+            self.expect(row)
+        self.assertIn('every answer obeys', run('python3', 'suite/ask.py', '--check', ours + ' exact'))
+
+    def test_pairs_of_a_mesh_are_missed_and_wrong(self):
+        def row(*pairs):
+            with open('mesh.py', 'w', encoding='utf-8') as file:
+                file.write(f'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+                           '  if question == "card":\n    print(number, "refused", "x", sep="\\t", flush=True)\n    continue\n'
+                           f'  for row in {pairs}:\n'
+                           '    print(number, "pair", *row, sep="\\t")\n  print(number, "done", sep="\\t", flush=True)\n')
+            return ask('python3 mesh.py', '--only', 'mesh')['mesh', 'cross']
+        self.expect(row((0, 0, 1, 0)))
+        self.expect(row((1, 0, 0, 0), (0, 0, 0, 1)))  # neighbours count only if the card says so
+        self.expect(row(), missed=1, own_missed=1)
+        self.expect(row((0, 0, 1, 0), (0, 1, 1, 0)), wrong=1, own_wrong=1)
+        self.expect(row((0, 0, 1, 7)), crashed=1)
+
+    def test_the_study_counts_the_same(self):
+        """The tables of the study are counted in C++, by another program."""
+        run(program, 'experiment', 'libraries', '--suite', 'suite', '--contestants', 'moeller-float', '--out', 'out')
+        database = sqlite3.connect('out/results.sqlite')
+        counts = [json.loads(text) for text, in database.execute('SELECT counts FROM rows')]
+        rows = ask(f'{contestants}/farcull_contestant_textbook moeller-float', '--only', 'pair')
+        self.assertEqual(len(counts), len(rows))
+        for count, row in zip(counts, rows.values()):
+            for key in ('missed', 'wrong', 'own_missed', 'own_wrong', 'refused', 'crashed', 'hung', 'asked'):
+                self.assertEqual(count[key], int(row[key.replace('_', ' ')]), key)
+
+
+if __name__ == '__main__':
+    try:
+        outcome = unittest.main(argv=sys.argv[:1], exit=False).result
+    finally:
+        os.chdir('/')
+        shutil.rmtree(work)
+    sys.exit(not outcome.wasSuccessful())
