@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/library/distance.h"
 #include "experiments/python/arrays.h"
 #include "verify/contact.h"
 
@@ -18,20 +19,20 @@ namespace {
 
 using namespace py::literals;
 
-ColliderDevice device_of(const std::string& name) {
-  if (name == "cpu") return ColliderDevice::cpu;
-  if (name == "gl") return ColliderDevice::gl;
-  if (name == "best") return ColliderDevice::best;
+Device device_of(const std::string& name) {
+  if (name == "cpu") return Device::cpu;
+  if (name == "gl") return Device::gl;
+  if (name == "best") return Device::best;
   raise("device", "'" + name + "' is no choice", "give cpu, gl or best", true);
 }
 
-py::dict report_of(const ColliderReport& report) {
+py::dict report_of(const Report& report) {
   py::list views, stages;
-  for (const ColliderReport::View& v : report.views) {
+  for (const Report::View& v : report.views) {
     views.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
                           "width"_a = v.width, "height"_a = v.height));
   }
-  for (const ColliderReport::Stage& s : report.stages) {
+  for (const Report::Stage& s : report.stages) {
     stages.append(py::dict("name"_a = s.name, "ran"_a = s.ran, "reason"_a = s.reason, "ms"_a = s.ms,
                            "entered"_a = s.in, "left"_a = s.out, "unit"_a = s.unit));
   }
@@ -45,7 +46,7 @@ py::dict report_of(const ColliderReport& report) {
                   "stages"_a = std::move(stages));
 }
 
-py::dict result_of(const ColliderResult& result, bool kinds) {
+py::dict result_of(const Result& result, bool kinds) {
   return py::dict(
       "pairs"_a = pair_array(result.pairs),
       "neighbour_pairs"_a = pair_array(result.neighbour_pairs),
@@ -64,8 +65,8 @@ void require_process(pid_t maker, const char* made) {
 // A collider for one thread at a time, and for one process.
 class KeptCollider {
  public:
-  explicit KeptCollider(const ColliderOptions& options)
-      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
+  explicit KeptCollider(const Options& options)
+      : process_(::getpid()), kinds_(options.contacts != Contacts::none) {
     beside([&] { collider_ = std::make_unique<Collider>(options); });
   }
 
@@ -73,8 +74,7 @@ class KeptCollider {
     require_process(process_, "Collider");
     const Turn turn(used_, "Collider");
     const Given given(vertices, triangles, starts);
-    const ColliderResult result =
-        answer_beside([&] { return collider_->find(given.input(copies_)); });
+    const Result result = answer_beside([&] { return collider_->find(given.input(copies_)); });
     return result_of(result, kinds_);
   }
 
@@ -102,7 +102,7 @@ py::list distances_of(const py::array& vertices, const py::array& triangles,
                       unsigned threads) {
   const DistanceFinderOptions options{.kind = kind_of(kind),
                                       .k = k,
-                                      .within = within,
+                                      .within = within < 0 ? std::optional<double>() : within,
                                       .self = self,
                                       .self_objects = self_objects,
                                       .inside = inside,
@@ -127,36 +127,35 @@ py::list distances_of(const py::array& vertices, const py::array& triangles,
 
 }  // namespace
 
-ColliderOptions options_of(const py::dict& question) {
-  return {
-      .threads = question["threads"].cast<unsigned>(),
-      .self = question["all_objects"].cast<bool>(),
-      .self_objects = question["self_objects"].cast<std::vector<bool>>(),
-      .clearance = question["clearance"].cast<double>(),
-      .neighbours = question["neighbours"].cast<bool>(),
-      .contacts = question["kinds"].cast<bool>() ? ColliderContacts::kinds : ColliderContacts::none,
-      .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
-      .limit = question["limit"].cast<std::uint64_t>()};
+Options options_of(const py::dict& question) {
+  return {.threads = question["threads"].cast<unsigned>(),
+          .self = question["all_objects"].cast<bool>(),
+          .self_objects = question["self_objects"].cast<std::vector<bool>>(),
+          .clearance = question["clearance"].cast<double>(),
+          .neighbours = question["neighbours"].cast<bool>(),
+          .contacts = question["kinds"].cast<bool>() ? Contacts::kinds : Contacts::none,
+          .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
+          .limit = question["limit"].cast<std::uint64_t>()};
 }
 
 void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
       .def(py::init([](const py::dict& question, const std::string& device,
                        const std::string& views, int resolution) {
-             ColliderOptions options = options_of(question);
+             Options options = options_of(question);
              options.device = device_of(device);
-             options.views = views;
-             options.resolution = resolution;
+             options.advanced.views = views;
+             options.advanced.resolution = resolution;
              return std::make_unique<KeptCollider>(options);
            }),
            py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
            py::arg("resolution"))
       .def("find", &KeptCollider::find);
   // Codes of kinds are indices into this tuple, for both enumerations.
-  static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());
+  static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
   py::tuple kinds(kContactKinds.size());
   for (std::size_t k = 0; k < kContactKinds.size(); ++k)
-    kinds[k] = to_string(static_cast<ColliderContactKind>(k));
+    kinds[k] = to_string(static_cast<Contact::Kind>(k));
   module.attr("kinds") = kinds;
 }
 
@@ -172,12 +171,12 @@ namespace {
 class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
-             const ColliderOptions& options)
-      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
+             const Options& options)
+      : process_(::getpid()), kinds_(options.contacts != Contacts::none) {
     const Given given(vertices, triangles, starts);
     beside([&] {
       Copies copies;
-      stream_ = std::make_unique<ColliderStream>(given.input(copies), options);
+      stream_ = std::make_unique<Stream>(given.input(copies), options);
     });
   }
 
@@ -204,7 +203,7 @@ class KeptStream {
     std::int64_t* pair = pairs.mutable_data();
     bool* neighbour = neighbours.mutable_data();
     std::uint8_t* kind = kinds.mutable_data();
-    for (const ColliderFound& one : found_) {
+    for (const StreamedPair& one : found_) {
       *pair++ = one.pair.a;
       *pair++ = one.pair.b;
       *neighbour++ = one.neighbours;
@@ -224,8 +223,8 @@ class KeptStream {
   bool kinds_;
   bool given_ = false;  // a call began, and its pairs were not taken
   std::atomic_flag used_;
-  std::unique_ptr<ColliderStream> stream_;
-  std::vector<ColliderFound> found_;
+  std::unique_ptr<Stream> stream_;
+  std::vector<StreamedPair> found_;
   std::uint64_t decided_ = 0;
   bool complete_ = false;
 };
