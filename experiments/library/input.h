@@ -102,9 +102,9 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 
 /// Copies the input into `taken`, which holds that of the last call, and reuses its memory. self:
 /// every object is tested against itself; self_objects: the same for each object, empty or one for
-/// each. change: receives what is new since the last call; may be null. asked: a scene in which there
-/// is nothing to test is an error. Throws Error for input that is not as Input says, and leaves
-/// `taken` empty then.
+/// each. change: receives what is new since the last call; may be null. asked: a scene in which
+/// there is nothing to test is an error. Throws Error for input that is not as Input says, and
+/// leaves `taken` empty then.
 void take(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
           FrameChange* change = nullptr, bool asked = true);
 

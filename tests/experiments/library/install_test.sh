@@ -63,7 +63,7 @@ pairs: 1
 frame 1, on cpu: 1\n  0 and 1
 frame 2, on cpu: 0
 frame 3, on cpu: 0
-distance: 1.7'
+distance: 1.19'
 [[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
 
 # The package. CPack would build everything first; with this generator it takes what is built.
