@@ -48,8 +48,8 @@ Pose random_pose(RandomNumbers& random, double far) {
   return pose_of(out);
 }
 
-std::vector<double> taken_vertices(const Input& input) {
-  TakenInput taken;
+/// taken: the input of the last call.
+std::vector<double> taken_vertices(const Input& input, TakenInput&& taken = {}) {
   take(input, false, {}, taken);
   std::vector<double> out;
   for (const Vec3& p : taken.scene.vertices) out.insert(out.end(), p.data(), p.data() + 3);
@@ -79,6 +79,7 @@ TEST(LibraryPoses, FramesAreAsFresh) {
   std::vector<Pose> poses(2);
   Collider collider({.self_objects = {true, false}});
   DistanceFinder finder({.inside = false});
+  TakenInput kept;
   int changes = 0, alone = 0;
   bool arrays = true;
   std::vector<Pair> last;
@@ -97,6 +98,7 @@ TEST(LibraryPoses, FramesAreAsFresh) {
     if (random.below(8) > 0 || input.vertices.empty()) input.poses = poses;
     alone += input.vertices.empty();
     const Flat expected = input.poses.empty() ? flat : moved(flat, poses, as_stated);
+    ASSERT_EQ(taken_vertices(input, std::move(kept)), expected.vertices) << frame;
     const Result found = collider.find(input);
     const Result fresh = collide(expected.input(), {.self_objects = {true, false}});
     ASSERT_EQ(found.pairs, fresh.pairs) << frame;
