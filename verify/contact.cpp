@@ -50,7 +50,7 @@ int lone(const Sides& s) {
   for (int i = 0; i < 3; ++i) {
     if (s[i] != 0 && s[(i + 1) % 3] != s[i] && s[(i + 2) % 3] != s[i]) return i;
   }
-  throw std::logic_error("contact_of: no corner is alone on its side of a plane that is crossed");
+  throw std::logic_error("penetrate: no corner is alone on its side of a plane that is crossed");
 }
 
 /// Decides whether the relative interiors of two triangles meet, each of which crosses the plane of
@@ -99,7 +99,7 @@ bool pierces(const Points& triangle, const Point& p, const Point& q) {
 
 }  // namespace
 
-Contact contact_of(const Corners& a, const Corners& b) {
+bool penetrate(const Corners& a, const Corners& b) {
   const Points p = points(a);
   const Points q = points(b);
   const Sides of_b = sides(p, q);
@@ -119,7 +119,7 @@ Contact contact_of(const Corners& a, const Corners& b) {
     const auto [first, last] = ends(a);
     meet = pierces(q, p[first], p[last]);
   }
-  return meet ? Contact::penetrating : Contact::touching;
+  return meet;
 }
 
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
@@ -136,8 +136,7 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
   for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::uint64_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      count +=
-          contact_of(scene.corners(pairs[i].a), scene.corners(pairs[i].b)) == Contact::penetrating;
+      count += penetrate(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
     }
     penetrating[chunk] = count;
   });

@@ -26,13 +26,10 @@
 
 namespace farcull {
 
-enum class Contact : std::uint8_t { touching, penetrating };
-
-/// The contact of two triangles that intersect. Symmetric; the order of corners does not matter.
-/// Precondition: intersects(a, b) (not checked: triangles that share no point come out as
-/// touching). Neighbours are treated as any other triangles: if they meet only in what they share,
-/// they touch.
-Contact contact_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+/// Whether two triangles penetrate. False for triangles that share no point. Symmetric; the order
+/// of corners does not matter. Neighbours are treated as any other triangles: if they meet only in
+/// what they share, they touch.
+bool penetrate(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 struct ContactCounts {
   std::uint64_t touching = 0;

@@ -312,7 +312,7 @@ std::optional<ContactKind> parse_contact_kind(std::string_view name) {
 }
 
 ContactKind contact_kind(const Corners& a, const Corners& b) {
-  if (contact_of(a, b) == Contact::penetrating) return ContactKind::crossing;
+  if (penetrate(a, b)) return ContactKind::crossing;
   const long exponent = common_exponent(a, b);
   const Hull s(a, exponent), t(b, exponent);
   return kind_of(s, t, common_points(s, t));

@@ -1,9 +1,6 @@
 // Errors of the outside world (files, EGL, GL, disk, options): one exception type that says where,
 // why and what to do. Mistakes of the programmer are assertions, uncertainty is a value ("keep the
 // pair"); neither is an Error.
-//
-// A text names a parameter as {depth_format}, so that nothing below the command line knows how its
-// words are written.
 #pragma once
 
 #include <stdexcept>
@@ -13,18 +10,20 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// where: a file ("mesh.obj"), a parameter ("{radius}") or a GL stage ("store"); reason: what is
-  /// wrong there; remedy: what the user can do next; line: of a text file, from 1; 0: no line.
-  /// spelled() is applied to the three texts.
+  /// line: of a text file, from 1; 0: no line. A parameter in braces, as in "{radius}", is written
+  /// as its reader knows it.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
-  std::string where;
-  std::string reason;
-  std::string remedy;
+  std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
+  std::string reason;  // what is wrong there
+  std::string remedy;  // what to do next
   long line;
 };
 
 // ---- names of parameters ----
+//
+// A text names a parameter as {depth_format}, so that nothing below the command line knows how its
+// words are written.
 
 /// Writes each {parameter} in the text as its reader does: by the name alone, unless the program
 /// has set another spelling.

@@ -101,10 +101,11 @@ void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameCha
   }
 }
 
-// bad: ascending vertices that are not finite.
-void require_unused(const std::vector<std::uint32_t>& bad, const Scene& scene) {
+// bad: ascending vertices that are not finite, of so many.
+void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
+                    const Scene& scene) {
   if (bad.empty()) return;
-  std::vector<bool> is_bad(scene.vertices.size());
+  std::vector<bool> is_bad(vertices);
   for (const std::uint32_t v : bad) is_bad[v] = true;
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
   for (const auto& triangle : scene.triangles) {
@@ -176,8 +177,11 @@ void require_pairs(const Scene& scene) {
                 "against itself with self");
 }
 
-void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change, bool asked, std::uint64_t* passed_over) {
+// Copies the arrays: vertices to `copies`, all else into the scene. Returns whether the scene has
+// as many vertices as before, the same triangles and objects.
+bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
+          std::vector<Vec3>& copies, FrameChange* change, bool asked) {
+  Scene& scene = taken.scene;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (input.vertices.size() % 3 != 0 || input.vertices.size() / 3 > kMost)
     throw Error("vertices", "are not three doubles for each of at most 2^32 - 1 vertices",
@@ -192,14 +196,14 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
   const std::size_t vertices = input.vertices.size() / 3;
   bool same = scene.vertices.size() == vertices;
   std::vector<std::uint32_t> bad;
-  copy_vertices(input.vertices, scene.vertices, change, bad);
+  copy_vertices(input.vertices, copies, change, bad);
   if (input.wide_triangles.empty()) {
     same = copy_triangles(input.triangles, vertices, same, scene.triangles) && same;
   } else {
     same = copy_triangles(input.wide_triangles, vertices, same, scene.triangles) && same;
   }
-  require_unused(bad, scene);
-  if (passed_over != nullptr) *passed_over = bad.size();
+  require_unused(bad, vertices, scene);
+  taken.passed_over = bad.size();
   scene.source_face.resize(count);
   const std::size_t objects = std::max<std::size_t>(input.object_starts.size(), 1);
   if (!self_objects.empty() && self_objects.size() != objects) {
@@ -223,19 +227,109 @@ void copy(const ColliderInput& input, bool self, const std::vector<bool>& self_o
     object.self = of_self;
   }
   if (asked) require_pairs(scene);
-  if (change) change->same = same;
+  return same;
+}
+
+// The object whose triangles use each vertex.
+std::vector<std::uint32_t> objects_of_vertices(const Scene& scene, std::size_t vertices) {
+  std::vector<std::uint32_t> out(vertices, kNoObject);
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + k]) {
+        const std::uint32_t other = std::exchange(out[v], o);
+        if (other == kNoObject || other == o) continue;
+        throw Error("poses",
+                    "vertex " + std::to_string(v) + " is used by objects " + std::to_string(other) +
+                        " and " + std::to_string(o) + ", which have a pose each",
+                    "give each object vertices of its own");
+      }
+    }
+  }
+  return out;
+}
+
+void require_finite(std::span<const Pose> poses, std::size_t objects) {
+  if (poses.size() != objects)
+    throw Error(
+        "poses",
+        "are " + std::to_string(poses.size()) + " for " + std::to_string(objects) + " objects",
+        "give one for each object, or none");
+  for (std::size_t o = 0; o < objects; ++o) {
+    if (!all_finite(poses[o].r) || !all_finite(poses[o].t))
+      throw Error("poses", "that of object " + std::to_string(o) + " is not finite",
+                  "give finite numbers");
+  }
+}
+
+Vec3 moved(const Pose& pose, const Vec3& p) {
+  const auto& [r, t] = pose;
+  return {((r[0] * p.x() + r[1] * p.y()) + r[2] * p.z()) + t[0],
+          ((r[3] * p.x() + r[4] * p.y()) + r[5] * p.z()) + t[1],
+          ((r[6] * p.x() + r[7] * p.y()) + r[8] * p.z()) + t[2]};
+}
+
+// Moves the vertices. Those of objects in the pose of the last call are as they were then, unless
+// `all` are to be moved.
+void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
+  std::vector<bool> moves(poses.size(), true);
+  for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];
+  taken.scene.vertices.resize(taken.unmoved.size());
+  for (std::uint32_t v = 0; v < taken.unmoved.size(); ++v) {
+    const std::uint32_t o = taken.object_of[v];
+    if (o != kNoObject && !moves[o]) continue;
+    const Vec3 to = o == kNoObject ? taken.unmoved[v] : moved(poses[o], taken.unmoved[v]);
+    Vec3& at = taken.scene.vertices[v];
+    if (std::memcmp(at.data(), to.data(), sizeof(Vec3)) == 0) continue;
+    if (!all_finite({to.data(), 3}))
+      throw Error("poses",
+                  "that of object " + std::to_string(o) + " moves vertex " + std::to_string(v) +
+                      " beyond the largest double",
+                  "give a pose with smaller numbers");
+    at = to;
+    if (change) change->vertices.push_back(v);
+  }
+  taken.poses.assign(poses.begin(), poses.end());
+}
+
+// Copies and moves input with poses. Returns as copy().
+bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_objects,
+                TakenInput& taken, FrameChange* change, bool asked) {
+  const bool alone = input.vertices.empty() && input.triangles.empty() &&
+                     input.wide_triangles.empty() && input.object_starts.empty();
+  const bool had_poses = !taken.poses.empty();
+  bool same = true;
+  if (!alone) {
+    same = copy(input, self, self_objects, taken, taken.unmoved, nullptr, asked);
+  } else if (taken.scene.objects.empty()) {
+    throw Error("poses", "are given without triangles, and there are none of an earlier call",
+                "give vertices, triangles and object_starts with them");
+  } else if (!had_poses) {
+    taken.unmoved = taken.scene.vertices;
+  }
+  require_finite(input.poses, taken.scene.objects.size());
+  if (!same || !had_poses) taken.object_of = objects_of_vertices(taken.scene, taken.unmoved.size());
+  move(input.poses, !alone || !had_poses, taken, change);
+  return same;
 }
 
 }  // namespace
 
-void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change, bool asked, std::uint64_t* passed_over) {
+void take(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
+          FrameChange* change, bool asked) {
   try {
-    copy(input, self, self_objects, scene, change, asked, passed_over);
+    bool same = false;
+    if (input.poses.empty()) {
+      same = copy(input, self, self_objects, taken, taken.scene.vertices, change, asked);
+      taken.unmoved = {};
+      taken.object_of = {};
+      taken.poses = {};
+    } else {
+      same = copy_posed(input, self, self_objects, taken, change, asked);
+    }
+    if (change) change->same = same;
   } catch (...) {
-    scene.vertices.clear();  // nothing that was not checked stays there
-    scene.triangles.clear();
-    scene.objects.clear();  // so that the next scene is not the same
+    taken = {};  // nothing that was not checked stays, and the next scene is not the same
     throw;
   }
 }
@@ -246,45 +340,46 @@ constexpr int kMostResolution = 16384;
 
 // The enumerations of farcull.h have the order of the internal ones.
 static_assert([] {
-  using Given = ColliderContactKind;
+  using Given = Contact::Kind;
   using Own = ContactKind;
   return same(Given::apart, Own::apart) && same(Given::equal, Own::equal) &&
          same(Given::touch_vertex, Own::touch_vertex) && same(Given::touch_edge, Own::touch_edge) &&
          same(Given::coplanar, Own::coplanar) && same(Given::crossing, Own::crossing) &&
          same(Given::touch_face, Own::touch_face);
 }());
-static_assert(same(ColliderContacts::none, ContactDetail::none) &&
-              same(ColliderContacts::kinds, ContactDetail::kinds) &&
-              same(ColliderContacts::segments, ContactDetail::segments));
+static_assert(same(Contacts::none, ContactDetail::none) &&
+              same(Contacts::kinds, ContactDetail::kinds) &&
+              same(Contacts::segments, ContactDetail::segments));
 
 }  // namespace
 
-void check(const ColliderOptions& options) {
+void check(const Options& options) {
   if (options.threads > kMostThreads)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
   if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
     throw Error("clearance", "is no distance", "give a finite number, 0 or more");
-  if (options.resolution < 0 || options.resolution > kMostResolution)
+  const int resolution = options.advanced.resolution;
+  if (resolution < 0 || resolution > kMostResolution)
     throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
 }
 
-ContactDetail detail_of(ColliderContacts contacts) { return static_cast<ContactDetail>(contacts); }
+ContactDetail detail_of(Contacts contacts) { return static_cast<ContactDetail>(contacts); }
 
-ColliderContact given_out(const ContactShape& shape) {
+Contact given_out(const ContactShape& shape) {
   const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
-  return {.kind = static_cast<ColliderContactKind>(shape.kind),
+  return {.kind = static_cast<Contact::Kind>(shape.kind),
           .dimension = shape.dimension,
           .ends = {point(shape.ends[0]), point(shape.ends[1])}};
 }
 
-std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes) {
-  std::vector<ColliderContact> out;
+std::vector<Contact> given_out(const std::vector<ContactShape>& shapes) {
+  std::vector<Contact> out;
   out.reserve(shapes.size());
   for (const ContactShape& shape : shapes) out.push_back(given_out(shape));
   return out;
 }
 
-std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects) {
+std::vector<ObjectPair> ignored_of(const Options& options, std::size_t objects) {
   std::vector<ObjectPair> out;
   for (const auto& [a, b] : options.ignore) {
     const std::string text = "names objects " + std::to_string(a) + " and " + std::to_string(b);
@@ -302,7 +397,7 @@ std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t o
   return in_order(std::move(out));
 }
 
-const char* to_string(ColliderContactKind kind) {
+const char* to_string(Contact::Kind kind) {
   // name_of() views a literal, so it ends with a 0.
   return name_of(kContactKinds.at(static_cast<std::size_t>(kind))).data();
 }

@@ -2,11 +2,19 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stage.h"
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
@@ -23,24 +31,50 @@ constexpr bool same(Given given, Own own) {
 inline constexpr unsigned kMostThreads = 1024;
 
 /// Runs the call in the floating-point environment of the proofs, and then restores the caller's.
-/// Turns every Error into a ColliderError.
 template <class Call>
-auto translated(const Call& call) {
-  try {
-    const FloatingPointGuard guard;
-    return call();
-  } catch (const Error& error) {
-    throw ColliderError(error.what(), error.where, error.reason, error.remedy);
-  }
+auto as_proved(const Call& call) {
+  const FloatingPointGuard guard;
+  return call();
 }
 
-/// Runs the call with the state of an object of the library, one call at a time. Throws
-/// ColliderError naming the object if it was moved from, or if another call uses it: one of another
-/// thread, or one of this thread that a signal handler interrupted. State has a member
-/// `std::atomic_flag used`, which is set while the call runs.
+/// Runs call(progress), and asks may_go_on as farcull.h says.
+template <class Call>
+auto watched(const MayGoOn& may_go_on, const Call& call) {
+  if (!may_go_on) return call(Progress());
+  constexpr std::chrono::milliseconds kBetween{50};
+  std::mutex mutex;
+  std::string step;  // guarded by the mutex
+  std::optional<decltype(call(Progress()))> out;
+  StoppableCall running([&] {
+    out.emplace(call([&](const std::string& next) {
+      stop_point();
+      const std::lock_guard lock(mutex);
+      step = next;
+    }));
+  });
+  try {
+    do {
+      const std::string now = [&] {
+        const std::lock_guard lock(mutex);
+        return step;
+      }();
+      if (!may_go_on(now)) throw Cancelled();
+    } while (!running.wait_for(kBetween));
+  } catch (...) {
+    running.stop();  // its destructor waits for the end
+    throw;
+  }
+  running.finish();
+  return std::move(*out);
+}
+
+/// Runs the call with the state of an object of the library, one call at a time. Throws Error
+/// naming the object if it was moved from, or if another call uses it: one of another thread, or
+/// one of this thread that a signal handler interrupted. State has a member `std::atomic_flag
+/// used`, which is set while the call runs.
 template <class State, class Call>
 auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
-  return translated([&] {
+  return as_proved([&] {
     if (!state)
       throw Error(object, "was moved from",
                   "use the object that it was moved to, or make a new one");
@@ -55,26 +89,35 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
   });
 }
 
-/// Copies the input into `scene`, which holds the scene of the last call, and reuses its memory.
-/// self: every object is tested against itself; self_objects: the same for each object, empty or
-/// one for each. change: receives what is new since the last call; may be null. asked: a scene in
-/// which there is nothing to test is an error. passed_over: receives the number of vertices that
-/// are not finite and that no triangle uses; may be null. Throws Error for input that is not as
-/// ColliderInput says, and leaves the scene empty then.
-void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
-          Scene& scene, FrameChange* change = nullptr, bool asked = true,
-          std::uint64_t* passed_over = nullptr);
+/// The input of the last call, and what moves its objects.
+struct TakenInput {
+  Scene scene;                    // with the poses applied
+  std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
+  // The rest is empty if the last call had no poses.
+  std::vector<Vec3> unmoved;             // the vertices before the poses
+  std::vector<std::uint32_t> object_of;  // of each vertex; kNoObject: no triangle uses it
+  std::vector<Pose> poses;
+};
+inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
+
+/// Copies the input into `taken`, which holds that of the last call, and reuses its memory. self:
+/// every object is tested against itself; self_objects: the same for each object, empty or one for
+/// each. change: receives what is new since the last call; may be null. asked: a scene in which
+/// there is nothing to test is an error. Throws Error for input that is not as Input says, and
+/// leaves `taken` empty then.
+void take(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
+          FrameChange* change = nullptr, bool asked = true);
 
 /// Throws Error naming an option that is bad for any input.
-void check(const ColliderOptions& options);
+void check(const Options& options);
 
-ContactDetail detail_of(ColliderContacts contacts);
+ContactDetail detail_of(Contacts contacts);
 
 /// The ignored pairs of a scene with so many objects. Throws Error if a pair names an object that
 /// the scene does not have.
-std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects);
+std::vector<ObjectPair> ignored_of(const Options& options, std::size_t objects);
 
-ColliderContact given_out(const ContactShape& shape);
-std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes);
+Contact given_out(const ContactShape& shape);
+std::vector<Contact> given_out(const std::vector<ContactShape>& shapes);
 
 }  // namespace farcull

@@ -12,7 +12,7 @@
 #include "core/boxes/join.h"
 #include "core/gl/base/context.h"
 #include "core/view/view.h"
-#include "experiments/library/farcull.h"
+#include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
@@ -20,54 +20,52 @@
 namespace farcull {
 namespace {
 
-std::string device_of(const ColliderOptions& options) {
-  if (options.device == ColliderDevice::cpu) return "cpu";
-  return options.device == ColliderDevice::gl ? "gl" : "";
+std::string device_of(const Options& options) {
+  if (options.device == Device::cpu) return "cpu";
+  return options.device == Device::gl ? "gl" : "";
 }
 
-RunOptions run_options(const ColliderOptions& options) {
+RunOptions run_options(const Options& options) {
   check(options);
+  const std::string& views = options.advanced.views;
   RunOptions out{.method = Method::far_pairs,
-                 .resolution = options.resolution,
-                 .views = options.views == "auto" ? "" : options.views,
+                 .resolution = options.advanced.resolution,
+                 .views = views == "auto" ? "" : views,
                  .clearance = options.clearance,
                  .verify = false,
                  .limit = options.limit,
                  .contacts = detail_of(options.contacts)};
   out.device = device_of(options);
   try {
-    if (options.views != "auto") parse_views(options.views);
+    if (views != "auto") parse_views(views);
   } catch (const Error& error) {
     throw Error("views", error.reason, error.remedy);
   }
   return out;
 }
 
-std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
-  std::vector<ColliderPair> out(pairs.size());
+std::vector<Pair> given_out(const std::vector<TrianglePair>& pairs) {
+  std::vector<Pair> out(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) out[k] = {pairs[k].a, pairs[k].b};
   return out;
 }
 
 }  // namespace
 
-ColliderError::ColliderError(const std::string& what, std::string where, std::string reason,
-                             std::string remedy)
-    : std::runtime_error(what),
-      where(std::move(where)),
-      reason(std::move(reason)),
-      remedy(std::move(remedy)) {}
+const char* version() { return FARCULL_VERSION; }
+
+Cancelled::Cancelled() : Error("may_go_on", "ended the call", "call again for an answer") {}
 
 struct Collider::State {
-  ColliderOptions options;
+  Options options;
   RunOptions run;
   Session session;
-  Scene scene;  // of the last call
+  TakenInput taken;  // of the last call
   FrameChange change;
-  std::uint64_t calls = 0, passed_over = 0;
+  std::uint64_t calls = 0;
   std::atomic_flag used;
 
-  explicit State(const ColliderOptions& given)
+  explicit State(const Options& given)
       : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
     device();
     promise();
@@ -84,23 +82,23 @@ struct Collider::State {
                       session);
   }
   // Reports the device of an answer; `used` may have none.
-  void report_device(const UsedDevice& used, ColliderReport& report);
+  void report_device(const UsedDevice& used, Report& report);
 
   // Takes the scene of a call; from the third call on, what is new in it as well.
-  void take_scene(const ColliderInput& input);
-  /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
-  /// device can be trusted.
-  ColliderResult find(const Stopwatch& start);
+  void take_scene(const Input& input);
+  // The collisions of the scene. start: when the call began; callers: its environment. After an
+  // exception nothing on the device can be trusted.
+  Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
 
-void Collider::State::report_device(const UsedDevice& used, ColliderReport& report) {
+void Collider::State::report_device(const UsedDevice& used, Report& report) {
   const PairDevice& open = device();
   if (open.gl && !used.gl) {
     report.device = "cpu";
     report.device_reason = used.note;
   } else {
     report.device = open.backend->name();
-    report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
+    report.device_reason = options.device == Device::best ? open.reason : "asked for";
   }
   const Promise kept = promise_of(run, used, session);
   report.promises = kept.holds;
@@ -110,29 +108,29 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
   report.promises_reason = kept.reason + (risk.empty() ? "" : "; " + risk);
 }
 
-void Collider::State::take_scene(const ColliderInput& input) {
+void Collider::State::take_scene(const Input& input) {
   // Remembering takes more memory, which is of no use to a single call.
   if (++calls == 2) session.remember_frames();
   const PairMemory* const memory = session.pair_memory();
   const bool compares = memory && !memory->moved.waits();
   change = {};
-  take(input, options.self, options.self_objects, scene, compares ? &change : nullptr, true,
-       &passed_over);
+  take(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }
 
-ColliderResult Collider::State::find(const Stopwatch& start) {
+Result Collider::State::find(const Stopwatch& start, const FloatingPoint& callers,
+                             const Progress& progress) {
   device();
-  run.ignored = ignored_of(options, scene.objects.size());
+  run.ignored = ignored_of(options, taken.scene.objects.size());
   const Record record = farcull::run(
-      scene, run, session, {},
+      taken.scene, run, session, progress,
       {.answer_only = true, .change = &change, .decide_neighbours = options.neighbours});
-  ColliderResult out;
-  ColliderReport& report = out.report;
+  Result out;
+  Report& report = out.report;
   report.candidates_ms = start.ms() - record.ms.exact - record.ms.contacts;
   report.candidates = record.found.count;
   report.decided = record.decided;
   report.neighbours = record.collisions.neighbours;
-  report.passed_over = passed_over;
+  report.passed_over = taken.passed_over;
   report.exact_ms = record.ms.exact;
   report.contacts_ms = record.ms.contacts;
   out.pairs = given_out(record.collisions.pairs);
@@ -140,7 +138,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   out.contacts = given_out(record.contacts);
   out.neighbour_contacts = given_out(record.neighbour_contacts);
   out.complete = record.complete;
-  if (record.callers != kProved) report.callers_arithmetic = to_string(record.callers);
+  if (callers != kProved) report.callers_arithmetic = to_string(callers);
   report_device(record.found.device, report);
   for (const Stage& s : record.trace)
     report.stages.push_back(
@@ -150,19 +148,22 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   return out;
 }
 
-Collider::Collider(const ColliderOptions& options)
-    : state_(translated([&] { return std::make_unique<State>(options); })) {}
-Collider::Collider() : Collider(ColliderOptions{}) {}
+Collider::Collider(const Options& options)
+    : state_(as_proved([&] { return std::make_unique<State>(options); })) {}
+Collider::Collider() : Collider(Options{}) {}
 Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
 
-ColliderResult Collider::find(const ColliderInput& input) {
+Result Collider::find(const Input& input) {
   return exclusive(state_, "Collider", [&](State& state) {
     const Stopwatch start;
+    const FloatingPoint callers = callers_floating_point();
     state.take_scene(input);
     try {
-      return state.find(start);
+      return watched(state.options.may_go_on, [&](const Progress& progress) {
+        return state.find(start, callers, progress);
+      });
     } catch (...) {
       state.session.forget_device();
       throw;
@@ -170,17 +171,19 @@ ColliderResult Collider::find(const ColliderInput& input) {
   });
 }
 
+Result collide(const Input& input, const Options& options) { return Collider(options).find(input); }
+
 // The stream: makes candidates in order, a part at a time, and decides each part exactly.
 
 namespace {
 
-constexpr const char* kName = "ColliderStream";
+constexpr const char* kName = "Stream";
 constexpr std::size_t kPart = std::size_t{1} << 16;  // candidates at a time
 
 }  // namespace
 
-struct ColliderStream::State {
-  ColliderOptions options;
+struct Stream::State {
+  Options options;
   unsigned threads;
   Scene scene;
   std::optional<OrderedPairs> candidates;
@@ -190,21 +193,23 @@ struct ColliderStream::State {
   bool failed = false;  // a call began and did not end, so its pairs are lost
   std::atomic_flag used;
 
-  State(const ColliderInput& input, const ColliderOptions& of)
+  State(const Input& input, const Options& of)
       : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
     check(options);
-    if (options.device == ColliderDevice::gl)
+    if (options.device == Device::gl)
       throw Error("device", "gl is not used by a stream", "give cpu or best");
-    take(input, options.self, options.self_objects, scene);
+    TakenInput taken;
+    take(input, options.self, options.self_objects, taken);
+    scene = std::move(taken.scene);
     candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()), true,
                        threads);
   }
 
-  bool next(std::vector<ColliderFound>& pairs);
-  void decide_part(std::vector<ColliderFound>& pairs);
+  bool next(std::vector<StreamedPair>& pairs);
+  void decide_part(std::vector<StreamedPair>& pairs);
 };
 
-bool ColliderStream::State::next(std::vector<ColliderFound>& pairs) {
+bool Stream::State::next(std::vector<StreamedPair>& pairs) {
   pairs.clear();
   if (!failed && options.limit > 0 && given == options.limit) return false;
   if (!failed && candidates->at_end()) {
@@ -218,7 +223,7 @@ bool ColliderStream::State::next(std::vector<ColliderFound>& pairs) {
   return true;
 }
 
-void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
+void Stream::State::decide_part(std::vector<StreamedPair>& pairs) {
   candidates->next(kPart, part);
   const ExactQuestion question{
       .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
@@ -232,36 +237,36 @@ void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
     for (std::size_t k = 0; k < those.size(); ++k) {
       pairs.push_back({.pair = {those[k].a, those[k].b},
                        .neighbours = neighbours,
-                       .contact = contacts.empty() ? ColliderContact() : given_out(contacts[k])});
+                       .contact = contacts.empty() ? Contact() : given_out(contacts[k])});
     }
   };
   append(found.pairs, false);
   append(found.neighbour_pairs, true);
-  std::ranges::sort(pairs, {}, &ColliderFound::pair);
+  std::ranges::sort(pairs, {}, &StreamedPair::pair);
   given += pairs.size();
 }
 
-ColliderStream::ColliderStream(const ColliderInput& input, const ColliderOptions& options)
-    : state_(translated([&] { return std::make_unique<State>(input, options); })) {}
-ColliderStream::~ColliderStream() = default;
-ColliderStream::ColliderStream(ColliderStream&&) noexcept = default;
-ColliderStream& ColliderStream::operator=(ColliderStream&&) noexcept = default;
+Stream::Stream(const Input& input, const Options& options)
+    : state_(as_proved([&] { return std::make_unique<State>(input, options); })) {}
+Stream::~Stream() = default;
+Stream::Stream(Stream&&) noexcept = default;
+Stream& Stream::operator=(Stream&&) noexcept = default;
 
-bool ColliderStream::next(std::vector<ColliderFound>& pairs) {
+bool Stream::next(std::vector<StreamedPair>& pairs) {
   return exclusive(state_, kName, [&](State& state) { return state.next(pairs); });
 }
 
-std::uint64_t ColliderStream::decided() const {
+std::uint64_t Stream::decided() const {
   return exclusive(state_, kName, [](const State& state) { return state.decided; });
 }
 
-bool ColliderStream::complete() const {
+bool Stream::complete() const {
   return exclusive(state_, kName, [](const State& state) { return state.complete; });
 }
 
 namespace {
 
-// The enumerations of farcull.h have the order of the internal ones.
+// The enumerations of distance.h have the order of the internal ones.
 static_assert(same(DistanceKind::objects, DistancePairs::objects) &&
               same(DistanceKind::nearest, DistancePairs::nearest) &&
               same(DistanceKind::all, DistancePairs::all));
@@ -283,9 +288,9 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
                       .threads = options.threads};
   if (options.threads > kMostThreads)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
-  if (std::isnan(options.within))
-    throw Error("within", "is no number", "give a distance, or a negative number for no limit");
-  if (options.within >= 0) out.within = options.within;
+  if (options.within && !(*options.within >= 0))
+    throw Error("within", "is no distance", "give a number, 0 or more, or nothing for no limit");
+  out.within = options.within.value_or(out.within);
   if (out.pairs == DistancePairs::all && !std::isfinite(out.within))
     throw Error("within", "is not finite, which pairs of all triangles need",
                 "give a finite distance, 0 or more");
@@ -314,7 +319,7 @@ DistanceAnswer given_out(const Distance& d) {
 struct DistanceFinder::State {
   DistanceFinderOptions given;
   DistanceOptions options;
-  Scene scene;  // of the last call
+  TakenInput taken;  // of the last call
   DistanceMemory memory;
   std::atomic_flag used;
 
@@ -322,16 +327,18 @@ struct DistanceFinder::State {
 };
 
 DistanceFinder::DistanceFinder(const DistanceFinderOptions& options)
-    : state_(translated([&] { return std::make_unique<State>(options); })) {}
+    : state_(as_proved([&] { return std::make_unique<State>(options); })) {}
 DistanceFinder::DistanceFinder() : DistanceFinder(DistanceFinderOptions{}) {}
 DistanceFinder::~DistanceFinder() = default;
 DistanceFinder::DistanceFinder(DistanceFinder&&) noexcept = default;
 DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
 
-std::vector<DistanceAnswer> DistanceFinder::find(const ColliderInput& input) {
+std::vector<DistanceAnswer> DistanceFinder::find(const Input& input) {
   return exclusive(state_, "DistanceFinder", [&](State& state) {
-    take(input, state.given.self, state.given.self_objects, state.scene);
-    const DistanceRecord record = distances(state.scene, state.options, {}, &state.memory);
+    take(input, state.given.self, state.given.self_objects, state.taken);
+    const DistanceRecord record = watched(state.given.may_go_on, [&](const Progress& progress) {
+      return distances(state.taken.scene, state.options, progress, &state.memory);
+    });
     std::vector<DistanceAnswer> out;
     out.reserve(record.distances.size());
     for (const Distance& d : record.distances) out.push_back(given_out(d));
@@ -339,8 +346,7 @@ std::vector<DistanceAnswer> DistanceFinder::find(const ColliderInput& input) {
   });
 }
 
-std::vector<DistanceAnswer> distances(const ColliderInput& input,
-                                      const DistanceFinderOptions& options) {
+std::vector<DistanceAnswer> distances(const Input& input, const DistanceFinderOptions& options) {
   return DistanceFinder(options).find(input);
 }
 

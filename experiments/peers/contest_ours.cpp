@@ -72,20 +72,20 @@ std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
 }
 
 std::vector<TrianglePair> pairs_by_library(const Scene& scene) {
-  static Collider collider(ColliderOptions{.threads = 1});
-  static Collider of_self(ColliderOptions{.threads = 1, .self = true});
+  static Collider collider({.threads = 1});
+  static Collider of_self({.threads = 1, .self = true});
   const bool self = !scene.objects.empty() && scene.objects.front().self;
   std::vector<std::uint32_t> triangles, starts;
   for (const auto& triangle : scene.triangles)
     triangles.insert(triangles.end(), triangle.begin(), triangle.end());
   for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const ColliderInput input{.vertices = {scene.vertices.front().data(), 3 * scene.vertices.size()},
-                            .triangles = triangles,
-                            .object_starts = starts};
-  const ColliderResult result = (self ? of_self : collider).find(input);
+  const Input input{.vertices = {scene.vertices.front().data(), 3 * scene.vertices.size()},
+                    .triangles = triangles,
+                    .object_starts = starts};
+  const Result result = (self ? of_self : collider).find(input);
   std::vector<TrianglePair> out = touching_strangers(scene);
   for (const auto* some : {&result.pairs, &result.neighbour_pairs}) {
-    for (const ColliderPair& pair : *some) out.push_back({pair.a, pair.b});
+    for (const Pair& pair : *some) out.push_back({pair.a, pair.b});
   }
   return out;
 }

@@ -66,7 +66,7 @@ bool speaks_of(const ContestantCard& card, const Scene& scene, const TrianglePai
   if (!card.degenerate && (degenerate(a) || degenerate(b))) return false;
   if (!collides) return card.margin == 0 || !within(a, b, card.margin);
   if (card.means == Means::closed) return true;
-  return contact_of(a, b) == Contact::penetrating;
+  return penetrate(a, b);
 }
 
 }  // namespace
@@ -87,8 +87,7 @@ std::optional<bool> promised(const ContestantCard& card, const SuitePair& pair) 
   const bool label = collides(pair.kind);
   if (!label && card.margin > 0 && within(pair.a, pair.b, card.margin)) return {};
   if (card.means == Means::crossing && label && pair.kind != SuiteKind::crossing &&
-      (pair.kind != SuiteKind::neighbours_meet ||
-       contact_of(pair.a, pair.b) != Contact::penetrating))
+      (pair.kind != SuiteKind::neighbours_meet || !penetrate(pair.a, pair.b)))
     return {};
   return label;
 }

@@ -212,7 +212,7 @@ Given::Given(const py::array& vertices, const py::array& triangles, const py::ar
   }
 }
 
-ColliderInput Given::input(Copies& copies) const {
+Input Given::input(Copies& copies) const {
   const std::span<const double> vertices = vertices_.doubles(copies.vertices);
   const std::span<const std::int64_t> wide = triangles_.wide();
   if (!wide.empty()) return {vertices, {}, starts_, wide};

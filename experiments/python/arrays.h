@@ -135,7 +135,7 @@ class Given {
   Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts);
   /// Overwrites `copies` if the library cannot use the arrays directly. The input is valid as long
   /// as this object exists and the copies exist unchanged.
-  ColliderInput input(Copies& copies) const;
+  Input input(Copies& copies) const;
 
  private:
   Rows vertices_, triangles_;
@@ -185,7 +185,7 @@ struct KeptScene {
 };
 
 /// The question to a collider or a stream, from the dictionary of _collide.py.
-ColliderOptions options_of(const py::dict& question);
+Options options_of(const py::dict& question);
 
 void add_collider(py::module_& module);
 void add_distances(py::module_& module);

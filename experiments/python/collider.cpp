@@ -9,11 +9,13 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "experiments/library/distance.h"
 #include "experiments/python/arrays.h"
 #include "verify/contact.h"
 
@@ -22,20 +24,20 @@ namespace {
 
 using namespace py::literals;
 
-ColliderDevice device_of(const std::string& name) {
-  if (name == "cpu") return ColliderDevice::cpu;
-  if (name == "gl") return ColliderDevice::gl;
-  if (name == "best") return ColliderDevice::best;
+Device device_of(const std::string& name) {
+  if (name == "cpu") return Device::cpu;
+  if (name == "gl") return Device::gl;
+  if (name == "best") return Device::best;
   raise("device", "'" + name + "' is no choice", "give cpu, gl or best", true);
 }
 
-py::dict report_of(const ColliderReport& report) {
+py::dict report_of(const Report& report) {
   py::list views, stages;
-  for (const ColliderReport::View& v : report.views) {
+  for (const Report::View& v : report.views) {
     views.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
                           "width"_a = v.width, "height"_a = v.height));
   }
-  for (const ColliderReport::Stage& s : report.stages) {
+  for (const Report::Stage& s : report.stages) {
     stages.append(py::dict("name"_a = s.name, "ran"_a = s.ran, "reason"_a = s.reason, "ms"_a = s.ms,
                            "entered"_a = s.in, "left"_a = s.out, "unit"_a = s.unit));
   }
@@ -49,17 +51,17 @@ py::dict report_of(const ColliderReport& report) {
                   "stages"_a = std::move(stages));
 }
 
-// What is said of how each pair meets: the arrays of kinds and of segments, or None. Contacts: any
-// range of ColliderContact with a size.
-template <class Contacts>
-std::pair<py::object, py::object> contact_arrays(const Contacts& contacts, ColliderContacts asked) {
-  if (asked == ColliderContacts::none) return {py::none(), py::none()};
-  if (asked == ColliderContacts::kinds) return {kind_array(contacts), py::none()};
+// What is said of how each pair meets: the arrays of kinds and of segments, or None. Range: any
+// range of Contact with a size.
+template <class Range>
+std::pair<py::object, py::object> contact_arrays(const Range& contacts, Contacts asked) {
+  if (asked == Contacts::none) return {py::none(), py::none()};
+  if (asked == Contacts::kinds) return {kind_array(contacts), py::none()};
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   py::array_t<double> segments(
       {static_cast<py::ssize_t>(contacts.size()), py::ssize_t{2}, py::ssize_t{3}});
   double* to = segments.mutable_data();
-  for (const ColliderContact& contact : contacts) {
+  for (const Contact& contact : contacts) {
     const bool segment = contact.dimension == 0 || contact.dimension == 1;
     for (const std::array<double, 3>& end : contact.ends) {
       for (const double x : end) *to++ = segment ? x : kNone;
@@ -68,7 +70,7 @@ std::pair<py::object, py::object> contact_arrays(const Contacts& contacts, Colli
   return {kind_array(contacts), segments};
 }
 
-py::dict result_of(const ColliderResult& result, ColliderContacts asked) {
+py::dict result_of(const Result& result, Contacts asked) {
   const auto [kinds, segments] = contact_arrays(result.contacts, asked);
   const auto [of_neighbours, between] = contact_arrays(result.neighbour_contacts, asked);
   return py::dict("pairs"_a = pair_array(result.pairs),
@@ -86,10 +88,10 @@ void require_process(pid_t maker, const char* made) {
 }
 
 // A Collider or a DistanceFinder, for one thread at a time and for one process.
-template <class Finder, class Options>
+template <class Finder, class Asked>
 class KeptFinder {
  public:
-  KeptFinder(const char* name, Options given)
+  KeptFinder(const char* name, Asked given)
       : options(std::move(given)), name_(name), process_(::getpid()) {
     beside([&] { finder_ = std::make_unique<Finder>(options); });
   }
@@ -101,7 +103,7 @@ class KeptFinder {
     return answer_beside([&] { return finder_->find(given.input(copies_)); });
   }
 
-  const Options options;
+  const Asked options;
 
  private:
   const char* name_;
@@ -111,7 +113,7 @@ class KeptFinder {
   std::unique_ptr<Finder> finder_;
 };
 
-using KeptCollider = KeptFinder<Collider, ColliderOptions>;
+using KeptCollider = KeptFinder<Collider, Options>;
 using KeptDistances = KeptFinder<DistanceFinder, DistanceFinderOptions>;
 
 DistanceKind kind_of(const std::string& name) {
@@ -168,13 +170,13 @@ py::tuple names_of(const Names& names) {
 
 }  // namespace
 
-ColliderOptions options_of(const py::dict& question) {
+Options options_of(const py::dict& question) {
   return {.threads = question["threads"].cast<unsigned>(),
           .self = question["all_objects"].cast<bool>(),
           .self_objects = question["self_objects"].cast<std::vector<bool>>(),
           .clearance = question["clearance"].cast<double>(),
           .neighbours = question["neighbours"].cast<bool>(),
-          .contacts = static_cast<ColliderContacts>(question["contacts"].cast<int>()),
+          .contacts = static_cast<Contacts>(question["contacts"].cast<int>()),
           .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
           .limit = question["limit"].cast<std::uint64_t>()};
 }
@@ -183,10 +185,10 @@ void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
       .def(py::init([](const py::dict& question, const std::string& device,
                        const std::string& views, int resolution) {
-             ColliderOptions options = options_of(question);
+             Options options = options_of(question);
              options.device = device_of(device);
-             options.views = views;
-             options.resolution = resolution;
+             options.advanced.views = views;
+             options.advanced.resolution = resolution;
              return std::make_unique<KeptCollider>("Collider", options);
            }),
            py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
@@ -196,10 +198,10 @@ void add_collider(py::module_& module) {
         return result_of(kept.find(vertices, triangles, starts), kept.options.contacts);
       });
   // Codes of kinds are indices into this tuple, for both enumerations.
-  static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());
+  static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
   py::tuple kinds(kContactKinds.size());
   for (std::size_t k = 0; k < kContactKinds.size(); ++k)
-    kinds[k] = to_string(static_cast<ColliderContactKind>(k));
+    kinds[k] = to_string(static_cast<Contact::Kind>(k));
   module.attr("kinds") = kinds;
 }
 
@@ -207,14 +209,15 @@ void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
       .def(py::init([](const std::string& kind, std::size_t k, double within, bool self,
                        const std::vector<bool>& self_objects, bool inside, unsigned threads) {
-        return std::make_unique<KeptDistances>("DistanceFinder",
-                                               DistanceFinderOptions{.kind = kind_of(kind),
-                                                                     .k = k,
-                                                                     .within = within,
-                                                                     .self = self,
-                                                                     .self_objects = self_objects,
-                                                                     .inside = inside,
-                                                                     .threads = threads});
+        return std::make_unique<KeptDistances>(
+            "DistanceFinder",
+            DistanceFinderOptions{.kind = kind_of(kind),
+                                  .k = k,
+                                  .within = within < 0 ? std::optional<double>() : within,
+                                  .self = self,
+                                  .self_objects = self_objects,
+                                  .inside = inside,
+                                  .threads = threads});
       }))
       .def("find", [](KeptDistances& kept, const py::array& vertices, const py::array& triangles,
                       const py::array& starts) {
@@ -234,12 +237,12 @@ namespace {
 class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
-             const ColliderOptions& options)
+             const Options& options)
       : process_(::getpid()), contacts_(options.contacts) {
     const Given given(vertices, triangles, starts);
     beside([&] {
       Copies copies;
-      stream_ = std::make_unique<ColliderStream>(given.input(copies), options);
+      stream_ = std::make_unique<Stream>(given.input(copies), options);
     });
   }
 
@@ -261,10 +264,10 @@ class KeptStream {
     }
     py::array_t<bool> neighbours(static_cast<py::ssize_t>(found_.size()));
     std::ranges::transform(found_, neighbours.mutable_data(), std::identity(),
-                           &ColliderFound::neighbours);
+                           &StreamedPair::neighbours);
     const auto [kinds, segments] =
-        contact_arrays(std::views::transform(found_, &ColliderFound::contact), contacts_);
-    return py::make_tuple(pair_array(std::views::transform(found_, &ColliderFound::pair)),
+        contact_arrays(std::views::transform(found_, &StreamedPair::contact), contacts_);
+    return py::make_tuple(pair_array(std::views::transform(found_, &StreamedPair::pair)),
                           neighbours, kinds, segments);
   }
 
@@ -276,11 +279,11 @@ class KeptStream {
 
  private:
   pid_t process_;
-  ColliderContacts contacts_;
+  Contacts contacts_;
   bool given_ = false;  // a call began, and its pairs were not taken
   std::atomic_flag used_;
-  std::unique_ptr<ColliderStream> stream_;
-  std::vector<ColliderFound> found_;
+  std::unique_ptr<Stream> stream_;
+  std::vector<StreamedPair> found_;
   std::uint64_t decided_ = 0;
   bool complete_ = false;
 };

@@ -153,8 +153,6 @@ void set_from(const std::string& where, const std::string& reason, const std::st
 void translate(std::exception_ptr failure) {
   try {
     if (failure) std::rethrow_exception(failure);
-  } catch (const ColliderError& error) {
-    set_from(error.where, error.reason, error.remedy);
   } catch (const Error& error) {
     const std::string line = error.line > 0 ? ":" + std::to_string(error.line) : "";
     set_from(error.where + line, error.reason, error.remedy);

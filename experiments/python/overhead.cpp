@@ -33,7 +33,7 @@ double used_ms() {
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-std::size_t pairs_of(const farcull::ColliderResult& result) { return result.pairs.size(); }
+std::size_t pairs_of(const farcull::Result& result) { return result.pairs.size(); }
 
 }  // namespace
 
@@ -42,15 +42,15 @@ int main(int, char** arguments) {
   const std::array vertices = {read<double>(folder + "V0"), read<double>(folder + "V1")};
   const auto triangles = read<std::uint32_t>(folder + "F");
   const auto starts = read<std::uint32_t>(folder + "S");
-  const farcull::ColliderOptions options{.threads = 1};
+  const farcull::Options options{.threads = 1};
   farcull::Collider kept(options);
   std::string call;
   std::size_t which = 0;
   while (std::cin >> call >> which) {
-    const farcull::ColliderInput input{vertices.at(which), triangles, starts};
+    const farcull::Input input{vertices.at(which), triangles, starts};
     const double begun = used_ms();
-    const std::size_t pairs = call == "find" ? pairs_of(kept.find(input))
-                                             : pairs_of(farcull::Collider(options).find(input));
+    const std::size_t pairs =
+        call == "find" ? pairs_of(kept.find(input)) : pairs_of(farcull::collide(input, options));
     std::cout << std::setprecision(9) << used_ms() - begun << ' ' << pairs << std::endl;
   }
 }

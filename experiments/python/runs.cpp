@@ -41,9 +41,10 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
                  const std::vector<bool>& self_objects) {
   const Given given(vertices, triangles, starts);
   return answer_beside([&] {
-    Scene scene;
+    TakenInput taken;
     Copies copies;
-    take(given.input(copies), self, self_objects, scene, nullptr, false);
+    take(given.input(copies), self, self_objects, taken, nullptr, false);
+    Scene& scene = taken.scene;
     scene.name = name;
     if (!names.empty() && names.size() != scene.objects.size()) {
       throw Error("names",

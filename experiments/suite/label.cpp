@@ -212,7 +212,7 @@ SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
   bool found = false;
   const SuiteKind kind = kind_of_meeting(a, b, found);
   require_equal(meets, found, "CGAL's predicates and the points in rational numbers", where, line);
-  require_equal(contact_of(a, b) == Contact::penetrating, kind == SuiteKind::crossing,
+  require_equal(penetrate(a, b), kind == SuiteKind::crossing,
                 "CGAL's predicates and rational numbers, about whether the triangles cross,", where,
                 line);
   return kind;

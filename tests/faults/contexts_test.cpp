@@ -13,7 +13,7 @@
 namespace farcull {
 namespace {
 
-const ColliderOptions kGl{.device = ColliderDevice::gl};
+const Options kGl{.device = Device::gl};
 
 const lab::FlatScene& spheres() {
   static const lab::FlatScene scene(make_builtin_scene("two-spheres"), false);
@@ -92,7 +92,7 @@ TEST(Contexts, TheCallersContextStaysCurrent) {
       EXPECT_TRUE(host.is_current());
       EXPECT_THROW(
           collider.find({.vertices = std::array{0.0}, .triangles = {}, .object_starts = {}}),
-          ColliderError);
+          Error);
       EXPECT_TRUE(host.is_current());
       GlContext::list_devices();
       EXPECT_TRUE(host.is_current());
@@ -149,8 +149,8 @@ TEST(ContextsTwin, AContextThatIsNotMadeCurrentIsNoticed) {
   Collider a(kGl), b(kGl);
   const auto before = epoxy_eglMakeCurrent;
   epoxy_eglMakeCurrent = make_nothing_current;
-  EXPECT_THROW(spheres().found_by(a), ColliderError);
-  EXPECT_THROW(spheres().found_by(b), ColliderError);
+  EXPECT_THROW(spheres().found_by(a), Error);
+  EXPECT_THROW(spheres().found_by(b), Error);
   epoxy_eglMakeCurrent = before;
   EXPECT_TRUE(spheres().found_by(a));
   EXPECT_TRUE(spheres().found_by(b));

@@ -26,9 +26,7 @@ class PairsFaults : public testing::TestWithParam<bool> {
   const char* const name = "spheres:1000";
   const lab::FlatScene scene{make_builtin_scene(name), GetParam()};
   std::optional<Collider> collider;
-  void open() {
-    collider.emplace(ColliderOptions{.device = ColliderDevice::gl, .self = GetParam()});
-  }
+  void open() { collider.emplace(Options{.device = Device::gl, .self = GetParam()}); }
 };
 
 TEST_P(PairsFaults, EveryLostCallOfAFirstFindIsNoticed) {

@@ -18,15 +18,15 @@ struct Flat {
     for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
     for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
   }
-  ColliderInput input() const { return {vertices, triangles, starts}; }
+  Input input() const { return {vertices, triangles, starts}; }
 };
 
-/// Where the call throws a ColliderError, and its reason; both "nothing was thrown" without one.
+/// Where the call throws an Error, and its reason; both "nothing was thrown" without one.
 template <class Call>
 std::array<std::string, 2> refusal(const Call& call) {
   try {
     call();
-  } catch (const ColliderError& error) {
+  } catch (const Error& error) {
     EXPECT_FALSE(error.reason.empty() || error.remedy.empty());
     EXPECT_TRUE(has_text(error.what(), error.reason));
     return {error.where, error.reason};
@@ -38,7 +38,7 @@ namespace lab {
 
 /// The same with what collides in it.
 struct FlatScene : Flat {
-  std::vector<ColliderPair> pairs, neighbour_pairs;  // the truth, by the method `exact`
+  std::vector<Pair> pairs, neighbour_pairs;  // the truth, by the method `exact`
 
   /// self: every object is tested against itself as well.
   FlatScene(Scene scene, bool self) : Flat(scene) {
@@ -48,7 +48,7 @@ struct FlatScene : Flat {
     for (const TrianglePair& p : exact.neighbour_pairs) neighbour_pairs.push_back({p.a, p.b});
   }
   bool found_by(Collider& collider) const {
-    const ColliderResult found = collider.find(input());
+    const Result found = collider.find(input());
     return found.pairs == pairs && found.neighbour_pairs == neighbour_pairs;
   }
 };

@@ -197,7 +197,7 @@ template <class Kind>
 int misfits(const Triangle& a, const Triangle& b, const Kind& kind) {
   const ContactKind found = kind(a, b);
   return (found == ContactKind::apart) == intersects(a, b) ||
-         (found == ContactKind::crossing) != (contact_of(a, b) == Contact::penetrating);
+         (found == ContactKind::crossing) != penetrate(a, b);
 }
 
 TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {

@@ -14,7 +14,7 @@ const std::vector<double> kPoints = {0, 0, 0, 8, 0, 0, 0, 8, 0, 1,  1, -1, 1,  1
                                      4, 2, 0, 4, 2, 3, 5, 2, 3, 90, 0, 0,  91, 0, 0, 90, 1, 0};
 const std::vector<std::uint32_t> kTriangles = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 const std::vector<std::uint32_t> kStarts = {0, 1, 2, 3};
-const ColliderInput kFour = {kPoints, kTriangles, kStarts};
+const Input kFour = {kPoints, kTriangles, kStarts};
 
 /// Four objects of triangles between the points of a grid: many touch, are neighbours, lie in one
 /// plane, or are degenerate.
@@ -33,46 +33,43 @@ Scene tangled(std::uint64_t seed) {
 }
 
 /// All pairs of a result in order, neighbours among them.
-std::vector<ColliderPair> in_order(const ColliderResult& result) {
-  std::vector<ColliderPair> out;
+std::vector<Pair> in_order(const Result& result) {
+  std::vector<Pair> out;
   std::merge(result.pairs.begin(), result.pairs.end(), result.neighbour_pairs.begin(),
              result.neighbour_pairs.end(), std::back_inserter(out));
   return out;
 }
 
 TEST(LibraryContacts, AreSaidOfEachPair) {
-  const ColliderResult silent = Collider().find(kFour);
+  const Result silent = Collider().find(kFour);
   EXPECT_TRUE(silent.contacts.empty());
-  const ColliderResult kinds = Collider({.contacts = ColliderContacts::kinds}).find(kFour);
-  ASSERT_EQ(kinds.pairs, (std::vector<ColliderPair>{{0, 1}, {0, 2}}));
+  const Result kinds = Collider({.contacts = Contacts::kinds}).find(kFour);
+  ASSERT_EQ(kinds.pairs, (std::vector<Pair>{{0, 1}, {0, 2}}));
   EXPECT_EQ(kinds.pairs, silent.pairs);
-  EXPECT_EQ(kinds.contacts[0].kind, ColliderContactKind::crossing);
-  EXPECT_EQ(kinds.contacts[1].kind, ColliderContactKind::touch_vertex);
+  EXPECT_EQ(kinds.contacts[0].kind, Contact::Kind::crossing);
+  EXPECT_EQ(kinds.contacts[1].kind, Contact::Kind::touch_vertex);
   EXPECT_EQ(kinds.contacts[0].dimension, -1);
-  const ColliderResult all = Collider({.contacts = ColliderContacts::segments}).find(kFour);
-  EXPECT_EQ(all.contacts[0],
-            (ColliderContact{ColliderContactKind::crossing, 1, {{{1, 1, 0}, {1, 3, 0}}}}));
-  EXPECT_EQ(all.contacts[1],
-            (ColliderContact{ColliderContactKind::touch_vertex, 0, {{{4, 2, 0}, {4, 2, 0}}}}));
+  const Result all = Collider({.contacts = Contacts::segments}).find(kFour);
+  EXPECT_EQ(all.contacts[0], (Contact{Contact::Kind::crossing, 1, {{{1, 1, 0}, {1, 3, 0}}}}));
+  EXPECT_EQ(all.contacts[1], (Contact{Contact::Kind::touch_vertex, 0, {{{4, 2, 0}, {4, 2, 0}}}}));
 }
 
 TEST(LibraryContacts, OfAClearanceAreApart) {
-  const ColliderOptions options{.clearance = 1000, .contacts = ColliderContacts::kinds};
-  const ColliderResult found = Collider(options).find(kFour);
+  const Options options{.clearance = 1000, .contacts = Contacts::kinds};
+  const Result found = Collider(options).find(kFour);
   ASSERT_EQ(found.pairs.size(), 6u);
-  EXPECT_EQ(found.contacts[0].kind, ColliderContactKind::crossing);
-  EXPECT_EQ(found.contacts[2].kind, ColliderContactKind::apart);
+  EXPECT_EQ(found.contacts[0].kind, Contact::Kind::crossing);
+  EXPECT_EQ(found.contacts[2].kind, Contact::Kind::apart);
 }
 
 TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
   const Scene scene = tangled(1);
-  const ColliderOptions options{.self = true, .contacts = ColliderContacts::segments};
-  const ColliderResult found = Collider(options).find(Flat(scene).input());
+  const Options options{.self = true, .contacts = Contacts::segments};
+  const Result found = Collider(options).find(Flat(scene).input());
   ASSERT_EQ(found.contacts.size(), found.pairs.size());
   ASSERT_EQ(found.neighbour_contacts.size(), found.neighbour_pairs.size());
   EXPECT_FALSE(found.neighbour_pairs.empty());
-  const auto expect = [&](const std::vector<ColliderPair>& pairs,
-                          const std::vector<ColliderContact>& contacts) {
+  const auto expect = [&](const std::vector<Pair>& pairs, const std::vector<Contact>& contacts) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const ContactShape shape =
           contact_shape(scene.corners(pairs[k].a), scene.corners(pairs[k].b));
@@ -88,10 +85,10 @@ TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
 }
 
 /// The pairs whose objects are not these two.
-std::vector<ColliderPair> without(const Scene& scene, std::vector<ColliderPair> pairs,
-                                  const std::vector<std::array<std::uint32_t, 2>>& ignored) {
+std::vector<Pair> without(const Scene& scene, std::vector<Pair> pairs,
+                          const std::vector<std::array<std::uint32_t, 2>>& ignored) {
   const std::vector<std::uint32_t> owner = owners(scene);
-  std::erase_if(pairs, [&](const ColliderPair& pair) {
+  std::erase_if(pairs, [&](const Pair& pair) {
     return std::ranges::any_of(ignored, [&](const auto& two) {
       return std::minmax(owner[pair.a], owner[pair.b]) == std::minmax(two[0], two[1]);
     });
@@ -102,14 +99,14 @@ std::vector<ColliderPair> without(const Scene& scene, std::vector<ColliderPair> 
 TEST(LibraryIgnore, AnswersAsIfItWereFilteredAfterwards) {
   const Scene scene = tangled(2);
   const Flat flat(scene);
-  const ColliderResult all = Collider({.self = true}).find(flat.input());
+  const Result all = Collider({.self = true}).find(flat.input());
   const std::vector<std::array<std::uint32_t, 2>> ignored = {{3, 1}, {0, 1}, {1, 3}};
-  const ColliderResult found = Collider({.self = true, .ignore = ignored}).find(flat.input());
+  const Result found = Collider({.self = true, .ignore = ignored}).find(flat.input());
   EXPECT_EQ(found.pairs, without(scene, all.pairs, ignored));
   EXPECT_EQ(found.neighbour_pairs, all.neighbour_pairs);  // these are of one object
   EXPECT_LT(found.report.candidates, all.report.candidates);
   // The twin: one pair of objects less is noticed.
-  const ColliderResult fewer = Collider({.self = true, .ignore = {{0, 1}}}).find(flat.input());
+  const Result fewer = Collider({.self = true, .ignore = {{0, 1}}}).find(flat.input());
   EXPECT_NE(fewer.pairs, found.pairs);
 }
 
@@ -117,17 +114,16 @@ TEST(LibraryLimit, GivesTheFirstPairsAndDecidesNoMoreThanItNeeds) {
   for (const Scene& scene : {tangled(3), make_builtin_scene("two-tori")}) {
     const std::string& name = scene.name;
     const Flat flat(scene);
-    const ColliderResult all = Collider({.self = true}).find(flat.input());
+    const Result all = Collider({.self = true}).find(flat.input());
     EXPECT_TRUE(all.complete);
-    const std::vector<ColliderPair> merged = in_order(all);
+    const std::vector<Pair> merged = in_order(all);
     ASSERT_GT(merged.size(), 20u);
     for (const std::size_t limit :
          {std::size_t{1}, std::size_t{17}, merged.size() - 1, merged.size(), merged.size() + 1}) {
-      const ColliderResult found =
+      const Result found =
           Collider({.threads = 1, .self = true, .limit = limit}).find(flat.input());
       const auto end = merged.begin() + static_cast<long>(std::min(limit, merged.size()));
-      EXPECT_EQ(in_order(found), std::vector<ColliderPair>(merged.begin(), end))
-          << name << " " << limit;
+      EXPECT_EQ(in_order(found), std::vector<Pair>(merged.begin(), end)) << name << " " << limit;
       EXPECT_EQ(found.report.candidates, all.report.candidates);
       EXPECT_LE(found.report.decided, found.report.candidates);
       // One pair less than there are is not complete, whether all candidates were decided or not.

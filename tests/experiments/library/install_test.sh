@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The installed library as a stranger uses it: docs/example, built by CMake and by pkg-config.
+# The installed library as a stranger uses it: docs/example, built by CMake and by pkg-config, and with what the
+# Debian package holds.
 #   tests/experiments/library/install_test.sh BUILD_FOLDER SOURCE_FOLDER CXX CMAKE
 # Installs to a folder of its own, moves that, and leaves nothing.
 set -euo pipefail
@@ -15,11 +16,11 @@ fail() {
 
 "$cmake" --install "$build" --prefix "$work/first" >/dev/null
 mv "$work/first" "$work/prefix"
-[[ $(cd "$work/prefix/include" && find . -type f) == ./farcull/farcull.h ]] ||
-  fail 'include/ holds more than one header'
-if grep -nE '#include [<"](CGAL|Eigen|GL|epoxy|core|verify|offsets)' \
-  "$work/prefix/include/farcull/farcull.h"; then
-  fail 'the header includes what users do not have'
+headers=$(cd "$work/prefix/include/farcull" && echo *)
+[[ $headers == 'distance.h eigen.h error.h farcull.h' ]] || fail "the headers are $headers"
+if grep -nE '#include [<"](CGAL|GL|epoxy|core|verify|offsets|experiments)|spell' -r "$work/prefix/include" ||
+  grep -n 'include <Eigen' "$work/prefix/include/farcull/"{distance,error,farcull}.h; then
+  fail 'a header includes what users do not have'
 fi
 if grep -rnF -e "$build" -e "$source" "$work/prefix" --include='*.cmake' --include='*.pc' \
   --include='*.h'; then
@@ -38,10 +39,16 @@ grep -q LGPL-3.0-or-later "$share/doc/farcull/LICENSE" || fail 'the licence is n
 "$work/prefix/bin/farcull" man | cmp -s - "$share/man/man1/farcull.1" ||
   fail 'the manual is not that of the program'
 
-"$cmake" -S "$source/docs/example" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$work/prefix" \
-  -DCMAKE_CXX_COMPILER="$cxx" >"$work/log" || fail "$(cat "$work/log")"
-"$cmake" --build "$work/by_cmake" >"$work/log" || fail "$(cat "$work/log")"
-"$work/by_cmake/example" >"$work/cmake.txt"
+# by_cmake PREFIX: prints what the example says that find_package() builds with the library below the prefix.
+by_cmake() {
+  rm -rf "$work/by_cmake"
+  "$cmake" -S "$source/docs/example" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$1" -DCMAKE_CXX_COMPILER="$cxx" \
+    >"$work/log" || fail "$(cat "$work/log")"
+  grep -q "farcull_DIR:PATH=$1/" "$work/by_cmake/CMakeCache.txt" || fail "another farcull than in $1 was found"
+  "$cmake" --build "$work/by_cmake" >"$work/log" || fail "$(cat "$work/log")"
+  "$work/by_cmake/example"
+}
+by_cmake "$work/prefix" >"$work/cmake.txt"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name farcull.pc)")
 export PKG_CONFIG_PATH
@@ -51,8 +58,26 @@ export PKG_CONFIG_PATH
 "$work/example" >"$work/pkg_config.txt"
 
 cmp "$work/cmake.txt" "$work/pkg_config.txt" || fail 'the two examples differ'
-expected=$'frame 0, on cpu: 1\n  0 and 1
+expected="farcull $(pkg-config --modversion farcull)"$'
+pairs: 1
 frame 1, on cpu: 1\n  0 and 1
-frame 2, on cpu: 0'
+frame 2, on cpu: 0
+frame 3, on cpu: 0
+distance: 1.19'
 [[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
+
+# The package. CPack would build everything first; with this generator it takes what is built.
+if command -v dpkg-shlibdeps >/dev/null; then
+  (cd "$build" && "$(dirname "$cmake")/cpack" -G DEB -B "$work/deb" -D CPACK_CMAKE_GENERATOR=Ninja) >"$work/log" 2>&1 ||
+    fail "$(cat "$work/log")"
+  deb=("$work"/deb/*.deb)
+  dpkg-deb -x "${deb[0]}" "$work/root"
+  by_cmake "$work/root/usr" | cmp - "$work/cmake.txt" || fail 'the example of the package differs'
+  "$work/root/usr/bin/farcull" --version >/dev/null
+  depends=$(dpkg-deb -f "${deb[0]}" Depends)
+  for package in libgmp-dev libmpfr-dev libhwy-dev pkg-config 'libc6 '; do
+    [[ $depends == *"$package"* ]] || fail "the package does not depend on $package: $depends"
+  done
+  [[ -s $work/root/usr/share/doc/farcull/copyright ]] || fail 'the package has no copyright file'
+fi
 echo "install_test: the example was built by CMake and by pkg-config"

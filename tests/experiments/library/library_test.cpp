@@ -1,6 +1,6 @@
 // The library as its users see it, held against the method `exact`.
 #include "core/base/random.h"
-#include "experiments/library/farcull.h"
+#include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
@@ -12,9 +12,9 @@
 namespace farcull {
 namespace {
 
-std::vector<TrianglePair> pairs_of(const std::vector<ColliderPair>& pairs) {
+std::vector<TrianglePair> pairs_of(const std::vector<Pair>& pairs) {
   std::vector<TrianglePair> out;
-  for (const ColliderPair& pair : pairs) out.push_back({pair.a, pair.b});
+  for (const Pair& pair : pairs) out.push_back({pair.a, pair.b});
   return out;
 }
 
@@ -26,7 +26,7 @@ Scene self_scene(const std::string& name) {
 
 void expect_exact(Collider& collider, const Scene& scene, double clearance = 0) {
   const Flat flat(scene);
-  const ColliderResult found = collider.find(flat.input());
+  const Result found = collider.find(flat.input());
   const ExactResult exact = all_colliding_pairs(scene, {.clearance = clearance});
   EXPECT_EQ(pairs_of(found.pairs), exact.pairs) << scene.name;
   EXPECT_EQ(pairs_of(found.neighbour_pairs), exact.neighbour_pairs) << scene.name;
@@ -67,29 +67,28 @@ TEST(Library, ClearanceFindsWhatIsNear) {
 
 TEST(Library, TheAnswerIsOnlyThatOfTheInput) {
   const Flat flat(make_builtin_scene("random-soup"));
-  const ColliderResult usual = Collider().find(flat.input());
-  for (const ColliderOptions& options :
-       {ColliderOptions{.threads = 1}, ColliderOptions{.views = "1:2:3,-y"},
-        ColliderOptions{.resolution = 7}, ColliderOptions{.neighbours = false},
-        ColliderOptions{.device = ColliderDevice::best}}) {
+  const Result usual = Collider().find(flat.input());
+  for (const Options& options : {Options{.threads = 1}, Options{.advanced = {.views = "1:2:3,-y"}},
+                                 Options{.advanced = {.resolution = 7}},
+                                 Options{.neighbours = false}, Options{.device = Device::best}}) {
     Collider collider(options);
-    const ColliderResult found = collider.find(flat.input());
+    const Result found = collider.find(flat.input());
     EXPECT_EQ(found.pairs, usual.pairs);
     EXPECT_FALSE(found.report.device_reason.empty());
-    if (options.views != "auto") {
+    if (options.advanced.views != "auto") {
       EXPECT_EQ(found.report.views[0].name, "1:2:3");
       EXPECT_EQ(found.report.views.size(), 2u);
     }
-    if (options.resolution > 0) {
-      EXPECT_LE(found.report.views[0].width, options.resolution + 5);
+    if (options.advanced.resolution > 0) {
+      EXPECT_LE(found.report.views[0].width, options.advanced.resolution + 5);
     }
   }
 }
 
 TEST(Library, NeighboursAreOnlyCountedWhereNobodyAsksForThem) {
   const Flat flat(make_builtin_scene("two-spheres"));
-  const ColliderResult all = Collider({.self = true}).find(flat.input());
-  const ColliderResult fewer = Collider({.self = true, .neighbours = false}).find(flat.input());
+  const Result all = Collider({.self = true}).find(flat.input());
+  const Result fewer = Collider({.self = true, .neighbours = false}).find(flat.input());
   EXPECT_EQ(fewer.pairs, all.pairs);
   EXPECT_TRUE(fewer.neighbour_pairs.empty());
   EXPECT_EQ(fewer.report.neighbours, all.report.neighbours);
@@ -107,14 +106,14 @@ TEST(Library, WhatIsMisunderstoodIsAnErrorWithARemedy) {
     const auto triangles = one["triangles"].get<std::vector<std::uint32_t>>();
     const auto starts = one["object_starts"].get<std::vector<std::uint32_t>>();
     const bool self = one["self"].get<bool>();
-    const ColliderInput input{vertices, triangles, starts};
+    const Input input{vertices, triangles, starts};
     const auto expect = [&](const auto& call) {
       const auto [where, reason] = refusal(call);
       EXPECT_EQ(where, one.value("where", "nothing was thrown"));
       EXPECT_TRUE(has_text(reason, one.value("reason", "nothing was thrown"))) << reason;
     };
     expect([&] { Collider({.self = self}).find(input); });
-    expect([&] { ColliderStream(input, {.self = self}); });
+    expect([&] { Stream(input, {.self = self}); });
     expect([&] { distances(input, {.self = self}); });
   }
 }
@@ -126,7 +125,7 @@ TEST(Library, FramesAreAsFresh) {
   Flat flat(make_builtin_scene("two-spheres"));
   Collider collider;
   std::size_t changes = 0;
-  std::vector<ColliderPair> last;
+  std::vector<Pair> last;
   for (int frame = 0; frame < 40; ++frame) {
     const std::size_t at = 3 * random.below(flat.vertices.size() / 3);
     switch (random.below(7)) {
@@ -139,15 +138,13 @@ TEST(Library, FramesAreAsFresh) {
         break;
       case 2: {  // refused, and refused again, though it is what was there before
         const double good = std::exchange(flat.vertices[at], HUGE_VAL);
-        for (int twice = 0; twice < 2; ++twice)
-          EXPECT_THROW(collider.find(flat.input()), ColliderError);
+        for (int twice = 0; twice < 2; ++twice) EXPECT_THROW(collider.find(flat.input()), Error);
         flat.vertices[at] = good;
         break;
       }
       case 3: {
         const std::uint32_t good = std::exchange(flat.triangles[at], 5124u);
-        for (int twice = 0; twice < 2; ++twice)
-          EXPECT_THROW(collider.find(flat.input()), ColliderError);
+        for (int twice = 0; twice < 2; ++twice) EXPECT_THROW(collider.find(flat.input()), Error);
         flat.triangles[at] = good;
         break;
       }
@@ -158,10 +155,10 @@ TEST(Library, FramesAreAsFresh) {
           flat.vertices[k] += 0.05 * random.between(-1, 1);
     }
     const std::vector<std::int64_t> wide(flat.triangles.begin(), flat.triangles.end());
-    const ColliderResult found = random.below(2) == 0
-                                     ? collider.find(flat.input())
-                                     : collider.find({flat.vertices, {}, flat.starts, wide});
-    const ColliderResult fresh = Collider().find(flat.input());
+    const Result found = random.below(2) == 0
+                             ? collider.find(flat.input())
+                             : collider.find({flat.vertices, {}, flat.starts, wide});
+    const Result fresh = Collider().find(flat.input());
     ASSERT_EQ(found.pairs, fresh.pairs) << frame;
     ASSERT_EQ(found.neighbour_pairs, fresh.neighbour_pairs) << frame;
     changes += found.pairs != last;
@@ -178,18 +175,18 @@ TEST(Library, ACallAfterARefusedOneIsAsFresh) {
   Collider collider;
   for (int k = 0; k < 4; ++k)
     EXPECT_FALSE(collider.find({flat.vertices, flat.triangles, starts}).pairs.empty());
-  EXPECT_THROW(collider.find({flat.vertices, flat.triangles, wrong}), ColliderError);
-  EXPECT_THROW(collider.find({{}, {}, {}}), ColliderError);
+  EXPECT_THROW(collider.find({flat.vertices, flat.triangles, wrong}), Error);
+  EXPECT_THROW(collider.find({{}, {}, {}}), Error);
   EXPECT_FALSE(collider.find({flat.vertices, flat.triangles, starts}).pairs.empty());
 }
 
 // Bit for bit, so that a zero of the other sign counts too.
 TEST(LibraryInput, SaysWhichVerticesAreNew) {
   Flat flat(make_builtin_scene("two-spheres"));
-  Scene scene;
+  TakenInput taken;
   const auto change = [&] {
     FrameChange out;
-    take(flat.input(), false, {}, scene, &out);
+    take(flat.input(), false, {}, taken, &out);
     return out;
   };
   EXPECT_FALSE(change().same);
@@ -245,7 +242,7 @@ TEST(Library, IndicesOf64BitsAnswerTheSame) {
   const Flat flat(make_builtin_scene("two-spheres"));
   std::vector<std::int64_t> wide(flat.triangles.begin(), flat.triangles.end());
   Collider collider;
-  const std::vector<ColliderPair> expected = collider.find(flat.input()).pairs;
+  const std::vector<Pair> expected = collider.find(flat.input()).pairs;
   EXPECT_GT(expected.size(), 0u);
   const auto find = [&] { return collider.find({flat.vertices, {}, flat.starts, wide}).pairs; };
   EXPECT_EQ(find(), expected);
@@ -271,9 +268,7 @@ TEST(Library, NamesTheFirstBadNumberAtEachPlace) {
   const Flat good(make_builtin_scene("two-spheres"));
   const std::vector<std::int64_t> wide(good.triangles.begin(), good.triangles.end());
   Collider collider;
-  const auto reason = [&](const ColliderInput& input) {
-    return refusal([&] { collider.find(input); })[1];
-  };
+  const auto reason = [&](const Input& input) { return refusal([&] { collider.find(input); })[1]; };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto vertices = static_cast<std::uint32_t>(good.vertices.size() / 3);
   for (const std::size_t at : {0, 1, 2, 1022, 1023, 1024, 1025, 2047, 2048, 5000}) {
@@ -304,11 +299,11 @@ TEST(Library, NamesTheFirstBadNumberAtEachPlace) {
 TEST(Library, PassesOverUnusedVerticesThatAreNoNumbers) {
   Flat flat(make_builtin_scene("two-spheres"));
   Collider collider;
-  const std::vector<ColliderPair> expected = collider.find(flat.input()).pairs;
+  const std::vector<Pair> expected = collider.find(flat.input()).pairs;
   const auto first = static_cast<std::uint32_t>(flat.vertices.size() / 3);
   flat.vertices.insert(flat.vertices.end(), {HUGE_VAL, 0, 0, 0, 1, std::nan("")});
   for (int call = 0; call < 4; ++call) {
-    const ColliderResult found = collider.find(flat.input());
+    const Result found = collider.find(flat.input());
     EXPECT_EQ(found.pairs, expected);
     EXPECT_EQ(found.report.passed_over, 2u);
   }
@@ -318,44 +313,44 @@ TEST(Library, PassesOverUnusedVerticesThatAreNoNumbers) {
 }
 
 TEST(Library, RefusesBadOptions) {
-  const auto with = [](const ColliderOptions& options) {
+  const auto with = [](const Options& options) {
     return refused([&] { Collider collider(options); });
   };
   EXPECT_EQ(with({.clearance = -1}), "clearance");
   EXPECT_EQ(with({.clearance = HUGE_VAL}), "clearance");
-  EXPECT_EQ(with({.views = "q"}), "views");
-  EXPECT_EQ(with({.views = ""}), "views");
-  EXPECT_EQ(with({.resolution = -1}), "resolution");
-  EXPECT_EQ(with({.resolution = kMostPairResolution + 1}), "resolution");
+  EXPECT_EQ(with({.advanced = {.views = "q"}}), "views");
+  EXPECT_EQ(with({.advanced = {.views = ""}}), "views");
+  EXPECT_EQ(with({.advanced = {.resolution = -1}}), "resolution");
+  EXPECT_EQ(with({.advanced = {.resolution = kMostPairResolution + 1}}), "resolution");
   EXPECT_EQ(with({.threads = 1025}), "threads");
 }
 
 // ---- Pairs that are streamed are those of Collider::find(), in order, whatever the options.
 
 /// What find() answers, as a stream would give it.
-std::vector<ColliderFound> found_by(const ColliderOptions& options, const ColliderInput& input) {
-  const ColliderResult result = Collider(options).find(input);
-  std::vector<ColliderFound> out;
+std::vector<StreamedPair> found_by(const Options& options, const Input& input) {
+  const Result result = Collider(options).find(input);
+  std::vector<StreamedPair> out;
   const auto append = [&](const auto& pairs, const auto& contacts, bool neighbours) {
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      out.push_back({pairs[k], neighbours, contacts.empty() ? ColliderContact() : contacts[k]});
+      out.push_back({pairs[k], neighbours, contacts.empty() ? Contact() : contacts[k]});
   };
   append(result.pairs, result.contacts, false);
   append(result.neighbour_pairs, result.neighbour_contacts, true);
-  std::ranges::sort(out, {}, &ColliderFound::pair);
+  std::ranges::sort(out, {}, &StreamedPair::pair);
   return out;
 }
 
 struct Streamed {
-  std::vector<ColliderFound> pairs;
+  std::vector<StreamedPair> pairs;
   std::size_t largest = 0;  // part
   std::uint64_t decided = 0;
   bool complete = false;
 };
-Streamed streamed(const ColliderOptions& options, const ColliderInput& input) {
-  ColliderStream stream(input, options);
+Streamed streamed(const Options& options, const Input& input) {
+  Stream stream(input, options);
   Streamed out;
-  for (std::vector<ColliderFound> part; stream.next(part);) {
+  for (std::vector<StreamedPair> part; stream.next(part);) {
     out.largest = std::max(out.largest, part.size());
     out.pairs.insert(out.pairs.end(), part.begin(), part.end());
   }
@@ -367,11 +362,10 @@ Streamed streamed(const ColliderOptions& options, const ColliderInput& input) {
 TEST(LibraryStream, GivesThePairsOfFindInOrder) {
   for (const char* name : {"two-spheres", "degenerate", "random-soup", "crowd", "far-apart"}) {
     const Flat flat(make_builtin_scene(name));
-    for (const ColliderOptions& options :
-         {ColliderOptions{}, ColliderOptions{.threads = 3, .self = true},
-          ColliderOptions{.self = true, .neighbours = false},
-          ColliderOptions{.clearance = 0.01, .contacts = ColliderContacts::kinds},
-          ColliderOptions{.self = true, .ignore = {{0, 1}}}}) {
+    for (const Options& options : {Options{}, Options{.threads = 3, .self = true},
+                                   Options{.self = true, .neighbours = false},
+                                   Options{.clearance = 0.01, .contacts = Contacts::kinds},
+                                   Options{.self = true, .ignore = {{0, 1}}}}) {
       const Streamed found = streamed(options, flat.input());
       EXPECT_EQ(found.pairs, found_by(options, flat.input())) << name;
       EXPECT_TRUE(found.complete);
@@ -386,8 +380,8 @@ TEST(LibraryStream, EndsAtTheLimit) {
   for (const std::size_t limit : {std::size_t{1}, std::size_t{50}, all.pairs.size() + 1}) {
     const Streamed some = streamed({.limit = limit}, flat.input());
     const std::size_t count = std::min(limit, all.pairs.size());
-    EXPECT_EQ(some.pairs, std::vector<ColliderFound>(all.pairs.begin(),
-                                                     all.pairs.begin() + static_cast<long>(count)));
+    EXPECT_EQ(some.pairs, std::vector<StreamedPair>(all.pairs.begin(),
+                                                    all.pairs.begin() + static_cast<long>(count)));
     EXPECT_EQ(some.complete, limit > all.pairs.size());
     if (limit == 1) {
       EXPECT_LT(some.decided, all.decided / 2);
@@ -405,8 +399,8 @@ TEST(LibraryStream, HoldsAPartOfThePairsAtATime) {
       points.push_back((axis == static_cast<int>(k % 3) ? 1.0 : -0.5) + 0.1 * random.between(0, 1));
     triangles.push_back(k);
   }
-  const ColliderInput input{points, triangles, {}};
-  const ColliderOptions options{.threads = 2, .self = true};
+  const Input input{points, triangles, {}};
+  const Options options{.threads = 2, .self = true};
   const Streamed found = streamed(options, input);
   EXPECT_EQ(found.pairs, found_by(options, input));
   EXPECT_GT(found.pairs.size(), 300'000u);
@@ -414,13 +408,13 @@ TEST(LibraryStream, HoldsAPartOfThePairsAtATime) {
 }
 
 TEST(LibraryStream, RefusesWhatTheColliderRefuses) {
-  const auto refused = [](const ColliderOptions& options, const ColliderInput& input) {
-    return refusal([&] { ColliderStream stream(input, options); })[0];
+  const auto refused = [](const Options& options, const Input& input) {
+    return refusal([&] { Stream stream(input, options); })[0];
   };
   const std::vector<double> points = {0, 0, 0};
   const std::vector<std::uint32_t> triangles = {0, 0, 1};
   EXPECT_EQ(refused({}, {points, triangles, {}}), "triangles");
-  EXPECT_EQ(refused({.device = ColliderDevice::gl}, {}), "device");
+  EXPECT_EQ(refused({.device = Device::gl}, {}), "device");
   EXPECT_EQ(refused({.clearance = -1}, {}), "clearance");
   const std::vector<std::uint32_t> two = {0, 0, 0, 0, 0, 0}, starts = {0, 1};
   EXPECT_EQ(refused({.ignore = {{0, 2}}}, {points, two, starts}), "ignore");
@@ -458,7 +452,7 @@ TEST(LibraryDistances, AreThoseOfTheMethodSceneAfterScene) {
     for (Object& object : scene.objects) object.self = false;
     std::erase_if(scene.objects, [](const Object& object) { return object.triangle_count == 0; });
     if (!nothing_asked(scene, {}).empty()) {
-      EXPECT_THROW(all_pairs.find(Flat(scene).input()), ColliderError);
+      EXPECT_THROW(all_pairs.find(Flat(scene).input()), Error);
       continue;
     }
     expect_same(all_pairs.find(Flat(scene).input()), distances(scene, {}));
@@ -474,7 +468,7 @@ TEST(LibraryDistances, OfObjectsThatAreAskedAboutByThemselves) {
   scene.objects[1].self = true;
   DistanceFinder finder({.self_objects = {false, true}});
   expect_same(finder.find(Flat(scene).input()), distances(scene, {}));
-  EXPECT_THROW(DistanceFinder({.self_objects = {true}}).find(Flat(scene).input()), ColliderError);
+  EXPECT_THROW(DistanceFinder({.self_objects = {true}}).find(Flat(scene).input()), Error);
 }
 
 TEST(LibraryDistances, OfACallerThatRoundsUpwardAreTheSame) {

@@ -3,7 +3,7 @@
 #include <barrier>
 
 #include "core/base/stopwatch.h"
-#include "experiments/library/farcull.h"
+#include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/flat.h"
@@ -63,7 +63,7 @@ void race(const char* object, const std::function<bool()>& call) {
       if (last) return;
       try {
         ++(call() ? right : wrong);
-      } catch (const ColliderError& error) {
+      } catch (const Error& error) {
         ++(error.where == object && error.reason == kBusy ? refused : wrong);
       }
     }
@@ -79,9 +79,8 @@ void race(const char* object, const std::function<bool()>& call) {
 
 TEST(LibraryThreads, ColliderFromTwoThreadsAnswersRightlyOrRefuses) {
   const Flat flat(make_builtin_scene("two-spheres"));
-  const ColliderOptions options{
-      .threads = 2, .clearance = 0.05, .contacts = ColliderContacts::segments};
-  const std::vector<ColliderPair> expected = Collider(options).find(flat.input()).pairs;
+  const Options options{.threads = 2, .clearance = 0.05, .contacts = Contacts::segments};
+  const std::vector<Pair> expected = Collider(options).find(flat.input()).pairs;
   ASSERT_FALSE(expected.empty());
   Collider collider(options);
   race("Collider", [&] { return collider.find(flat.input()).pairs == expected; });
@@ -104,17 +103,17 @@ TEST(LibraryThreads, DistanceFinderFromTwoThreadsAnswersRightlyOrRefuses) {
 TEST(LibraryThreads, StreamFromTwoThreadsGivesEachPairOnceOrRefuses) {
   const Flat flat(make_builtin_scene("two-spheres"));
   const auto of = [&](bool two) {
-    ColliderStream stream(flat.input(), {.threads = 1});
-    std::vector<ColliderPair> pairs;
+    Stream stream(flat.input(), {.threads = 1});
+    std::vector<Pair> pairs;
     std::mutex mutex;
     const auto read = [&] {
-      std::vector<ColliderFound> part;
+      std::vector<StreamedPair> part;
       while (true) {
         try {
           if (!stream.next(part)) return;
           const std::lock_guard lock(mutex);
-          for (const ColliderFound& found : part) pairs.push_back(found.pair);
-        } catch (const ColliderError& error) {
+          for (const StreamedPair& found : part) pairs.push_back(found.pair);
+        } catch (const Error& error) {
           EXPECT_EQ(error.reason, kBusy);
         }
       }
@@ -127,7 +126,7 @@ TEST(LibraryThreads, StreamFromTwoThreadsGivesEachPairOnceOrRefuses) {
     std::ranges::sort(pairs);
     return pairs;
   };
-  const std::vector<ColliderPair> expected = of(false);
+  const std::vector<Pair> expected = of(false);
   ASSERT_FALSE(expected.empty());
   EXPECT_EQ(of(true), expected);
 }
@@ -147,12 +146,12 @@ TEST(LibraryThreads, AnObjectThatWasMovedFromSaysSo) {
   const DistanceFinder other = std::move(finder);
   EXPECT_EQ(refusal([&] { finder.find(flat.input()); }), moved("DistanceFinder"));
 
-  ColliderStream stream(flat.input());
-  ColliderStream taken = std::move(stream);
-  std::vector<ColliderFound> part;
-  EXPECT_EQ(refusal([&] { stream.next(part); }), moved("ColliderStream"));
-  EXPECT_EQ(refusal([&] { static_cast<void>(stream.decided()); }), moved("ColliderStream"));
-  EXPECT_EQ(refusal([&] { static_cast<void>(stream.complete()); }), moved("ColliderStream"));
+  Stream stream(flat.input());
+  Stream taken = std::move(stream);
+  std::vector<StreamedPair> part;
+  EXPECT_EQ(refusal([&] { stream.next(part); }), moved("Stream"));
+  EXPECT_EQ(refusal([&] { static_cast<void>(stream.decided()); }), moved("Stream"));
+  EXPECT_EQ(refusal([&] { static_cast<void>(stream.complete()); }), moved("Stream"));
   // NOLINTEND(bugprone-use-after-move)
   EXPECT_TRUE(taken.next(part));
 }

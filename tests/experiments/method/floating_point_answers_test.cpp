@@ -173,7 +173,7 @@ TEST(FloatingPointAnswers, Collider) {
     std::vector<std::uint32_t> triangles, starts = {0, kCopies};
     for (const auto& t : sample.scene.triangles)
       triangles.insert(triangles.end(), t.begin(), t.end());
-    ColliderResult found;
+    Result found;
     FloatingPoint after_making, after, after_throwing;
     bool threw = false;
     {
@@ -184,7 +184,7 @@ TEST(FloatingPointAnswers, Collider) {
       after = floating_point();
       try {
         collider.find({vertices, triangles, std::vector<std::uint32_t>{1}});
-      } catch (const ColliderError&) {
+      } catch (const Error&) {
         threw = true;
         after_throwing = floating_point();
       }

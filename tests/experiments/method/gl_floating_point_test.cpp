@@ -80,7 +80,7 @@ TEST(GlFloatingPoint, ADriverThatChangesItDuringACallEndsTheCall) {
   std::vector<std::uint32_t> triangles;
   for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   const std::vector<std::uint32_t> starts = {0, 8};
-  Collider collider({.device = ColliderDevice::gl});
+  Collider collider({.device = Device::gl});
   EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
 
   dispatch = epoxy_glDispatchCompute;
@@ -88,7 +88,7 @@ TEST(GlFloatingPoint, ADriverThatChangesItDuringACallEndsTheCall) {
   std::string what = "no error";
   try {
     collider.find({vertices, triangles, starts});
-  } catch (const ColliderError& error) {
+  } catch (const Error& error) {
     what = error.what();
   }
   epoxy_glDispatchCompute = dispatch;

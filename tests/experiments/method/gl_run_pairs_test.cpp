@@ -88,11 +88,11 @@ TEST(GlRunPairs, TheLibraryOnGl) {
   for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
   for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const std::vector<ColliderPair> pairs = Collider().find({vertices, triangles, starts}).pairs;
+  const std::vector<Pair> pairs = Collider().find({vertices, triangles, starts}).pairs;
   EXPECT_FALSE(pairs.empty());
-  Collider gl({.device = ColliderDevice::gl});
+  Collider gl({.device = Device::gl});
   for (int repeat = 0; repeat < 2; ++repeat) {
-    const ColliderResult found = gl.find({vertices, triangles, starts});
+    const Result found = gl.find({vertices, triangles, starts});
     EXPECT_EQ(found.pairs, pairs);
     EXPECT_NE(found.report.device, "cpu");
   }

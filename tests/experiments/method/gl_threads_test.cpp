@@ -75,8 +75,8 @@ TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
 TEST_F(GlThreads, TheLibraryNamesThemAndPromisesNothing) {
   const std::vector<double> vertices = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, -1, 1, 1, 1, 2, 1, 1};
   const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, objects = {0, 1};
-  Collider collider({.device = ColliderDevice::gl});
-  const ColliderResult found =
+  Collider collider({.device = Device::gl});
+  const Result found =
       collider.find({.vertices = vertices, .triangles = triangles, .object_starts = objects});
   EXPECT_EQ(found.pairs.size(), 1u);
   EXPECT_EQ(found.report.promises, asked == 0) << found.report.promises_reason;

@@ -119,25 +119,25 @@ TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("farcull")));
 }
 
-ColliderReport report_of(ColliderDevice device) {
+Report report_of(Device device) {
   const std::vector<double> vertices = {0,   0,   0,  1,   0,   0, 0,   1,   0,
                                         0.2, 0.2, -1, 0.2, 0.3, 1, 0.3, 0.2, 1};
   const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, starts = {0, 1};
   Collider collider({.device = device});
-  const ColliderResult result = collider.find({vertices, triangles, starts});
+  const Result result = collider.find({vertices, triangles, starts});
   EXPECT_EQ(result.pairs.size(), 1u);
   return result.report;
 }
 
 TEST(GlVerdict, TheLibraryReportsWhatItPromises) {
   const CacheFolder folder;
-  const ColliderReport cpu = report_of(ColliderDevice::cpu);
+  const Report cpu = report_of(Device::cpu);
   EXPECT_TRUE(cpu.promises);
   EXPECT_EQ(cpu.promises_reason, "on the CPU nothing rests on a device");
-  const ColliderReport gl = report_of(ColliderDevice::gl);
+  const Report gl = report_of(Device::gl);
   EXPECT_TRUE(gl.promises) << gl.promises_reason;
   keep_verdict(GlContext("").info(), Reliance::pairs, kFailed, 1);
-  const ColliderReport failed = report_of(ColliderDevice::gl);
+  const Report failed = report_of(Device::gl);
   EXPECT_FALSE(failed.promises);
   EXPECT_EQ(failed.promises_reason, "a probe fails on this device: A4 a probe: 3 lost, bound 1");
 }

@@ -97,7 +97,7 @@ bool found_by_library(Collider& collider, const Scene& scene) {
   std::vector<std::uint32_t> triangles, starts;
   for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const ColliderResult result = collider.find({vertices, triangles, starts});
+  const Result result = collider.find({vertices, triangles, starts});
   return result.pairs.size() + result.neighbour_pairs.size() > 0;
 }
 

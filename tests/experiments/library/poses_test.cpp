@@ -1,0 +1,283 @@
+// Objects that poses move, calls that may be ended, and matrices of Eigen as input. Each answer is
+// held against that of plain arrays.
+#include <functional>
+
+#include "core/base/random.h"
+#include "experiments/library/distance.h"
+#include "experiments/library/eigen.h"
+#include "experiments/library/input.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/flat.h"
+
+namespace farcull {
+namespace {
+
+/// The first coordinate that a row of r and a number of t give, as farcull.h says.
+double as_stated(const double* r, const double* p, double t) {
+  double sum = r[0] * p[0];
+  sum = sum + r[1] * p[1];
+  sum = sum + r[2] * p[2];
+  return sum + t;
+}
+/// Twins: the same with one rounding for a product and a sum, and in another order.
+double fused(const double* r, const double* p, double t) {
+  return std::fma(r[2], p[2], std::fma(r[1], p[1], r[0] * p[0])) + t;
+}
+double reordered(const double* r, const double* p, double t) {
+  return r[0] * p[0] + (r[1] * p[1] + (r[2] * p[2] + t));
+}
+
+/// The scene after each object was moved. Objects must not share vertices.
+template <class Row>
+Flat moved(const Flat& flat, const std::vector<Pose>& poses, const Row& row) {
+  Flat out = flat;
+  for (std::size_t k = 0; k < flat.triangles.size(); ++k) {
+    const auto after = std::ranges::upper_bound(flat.starts, k / 3);
+    const Pose& pose = poses[static_cast<std::size_t>(after - flat.starts.begin()) - 1];
+    const double* const p = flat.vertices.data() + 3 * flat.triangles[k];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out.vertices[3 * flat.triangles[k] + axis] = row(pose.r.data() + 3 * axis, p, pose.t[axis]);
+  }
+  return out;
+}
+
+Pose random_pose(RandomNumbers& random, double far) {
+  const Eigen::Vector3d axis(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  Eigen::Isometry3d out(Eigen::AngleAxisd(random.between(0, 6), axis.normalized()));
+  for (int k = 0; k < 3; ++k) out.translation()[k] = far * random.between(-1, 1);
+  return pose_of(out);
+}
+
+/// taken: the input of the last call.
+std::vector<double> taken_vertices(const Input& input, TakenInput&& taken = {}) {
+  take(input, false, {}, taken);
+  std::vector<double> out;
+  for (const Vec3& p : taken.scene.vertices) out.insert(out.end(), p.data(), p.data() + 3);
+  return out;
+}
+
+TEST(LibraryPoses, MoveEachVertexByTheStatedOperations) {
+  RandomNumbers random(39);
+  const Flat flat(make_builtin_scene("two-spheres"));
+  const std::vector<Pose> poses = {random_pose(random, 0.3), random_pose(random, 0.3)};
+  Input input = flat.input();
+  input.poses = poses;
+  const std::vector<double> found = taken_vertices(input);
+  EXPECT_EQ(found, moved(flat, poses, as_stated).vertices);
+  EXPECT_NE(found, moved(flat, poses, fused).vertices);
+  EXPECT_NE(found, moved(flat, poses, reordered).vertices);
+  const std::vector<Pose> still(2);
+  input.poses = still;
+  EXPECT_EQ(taken_vertices(input), flat.vertices);
+}
+
+// Poses with arrays, poses alone, and arrays alone follow each other; some objects stay in their
+// pose. Each answer is that of a new call about the moved arrays.
+TEST(LibraryPoses, FramesAreAsFresh) {
+  RandomNumbers random(40);
+  Flat flat(make_builtin_scene("two-spheres"));
+  std::vector<Pose> poses(2);
+  Collider collider({.self_objects = {true, false}});
+  DistanceFinder finder({.inside = false});
+  TakenInput kept;
+  int changes = 0, alone = 0;
+  bool arrays = true;
+  std::vector<Pair> last;
+  for (int frame = 0; frame < 40; ++frame) {
+    if (random.below(3) == 0) {
+      const std::size_t at = 3 * random.below(flat.vertices.size() / 3);
+      for (std::size_t k = at; k < std::min(at + 90, flat.vertices.size()); ++k)
+        flat.vertices[k] += 0.05 * random.between(-1, 1);
+      arrays = true;
+    }
+    for (Pose& pose : poses)
+      if (random.below(2) == 0) pose = random_pose(random, 0.2);
+    if (random.below(6) == 0) poses = {Pose(), Pose()};
+    Input input = flat.input();
+    if (!arrays && random.below(4) > 0) input = {};
+    if (random.below(8) > 0 || input.vertices.empty()) input.poses = poses;
+    alone += input.vertices.empty();
+    const Flat expected = input.poses.empty() ? flat : moved(flat, poses, as_stated);
+    ASSERT_EQ(taken_vertices(input, std::move(kept)), expected.vertices) << frame;
+    const Result found = collider.find(input);
+    const Result fresh = collide(expected.input(), {.self_objects = {true, false}});
+    ASSERT_EQ(found.pairs, fresh.pairs) << frame;
+    ASSERT_EQ(found.neighbour_pairs, fresh.neighbour_pairs) << frame;
+    ASSERT_EQ(finder.find(input)[0].squared,
+              distances(expected.input(), {.inside = false})[0].squared)
+        << frame;
+    changes += found.pairs != last;  // so what is not moved, or moved twice, gives another answer
+    last = found.pairs;
+    arrays = false;
+  }
+  EXPECT_GT(changes, 20);
+  EXPECT_GT(alone, 10);
+}
+
+TEST(LibraryPoses, OfAStreamAreThoseOfACollider) {
+  RandomNumbers random(41);
+  const Flat flat(make_builtin_scene("two-spheres"));
+  const std::vector<Pose> poses = {random_pose(random, 0.1), random_pose(random, 0.1)};
+  Input input = flat.input();
+  input.poses = poses;
+  std::vector<Pair> found;
+  Stream stream(input);
+  for (std::vector<StreamedPair> part; stream.next(part);)
+    for (const StreamedPair& one : part) found.push_back(one.pair);
+  EXPECT_EQ(found, collide(input).pairs);
+  EXPECT_NE(found, collide(flat.input()).pairs);
+}
+
+TEST(LibraryPoses, RefuseWhatIsBadAndGoOn) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  Collider collider;
+  const std::vector<Pair> expected = collider.find(flat.input()).pairs;
+  const auto reason = [&](const std::vector<Pose>& poses, bool alone, const Flat& of) {
+    Input input = alone ? Input() : of.input();
+    input.poses = poses;
+    return refusal([&] { collider.find(input); })[1];
+  };
+  Pose infinite, huge;
+  infinite.r[4] = HUGE_VAL;
+  huge.t[1] = huge.r[4] = std::numeric_limits<double>::max();
+  for (const bool alone : {true, false}) {
+    EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+    EXPECT_EQ(reason({Pose()}, alone, flat), "are 1 for 2 objects");
+    // What was refused is not there for poses alone.
+    EXPECT_EQ(reason({Pose(), Pose()}, true, flat),
+              "are given without triangles, and there are none of an earlier call");
+    EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+    EXPECT_EQ(reason({Pose(), infinite}, alone, flat), "that of object 1 is not finite");
+    EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+    EXPECT_TRUE(has_text(reason({huge, Pose()}, alone, flat), "beyond the largest double"));
+  }
+  Flat shared = flat;
+  shared.triangles.back() = 0;
+  EXPECT_EQ(reason({Pose(), Pose()}, false, shared),
+            "vertex 0 is used by objects 0 and 1, which have a pose each");
+  const std::vector<Pose> poses(2);
+  EXPECT_EQ(refusal([&] { collide({.poses = poses}); })[0], "poses");
+  EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+  EXPECT_EQ(reason({Pose(), Pose()}, true, flat), "nothing was thrown");
+}
+
+// ---- calls that may be ended
+
+TEST(LibraryMayGoOn, IsAskedInTheThreadOfTheCallerAndChangesNothing) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  int asked = 0;
+  bool here = true;
+  const MayGoOn may_go_on = [&, caller = std::this_thread::get_id()](const std::string&) {
+    ++asked;
+    here = here && std::this_thread::get_id() == caller;
+    return true;
+  };
+  std::fesetround(FE_UPWARD);
+  const Result found = collide(flat.input(), {.may_go_on = may_go_on});
+  EXPECT_EQ(std::fegetround(), FE_UPWARD);
+  std::fesetround(FE_TONEAREST);
+  EXPECT_EQ(found.pairs, collide(flat.input()).pairs);
+  EXPECT_EQ(found.report.callers_arithmetic, "rounds upward, keeps subnormals");
+  EXPECT_EQ(distances(flat.input(), {.may_go_on = may_go_on})[0].squared,
+            distances(flat.input())[0].squared);
+  EXPECT_GE(asked, 2);
+  EXPECT_TRUE(here);
+}
+
+TEST(LibraryMayGoOn, EndsACallWithoutAnAnswerAndTheNextOneIsRight) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  enum { go, end, fail } now = go;
+  const MayGoOn may_go_on = [&](const std::string&) {
+    if (now == fail) throw std::out_of_range("of the caller");
+    return now == go;
+  };
+  Collider collider({.may_go_on = may_go_on});
+  DistanceFinder finder({.may_go_on = may_go_on});
+  const std::vector<Pair> expected = collide(flat.input()).pairs;
+  Flat other = flat;
+  for (double& x : other.vertices) x += 1;
+  for (int frame = 0; frame < 4; ++frame) {
+    now = end;
+    EXPECT_THROW(collider.find(other.input()), Cancelled);
+    EXPECT_EQ(refusal([&] { finder.find(other.input()); })[0], "may_go_on");
+    now = fail;
+    EXPECT_THROW(collider.find(other.input()), std::out_of_range);
+    EXPECT_THROW(finder.find(other.input()), std::out_of_range);
+    now = go;
+    EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+    EXPECT_EQ(finder.find(flat.input()).size(), 1u);
+  }
+}
+
+// Work that would go on for a minute if nobody stopped it, and its twin, which nobody stops.
+TEST(LibraryMayGoOn, HearsOfTheStepsAndStopsTheWork) {
+  for (const bool ends : {true, false}) {
+    std::atomic<bool> heard = false, stopped = false;
+    const MayGoOn may_go_on = [&](const std::string& step) {
+      heard = heard || step == "boxes";
+      return !ends || !heard;
+    };
+    const auto work = [&](const Progress& progress) {
+      try {
+        for (int k = 0; k < 60'000 && (ends || !heard); ++k) {
+          progress("boxes");
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+      } catch (const Stopped&) {
+        stopped = true;
+        throw;
+      }
+      return 7;
+    };
+    if (ends) {
+      EXPECT_THROW(watched(may_go_on, work), Cancelled);
+    } else {
+      EXPECT_EQ(watched(may_go_on, work), 7);
+    }
+    EXPECT_TRUE(heard);
+    EXPECT_EQ(stopped, ends);
+  }
+}
+
+TEST(LibraryMayGoOn, CannotUseTheObjectThatAsks) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  std::string where;
+  Collider* asking = nullptr;
+  Collider collider({.may_go_on = [&](const std::string&) {
+    where = refusal([&] { asking->find(flat.input()); })[0];
+    return true;
+  }});
+  asking = &collider;
+  EXPECT_FALSE(collider.find(flat.input()).pairs.empty());
+  EXPECT_EQ(where, "Collider");
+}
+
+// ---- matrices
+
+TEST(LibraryEigen, MatricesOfAnyTypeAndOrderAnswerAsArrays) {
+  Flat flat(make_builtin_scene("two-spheres"));
+  for (double& x : flat.vertices) x = static_cast<float>(x);
+  const auto rows = static_cast<Eigen::Index>(flat.vertices.size() / 3);
+  const auto faces = static_cast<Eigen::Index>(flat.triangles.size() / 3);
+  using ByRows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const ByRows V = Eigen::Map<const ByRows>(flat.vertices.data(), rows, 3);
+  const Eigen::MatrixXf by_columns = V.cast<float>();
+  Eigen::MatrixXi F(faces, 3);
+  for (Eigen::Index k = 0; k < 3 * faces; ++k)
+    F(k / 3, k % 3) = static_cast<int>(flat.triangles[static_cast<std::size_t>(k)]);
+  const std::vector<Pair> expected = collide(flat.input()).pairs;
+  ASSERT_FALSE(expected.empty());
+  EXPECT_EQ(collide(V, F, flat.starts).pairs, expected);
+  EXPECT_EQ(collide(by_columns, F.cast<std::int64_t>(), flat.starts).pairs, expected);
+  EXPECT_EQ(distances(EigenInput(V, F, flat.starts))[0].squared,
+            distances(flat.input())[0].squared);
+  // Twins: rows for columns, and an index below 0.
+  EXPECT_EQ(refusal([&] { collide(V.transpose(), F, flat.starts); })[0], "vertices");
+  EXPECT_EQ(refusal([&] { collide(V, F.transpose(), flat.starts); })[0], "triangles");
+  F(5, 1) = -1;
+  EXPECT_EQ(refusal([&] { collide(V, F, flat.starts); })[1],
+            "triangle 5 names vertex -1 of " + std::to_string(rows));
+}
+
+}  // namespace
+}  // namespace farcull
