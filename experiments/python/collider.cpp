@@ -207,17 +207,17 @@ void add_collider(py::module_& module) {
 
 void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
-      .def(py::init([](const std::string& kind, std::size_t k, double within, bool self,
-                       const std::vector<bool>& self_objects, bool inside, unsigned threads) {
-        return std::make_unique<KeptDistances>(
-            "DistanceFinder",
-            DistanceFinderOptions{.kind = kind_of(kind),
-                                  .k = k,
-                                  .within = within < 0 ? std::optional<double>() : within,
-                                  .self = self,
-                                  .self_objects = self_objects,
-                                  .inside = inside,
-                                  .threads = threads});
+      .def(py::init([](const std::string& kind, std::size_t k, std::optional<double> within,
+                       bool self, const std::vector<bool>& self_objects, bool inside,
+                       unsigned threads) {
+        return std::make_unique<KeptDistances>("DistanceFinder",
+                                               DistanceFinderOptions{.kind = kind_of(kind),
+                                                                     .k = k,
+                                                                     .within = within,
+                                                                     .self = self,
+                                                                     .self_objects = self_objects,
+                                                                     .inside = inside,
+                                                                     .threads = threads});
       }))
       .def("find", [](KeptDistances& kept, const py::array& vertices, const py::array& triangles,
                       const py::array& starts) {

@@ -123,7 +123,7 @@ def _question(
         "clearance": _arguments.number("clearance", clearance),
         "neighbours": _arguments.flag("neighbours", neighbours),
         "threads": _arguments.threads(threads),
-        # The place in ColliderContacts of C++: nothing, kinds, or kinds and segments.
+        # The place in Contacts of C++: nothing, kinds, or kinds and segments.
         "contacts": max(_arguments.flag("kinds", kinds), 2 * _arguments.flag("segments", segments)),
         "ignore": _arguments.ignored(ignore),
         "limit": _arguments.limit(limit),

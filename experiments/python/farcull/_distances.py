@@ -116,7 +116,7 @@ class DistanceFinder:
                 "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
             )
         finder._finder = _farcull.DistanceFinder(
-            which, wanted, -1.0 if limit is None else limit, all_objects, each,
+            which, wanted, limit, all_objects, each,
             _arguments.flag("inside", inside), _arguments.threads(threads),
         )
 
