@@ -2,6 +2,7 @@
 // tell.
 #include "experiments/method/clash.h"
 
+#include <Eigen/Geometry>
 #include <set>
 
 #include "experiments/peers/peer.h"
