@@ -1,7 +1,8 @@
-// The test of Guigue, Devillers: Fast and robust triangle-triangle overlap test using orientation
-// predicates (2003), but with strict signs, so that it tests relative interiors and not closed
-// triangles. CGAL is used only for signs of determinants of input points, which Epick decides
-// exactly (verify/exact.cpp says why). No point is constructed.
+// Finds how two triangles meet by signs of determinants of their corners, after the test of Guigue,
+// Devillers: Fast and robust triangle-triangle overlap test using orientation predicates (2003). No
+// point is constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h; CGAL
+// is used only for signs of determinants of input points, which Epick decides exactly
+// (verify/exact.cpp says why).
 #include "verify/contact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,114 +13,190 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "verify/filter_scalars.h"
 
 namespace farcull {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
-using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-using Points = std::array<Point, 3>;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-Points points(const Corners& t) {
-  const auto point = [](const Vec3& p) { return Point(p.x(), p.y(), p.z()); };
-  return {point(t[0]), point(t[1]), point(t[2])};
-}
-
-/// Sign of det(q - p, r - p, s - p).
-int orientation(const Point& p, const Point& q, const Point& r, const Point& s) {
-  return CGAL::orientation(p, q, r, s);
-}
-
-using Sides = std::array<int, 3>;
-
-/// The sides of the plane of `plane` on which the corners of t lie; all 0 if `plane` is degenerate.
-Sides sides(const Points& plane, const Points& t) {
-  const auto& [a, b, c] = plane;
-  return {orientation(a, b, c, t[0]), orientation(a, b, c, t[1]), orientation(a, b, c, t[2])};
-}
-
-/// True iff corners are strictly on both sides: the relative interior meets the plane and does not
-/// lie in it.
-bool crosses(const Sides& s) {
-  return std::min({s[0], s[1], s[2]}) < 0 && std::max({s[0], s[1], s[2]}) > 0;
-}
-
-/// A corner that is alone strictly on its side of the plane. Of the other two corners at most one
-/// is on the plane, the rest on the other side. Precondition: crosses(s).
-int lone(const Sides& s) {
-  for (int i = 0; i < 3; ++i) {
-    if (s[i] != 0 && s[(i + 1) % 3] != s[i] && s[(i + 2) % 3] != s[i]) return i;
-  }
-  throw std::logic_error("penetrate: no corner is alone on its side of a plane that is crossed");
-}
-
-/// Decides whether the relative interiors of two triangles meet, each of which crosses the plane of
-/// the other. Let p1 and p2 be lone corners and q and r the other corners, ordered so that p1 lies
-/// on the positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). The common line L of the
-/// planes meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t, and the relative interiors in the
-/// open segments uv and st, which are not empty. Take L as the x axis and the planes as z = 0 and
-/// y = 0 (affine maps that keep orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1 z2. Since
-/// q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
-///   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
-///   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
-///   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
-/// For k > 0: u < v and t < s, so the open segments meet iff u < s and t < v: iff the first two
-/// orientations are negative. For k < 0 all four inequalities are reversed, with the same result.
-bool interiors_meet(const Points& a, int i, bool a_positive, const Points& b, int j,
-                    bool b_positive) {
-  const Point& p1 = a[i];
-  const Point& p2 = b[j];
-  const Point* q1 = &a[(i + 1) % 3];
-  const Point* r1 = &a[(i + 2) % 3];
-  const Point* q2 = &b[(j + 1) % 3];
-  const Point* r2 = &b[(j + 2) % 3];
-  if (!a_positive) std::swap(q2, r2);
-  if (!b_positive) std::swap(q1, r1);
-  return orientation(p1, *q1, p2, *q2) < 0 && orientation(p1, *r1, *r2, p2) < 0;
-}
-
-/// The ends of a degenerate triangle that is a segment: its lexicographically first and last
-/// corner.
-std::pair<int, int> ends(const Corners& t) {
-  const auto less = [](const Vec3& p, const Vec3& q) {
-    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+/// The axis along which the normal of the triangle is surely not 0, so that it is no segment; empty
+/// if doubles leave a doubt.
+std::optional<int> sure_axis(const Corners& t) {
+  const filters::Normal normal =
+      filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
+  const auto sure = [](double value, double terms) {
+    return std::abs(value) > FilterBounds::side * terms + FilterBounds::absolute;
   };
-  const auto [first, last] = std::minmax_element(t.begin(), t.end(), less);
-  return {static_cast<int>(first - t.begin()), static_cast<int>(last - t.begin())};
+  if (sure(normal.n.x, normal.m.x)) return 0;
+  if (sure(normal.n.y, normal.m.y)) return 1;
+  if (sure(normal.n.z, normal.m.z)) return 2;
+  return std::nullopt;
 }
 
-/// True iff the open segment pq meets the triangle's interior: iff the line pq passes all three
-/// edges on one side. Precondition: p and q are strictly on different sides of the triangle's
-/// plane.
-bool pierces(const Points& triangle, const Point& p, const Point& q) {
-  const auto& [a, b, c] = triangle;
-  const int side = orientation(p, q, a, b);
-  return side != 0 && orientation(p, q, b, c) == side && orientation(p, q, c, a) == side;
+/// Exact signs of determinants of the corners of two triangles. Numbers 0 to 2 are the corners of
+/// a, 3 to 5 those of b. Doubles decide most of them. A determinant of which each term has a factor
+/// that is 0 is 0, as for faces of boxes; CGAL decides the rest.
+class Signs {
+ public:
+  Signs(const Corners& a, const Corners& b) : a_(a), b_(b) {}
+
+  const Vec3& corner(int k) const { return k < 3 ? a_[k] : b_[k - 3]; }
+
+  /// The sign of det(q - p, r - p, s - p).
+  int side(int p, int q, int r, int s) const {
+    const auto e = from(p, q), f = from(p, r), w = from(p, s);
+    const filters::Normal normal = filters::normal_of(e, f);
+    const int sign = filters::sign(filters::dot(normal.n, w), filters::side_bound<FilterBounds>(
+                                                                  normal, filters::magnitudes(w)));
+    if (sign != 0) return sign;
+    // A difference of doubles is 0 only if they are equal, since nothing underflows to 0.
+    const bool terms = (w.x != 0 && ((e.y != 0 && f.z != 0) || (e.z != 0 && f.y != 0))) ||
+                       (w.y != 0 && ((e.z != 0 && f.x != 0) || (e.x != 0 && f.z != 0))) ||
+                       (w.z != 0 && ((e.x != 0 && f.y != 0) || (e.y != 0 && f.x != 0)));
+    if (!terms || corner(s) == corner(q) || corner(s) == corner(r) || corner(q) == corner(r))
+      return 0;
+    return CGAL::orientation(point(p), point(q), point(r), point(s));
+  }
+
+  /// The sign of the component of (q - p) x (r - p) along an axis.
+  int turn(int axis, int p, int q, int r) const {
+    const Vec3 e = corner(q) - corner(p), f = corner(r) - corner(p);
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const double first = e[u] * f[v], second = e[v] * f[u];
+    const int sign =
+        filters::sign(first - second, FilterBounds::side * (std::abs(first) + std::abs(second)) +
+                                          FilterBounds::absolute);
+    if (sign != 0) return sign;
+    const bool terms = (e[u] != 0 && f[v] != 0) || (e[v] != 0 && f[u] != 0);
+    if (!terms || corner(q) == corner(r)) return 0;
+    return CGAL::orientation(point(p, u, v), point(q, u, v), point(r, u, v));
+  }
+
+  /// Whether corner k lies in the closed triangle whose first corner is `first`. Precondition: it
+  /// lies in its plane, whose normal is not 0 along the axis.
+  bool holds(int first, int axis, int k) const {
+    int least = 0, most = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int sign = turn(axis, first + i, first + (i + 1) % 3, k);
+      least = std::min(least, sign);
+      most = std::max(most, sign);
+    }
+    return least == 0 || most == 0;
+  }
+
+ private:
+  filters::Triple from(int p, int q) const { return filters::difference(corner(q), corner(p)); }
+  Kernel::Point_3 point(int k) const { return {corner(k).x(), corner(k).y(), corner(k).z()}; }
+  Kernel::Point_2 point(int k, int u, int v) const { return {corner(k)[u], corner(k)[v]}; }
+
+  const Corners& a_;
+  const Corners& b_;
+};
+
+/// The kind of two triangles in one plane. Each corner of what they have in common is a corner of
+/// one of them, or lies inside an edge of each. In the second case they share more than a point.
+ContactKind kind_in_plane(const Signs& signs, int axis) {
+  constexpr int kFirst[] = {0, 3};
+  int turns[2][3][3];  // of edge i of one triangle and corner k of the other
+  for (int t = 0; t < 2; ++t) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k)
+        turns[t][i][k] =
+            signs.turn(axis, kFirst[t] + i, kFirst[t] + (i + 1) % 3, kFirst[1 - t] + k);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (turns[0][i][k] * turns[0][i][(k + 1) % 3] < 0 &&
+          turns[1][k][i] * turns[1][k][(i + 1) % 3] < 0)
+        return ContactKind::coplanar;
+    }
+  }
+  std::vector<Vec3> common;
+  std::array<int, 2> held = {0, 0};
+  for (int t = 0; t < 2; ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [least, most] = std::minmax({turns[t][0][k], turns[t][1][k], turns[t][2][k], 0});
+      if (least < 0 && most > 0) continue;
+      ++held[static_cast<std::size_t>(t)];
+      const Vec3& p = signs.corner(kFirst[1 - t] + k);
+      if (std::find(common.begin(), common.end(), p) == common.end()) common.push_back(p);
+    }
+  }
+  if (common.empty()) return ContactKind::apart;
+  if (common.size() == 1) return ContactKind::touch_vertex;
+  return held[0] == 3 && held[1] == 3 ? ContactKind::equal : ContactKind::coplanar;
 }
 
 }  // namespace
 
-bool penetrate(const Corners& a, const Corners& b) {
-  const Points p = points(a);
-  const Points q = points(b);
-  const Sides of_b = sides(p, q);
-  const bool b_crosses = crosses(of_b);
-  const Sides of_a = sides(q, p);
-  const bool a_crosses = crosses(of_a);
-  bool meet = false;
-  if (a_crosses && b_crosses) {
-    const int i = lone(of_a);
-    const int j = lone(of_b);
-    meet = interiors_meet(p, i, of_a[i] > 0, q, j, of_b[j] > 0);
-  } else if (b_crosses && of_a == Sides{}) {
-    // All of a in the plane of b, but not all of b in that of a: b has no plane, it is a segment.
-    const auto [first, last] = ends(b);
-    meet = pierces(p, q[first], q[last]);
-  } else if (a_crosses && of_b == Sides{}) {
-    const auto [first, last] = ends(a);
-    meet = pierces(q, p[first], p[last]);
+// If the planes of the triangles differ, let L be their common line. A triangle meets L in nothing,
+// in a corner alone, or in the segment between two of its edges from a corner that is alone on its
+// side of the other's plane; an end of the segment may be a corner. In the last case for both, let
+// p1 and p2 be the lone corners and q and r the other corners, ordered so that p1 lies on the
+// positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). L meets the edges p1q1, p1r1, p2q2,
+// p2r2 at u, v, s, t. Take L as the x axis and the planes as z = 0 and y = 0 (affine maps that keep
+// orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1 z2. Since q1 lies on the ray from p1
+// through u, at or behind u, and likewise for the other edges:
+//   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
+//   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
+//   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
+// For k > 0: u < v and t < s, so the segments have more than a point in common iff u < s and t < v:
+// iff the first two orientations are negative. They have one point in common iff u = s or t = v:
+// iff one of these is 0. For k < 0 all inequalities are reversed, with the same result.
+std::optional<ContactKind> kind_by_signs(const Corners& a, const Corners& b) {
+  const std::optional<int> axis_a = sure_axis(a), axis_b = sure_axis(b);
+  if (!axis_a || !axis_b) return std::nullopt;
+  const Signs signs(a, b);
+  std::array<std::array<int, 3>, 2> side{};  // of the corners of a, and of those of b
+  for (const int t : {1, 0}) {
+    const int plane = t == 1 ? 0 : 3;
+    for (int k = 0; k < 3; ++k) side[t][k] = signs.side(plane, plane + 1, plane + 2, 3 - plane + k);
+    if (side[t][0] != 0 && side[t][0] == side[t][1] && side[t][1] == side[t][2])
+      return ContactKind::apart;
   }
-  return meet;
+  if (side[0] == std::array<int, 3>{}) return kind_in_plane(signs, *axis_a);
+  std::array<std::array<int, 3>, 2> order{};  // of the corners, the one that is alone first
+  for (int t = 0; t < 2; ++t) {
+    int alone = -1, on = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (side[t][k] == 0) {
+        on = k;
+      } else if (side[t][(k + 1) % 3] != side[t][k] && side[t][(k + 2) % 3] != side[t][k]) {
+        alone = k;
+      }
+    }
+    if (alone < 0) {  // it meets the other's plane in the corner `on` alone
+      return signs.holds(t == 0 ? 3 : 0, t == 0 ? *axis_b : *axis_a, 3 * t + on)
+                 ? ContactKind::touch_vertex
+                 : ContactKind::apart;
+    }
+    order[t] = {alone, (alone + 1) % 3, (alone + 2) % 3};
+  }
+  // Each lone corner is to lie on the positive side of the other plane.
+  const bool a_below = side[0][order[0][0]] < 0, b_below = side[1][order[1][0]] < 0;
+  if (a_below) std::swap(order[1][1], order[1][2]);
+  if (b_below) std::swap(order[0][1], order[0][2]);
+  const auto& [p1, q1, r1] = order[0];
+  const auto& [p2, q2, r2] = order[1];
+  const int first = signs.side(p1, q1, 3 + p2, 3 + q2);
+  const int second = signs.side(p1, r1, 3 + r2, 3 + p2);
+  if (first > 0 || second > 0) return ContactKind::apart;
+  if (first == 0 || second == 0) {
+    const bool corner =
+        first == 0 ? side[0][q1] == 0 || side[1][q2] == 0 : side[0][r1] == 0 || side[1][r2] == 0;
+    return corner ? ContactKind::touch_vertex : ContactKind::touch_edge;
+  }
+  const bool edge =
+      (side[0][q1] == 0 && side[0][r1] == 0) || (side[1][q2] == 0 && side[1][r2] == 0);
+  return edge ? ContactKind::touch_face : ContactKind::crossing;
+}
+
+bool penetrate(const Corners& a, const Corners& b) {
+  // Relative interiors of triangles in different planes meet iff some point is on no edge.
+  return contact_kind(a, b) == ContactKind::crossing;
 }
 
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,

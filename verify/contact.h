@@ -87,13 +87,22 @@ struct ContactShape {
   bool operator==(const ContactShape&) const = default;
 };
 
-/// The exact kind. Symmetric; the order of corners does not matter. Signs of determinants decide
-/// about triangles that penetrate, contact_shape() about all others.
+/// The exact kind, by signs of determinants alone; empty if a triangle is a segment or a point, or
+/// may be one by rounding. Symmetric; the order of corners does not matter.
+std::optional<ContactKind> kind_by_signs(const std::array<Vec3, 3>& a,
+                                         const std::array<Vec3, 3>& b);
+
+/// The exact kind: that of kind_by_signs(), or else of contact_shape().
 ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The exact kind and common points (only `ends` are rounded), in integers alone. Symmetric; the
 /// order of corners does not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// The corners of the common polygon in turn, each coordinate rounded once to the nearest double;
+/// empty unless the points in common have dimension 2. The lexicographically lowest corner comes
+/// first, and its lower neighbour second. Symmetric; the order of corners does not matter.
+std::vector<Vec3> contact_polygon(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.
 /// Throws std::logic_error if a pair names a triangle that the scene does not have.

@@ -227,14 +227,20 @@ std::vector<Point> cut(const std::vector<Point>& polygon, const Bound& bound, in
   return out;
 }
 
-/// Corners of the intersection, sorted, each once.
-std::vector<Point> common_points(const Hull& a, const Hull& b) {
+/// Corners of the intersection in turn; one may be listed more than once.
+std::vector<Point> clipped(const Hull& a, const Hull& b) {
   std::vector<Point> points;
   for (const Integers& x : a.corners()) points.push_back({x});
   for (const Bound& bound : b.bounds()) {
     points = cut(points, bound, 1);
     if (bound.plane) points = cut(points, bound, -1);
   }
+  return points;
+}
+
+/// Corners of the intersection, sorted, each once.
+std::vector<Point> common_points(const Hull& a, const Hull& b) {
+  std::vector<Point> points = clipped(a, b);
   const auto before = [](const Point& p, const Point& q) { return compare(p, q) < 0; };
   const auto equal = [](const Point& p, const Point& q) { return compare(p, q) == 0; };
   std::sort(points.begin(), points.end(), before);
@@ -312,10 +318,8 @@ std::optional<ContactKind> parse_contact_kind(std::string_view name) {
 }
 
 ContactKind contact_kind(const Corners& a, const Corners& b) {
-  if (penetrate(a, b)) return ContactKind::crossing;
-  const long exponent = common_exponent(a, b);
-  const Hull s(a, exponent), t(b, exponent);
-  return kind_of(s, t, common_points(s, t));
+  const std::optional<ContactKind> kind = kind_by_signs(a, b);
+  return kind ? *kind : contact_shape(a, b).kind;
 }
 
 ContactShape contact_shape(const Corners& a, const Corners& b) {
@@ -325,6 +329,30 @@ ContactShape contact_shape(const Corners& a, const Corners& b) {
   ContactShape out{.kind = kind_of(s, t, common), .dimension = dimension_of(common)};
   if (out.dimension == 0 || out.dimension == 1)
     out.ends = {rounded_point(common.front(), exponent), rounded_point(common.back(), exponent)};
+  return out;
+}
+
+std::vector<Vec3> contact_polygon(const Corners& a, const Corners& b) {
+  const long exponent = common_exponent(a, b);
+  const Hull s(a, exponent), t(b, exponent);
+  if (dimension_of(common_points(s, t)) != 2) return {};
+  // Points that are listed twice, or lie between their neighbours, are no corners.
+  std::vector<Point> points = clipped(s, t);
+  for (std::size_t k = 0; k < points.size();) {
+    const Point& before = points[(k + points.size() - 1) % points.size()];
+    const Point& after = points[(k + 1) % points.size()];
+    if (is_zero(cross(direction(before, points[k]), direction(points[k], after)))) {
+      points.erase(points.begin() + static_cast<std::ptrdiff_t>(k));
+      k = 0;
+    } else {
+      ++k;
+    }
+  }
+  const auto less = [](const Point& p, const Point& q) { return compare(p, q) < 0; };
+  std::rotate(points.begin(), std::min_element(points.begin(), points.end(), less), points.end());
+  if (less(points.back(), points[1])) std::reverse(points.begin() + 1, points.end());
+  std::vector<Vec3> out;
+  for (const Point& p : points) out.push_back(rounded_point(p, exponent));
   return out;
 }
 

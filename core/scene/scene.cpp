@@ -189,7 +189,7 @@ bool IgnoredObjects::operator()(const TrianglePair& pair) const {
 void require_nothing_ignored(const Scene& scene, const std::string& who) {
   if (scene.ignored.empty()) return;
   throw Error(scene.name, "the scene ignores pairs of objects, and " + who + " answers about all",
-              "leave ignore out of the scene file");
+              "leave ignore out of the scene file and of the options");
 }
 
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,

@@ -48,7 +48,7 @@ class BenchCommand {
 
   std::vector<std::string> scene_;
   bool self_ = false;
-  Text peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
+  Text ignore_, peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
   Outputs outputs_;
 };
 
@@ -59,6 +59,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
        {"--self", &self_, "",
         "every object is tested against itself as well, but\n"
         "for triangles that share a vertex position"},
+       ignore_row(ignore_),
        {"--peers", &peers_, "LIST", "all, none, or names by commas; default all"},
        {"--methods", &methods_, "LIST", "of far-pairs,far,exact; all or none; default all"},
        {"--threads", &threads_, "N", "cores for each of them; default all there are"},
@@ -140,10 +141,11 @@ int BenchCommand::run() {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(scene_);
-  require_nothing_ignored(scene, "farcull bench");
+  Scene scene = read_scene(with_ignored(scene_, ignore_));
+  require_asked(scene, {});
   if (options.self) make_self(scene);
   if (distances_) {
+    require_nothing_ignored(scene, "farcull bench --distances");
     const DistanceBenchOptions of_distances = parse_distances(options);
     const DistanceBenchResult result = bench_distances(scene, of_distances, progress);
     terminal.clear();

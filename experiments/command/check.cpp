@@ -308,7 +308,7 @@ class CheckCommand {
 
  private:
   CheckArguments arguments_;
-  Text json_, pairs_, clearance_, frames_;
+  Text ignore_, json_, pairs_, clearance_, frames_;
 };
 
 CLI::App* CheckCommand::add_to(CLI::App& app) {
@@ -320,6 +320,7 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
        {"SCENE", &arguments_.scene, "", kSceneHelp},
        {"--self", &arguments_.self, "",
         "every object was tested against itself, as by\nfarcull run --self"},
+       ignore_row(ignore_),
        {"--pairs", &pairs_, "FILE",
         "a list of pairs as farcull run --pairs writes it:\n"
         "is it right and complete? Columns are found by their\n"
@@ -372,6 +373,7 @@ int CheckCommand::run() {
   if (mesh || to.scene.empty())
     to.scene.insert(to.scene.begin(), std::exchange(to.certificate, ""));
   check_scene(to.scene);
+  to.scene = with_ignored(to.scene, ignore_);
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);
   require_number(to.certificate, to.frames.has_value());

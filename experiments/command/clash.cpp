@@ -69,7 +69,7 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
             "report: list pairs that touch, and fail for them;\ndefault allow"},
            {"--ignore", &ignore_, "LIST",
             "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
-            "listed\napart where they meet"},
+            "listed\nlast where they meet"},
            {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
            {"--fail-on", &fail_on_, "LIST",
             "verdicts for which the exit status is 1, or none;\ndefault clash,contained,unknown"},
@@ -148,6 +148,7 @@ int ClashCommand::run() const {
   options.ignored = ignored_objects(scene, ignored());
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
   options.ignored = in_order(std::move(options.ignored));
+  require_asked(scene, options.ignored);
   scene.ignored.clear();
   if (outputs.page) require_clash_page(scene);
   const ClashRecord record = clashes(scene, options, progress);

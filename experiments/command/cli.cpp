@@ -295,6 +295,19 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   return Error(name, text, help);
 }
 
+// The error with a remedy that names the option by which the words sent something to standard
+// output.
+Error with_option(const Error& error, int argc, char** argv) {
+  constexpr std::array kOutputs = {"--json", "--csv", "--pairs", "--certificate", "-o", "--output"};
+  if (error.where != "standard output") return error;
+  for (int k = 2; k < argc; ++k) {
+    const std::string option = argv[k - 1];
+    if (argv[k] == std::string("-") && std::ranges::find(kOutputs, option) != kOutputs.end())
+      return Error(error.where, error.reason, "name a file instead: " + option + " FILE");
+  }
+  return error;
+}
+
 // Sets the options of the program itself.
 void describe(CLI::App& app) {
   app.get_formatter()->column_width(28);
@@ -361,7 +374,7 @@ int command_line(int argc, char** argv) {
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {
-    complain(error.what());
+    complain(with_option(error, argc, argv).what());
   } catch (const std::bad_alloc&) {
     complain(kOutOfMemory);
   } catch (const std::system_error& error) {

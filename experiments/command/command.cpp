@@ -94,7 +94,7 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
         [&](auto* value) {
           using Value = std::decay_t<decltype(*value)>;
           if constexpr (std::is_same_v<Value, bool>) {
-            command->add_flag(row.name, *value, row.help)->disable_flag_override();
+            option = command->add_flag(row.name, *value, row.help)->disable_flag_override();
           } else if constexpr (std::is_same_v<Value, BareOption>) {
             option = command->add_option_function<std::vector<std::string>>(
                 row.name,
@@ -108,7 +108,9 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
           }
         },
         row.value);
-    if (option != nullptr) option->type_name(row.type)->required(row.need == Need::must);
+    if (option->get_items_expected_max() > 0)
+      option->type_name(row.type)->required(row.need == Need::must);
+    if (*row.group != 0) option->group(row.group);
     if (row.name != std::string("SCENE") && row.name != std::string("PARTS")) continue;
     if (auto* const scene = std::get_if<std::vector<std::string>*>(&row.value))
       add_reading_options(*command, **scene);
@@ -209,6 +211,15 @@ OptionRow scene_row(std::vector<std::string>& scene) {
   return {"SCENE", &scene, "", kSceneHelp, Need::must};
 }
 
+OptionRow ignore_row(Text& ignore) {
+  return {"--ignore", &ignore, "LIST", help_of_option("ignore")};
+}
+
+std::vector<std::string> with_ignored(std::vector<std::string> scene, const Text& ignore) {
+  if (ignore) scene.push_back("--ignore=" + *ignore);
+  return scene;
+}
+
 Rows MethodOptions::rows(const std::vector<std::string>& names) {
   Rows out;
   for (const Option& option : run_options()) {
@@ -218,6 +229,11 @@ Rows MethodOptions::rows(const std::vector<std::string>& names) {
     const char* word = words_.emplace_back(option_word(option.name)).c_str();
     out.push_back({word, &text, option.type, spelled(option.help)});
     if (*option.type == 0) out.back().value = &flag;
+    const auto looks_or_lacks = [&](Method method) {
+      return looks(method) || !option.serves(traits(method));
+    };
+    if (std::ranges::all_of(all_methods(), looks_or_lacks))
+      out.back().group = "Options of methods that draw or look along views";
   }
   return out;
 }
@@ -262,6 +278,16 @@ void require_pairs(const NothingToTest& nothing, const std::string& command) {
   throw Error("SCENE", "nothing to test: " + nothing.reason,
               nothing.with_self ? "name two objects or more, or test this one: " + command
                                 : "name two objects or more");
+}
+
+void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored) {
+  std::vector<ObjectPair> all = ignored;
+  all.insert(all.end(), scene.ignored.begin(), scene.ignored.end());
+  const std::uint64_t count = scene.objects.size(), pairs = count * (count - 1) / 2;
+  if (count < 2 || has_self(scene) || in_order(std::move(all)).size() < pairs) return;
+  throw Error("SCENE",
+              "nothing to test: all " + counted(pairs, "pair", "pairs") + " of objects are ignored",
+              "ignore fewer pairs, or test objects against themselves with --self");
 }
 
 Progress TerminalProgress::callback() {

@@ -55,6 +55,7 @@ struct OptionRow {
   const char* type = "";
   std::string help;
   Need need = Need::may;
+  const char* group = "";  // heading of the help that it stands under; empty: the common one
 };
 using Rows = std::vector<OptionRow>;
 inline Rows operator+(Rows first, const Rows& then) {
@@ -205,6 +206,9 @@ void complain_broken(const std::string& message);
 /// Throws Error if there is nothing to test: 0 pairs would be taken for a scene without collisions.
 /// command: the one that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
+/// Throws Error if the scene has two objects or more, tests none against itself, and all pairs of
+/// objects are ignored, by these (as in_order() gives them) or by the scene.
+void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// The command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const std::vector<std::string>& scene);
 
@@ -296,6 +300,11 @@ std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
+/// The row of --ignore, for commands that give it to load_scene() as a word of the scene.
+OptionRow ignore_row(Text& ignore);
+/// The words of the scene with that of --ignore.
+std::vector<std::string> with_ignored(std::vector<std::string> scene, const Text& ignore);
+
 /// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
 inline constexpr const char* kFacesHelp =
@@ -347,7 +356,7 @@ class PictureCommand {
   RunOptions usual_options() const;
 
   std::vector<std::string> scene_;
-  Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
+  Text ignore_, method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
       up_, size_, output_, html_, resolutions_;
   BareOption depth_view_;
   bool self_ = false, zoom_ = false;

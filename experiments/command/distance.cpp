@@ -14,6 +14,7 @@
 #include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
+#include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/distances.h"
@@ -209,7 +210,7 @@ class DistanceCommand {
   int run_frames(const DistanceOptions& options, const Outputs& outputs, FrameRange range) const;
 
   std::vector<std::string> scene_;
-  Text pairs_, k_, within_, inside_, threads_, frames_;
+  Text ignore_, pairs_, k_, within_, inside_, threads_, frames_;
   bool self_ = false, verify_ = false;
   DiagramArguments diagram_;
   Outputs outputs_;
@@ -229,8 +230,11 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
            {"--self", &self_, "",
             "the triangles of one object as well, those that share\n"
             "a vertex position left out"},
-           {"--inside", &inside_, "yes|no",
-            "no: leave out whether an object lies inside another;\ndefault yes"},
+           ignore_row(ignore_),
+           {"--inside", &inside_, "yes|parity|no",
+            "whether an object lies inside another: by winding\n"
+            "numbers (yes, the default), by the parity of\n"
+            "crossings, or not at all"},
            {"--threads", &threads_, "N", "of the CPU; default as many as there are cores"},
            {"--verify", &verify_, "",
             "check each answer by other code, and of each pair that\nit is no nearer than the "
@@ -266,10 +270,16 @@ DistanceOptions DistanceCommand::parse() const {
   if (self_ && out.pairs == DistancePairs::nearest)
     throw Error("--self", "has no meaning with --pairs nearest: no object is its own neighbour",
                 "leave it out, or use --pairs objects or all");
-  out.inside = word_of("--inside", inside_, {"yes", "no"}, "no choice", "give yes or no") == 0;
+  const std::size_t inside =
+      word_of("--inside", inside_, {"yes", "no", "parity"}, "no choice", "give yes, parity or no");
+  out.inside = inside != 1;
+  out.parity = inside == 2;
   if (inside_ && out.inside && out.pairs == DistancePairs::all)
-    throw Error("--inside", "yes has no meaning with --pairs all",
+    throw Error("--inside", *inside_ + " has no meaning with --pairs all",
                 "leave it out, or use --pairs objects or nearest");
+  if (out.parity && (verify_ || outputs_.certificate))
+    throw Error("--inside", "parity is not what --verify and --certificate decide by",
+                "leave it or these out");
   out.threads = threads();
   out.verify = verify_;
   return out;
@@ -282,7 +292,8 @@ unsigned DistanceCommand::threads() const {
 }
 
 void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
-  require_nothing_ignored(scene, "farcull distance");
+  if (outputs_.certificate) require_nothing_ignored(scene, "a certificate");
+  require_asked(scene, {});
   const std::string reason = nothing_asked(scene, options);
   if (reason.empty()) return;
   std::string remedy = "name two objects or more";
@@ -300,6 +311,7 @@ int DistanceCommand::run() const {
     refuse_given({{"--pairs", pairs_.has_value()},
                   {"--k", k_.has_value()},
                   {"--within", within_.has_value()},
+                  {"--ignore", ignore_.has_value()},
                   {"--self", self_},
                   {"--inside", inside_.has_value()},
                   {"--verify", verify_},
@@ -334,7 +346,7 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(scene_);
+  Scene scene = read_scene(with_ignored(scene_, ignore_));
   if (self_) make_self(scene);
   require_question(scene, options);
   const DistanceRecord record = distances(scene, options, progress);
@@ -356,7 +368,7 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  FrameSource source(scene_, range, self_);
+  FrameSource source(with_ignored(scene_, ignore_), range, self_);
   if (const std::optional<Error> missing = source.missing()) {
     terminal.clear();
     complain(missing->where + ": the file does not exist; the frames before it are run");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -15,6 +16,8 @@
 
 namespace farcull {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Reads "900x760", rounded up to even numbers: a window has its middle between two pixels.
 void parse_size(const std::string& text, int& width, int& height) {
@@ -67,6 +70,11 @@ Outputs checked_outputs(const Text& picture, const Text& page,
   if (out.page == "-") {
     throw Error("--html", "a page does not go to standard output", "give --html FILE.html");
   }
+  const std::string ending = picture ? fs::path(*picture).extension().string() : "";
+  if (!ending.empty() && lower_case(ending) != ".png") {
+    throw Error("-o", "'" + *picture + "' is not named like a PNG, the only format that is written",
+                "give -o " + fs::path(*picture).replace_extension(".png").string());
+  }
   if (out.picture == "-" && is_terminal(stdout)) {
     throw Error("-o", "standard output is a terminal, which shows no PNG",
                 "let it go somewhere, or give -o FILE.png");
@@ -96,6 +104,7 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
        {"--depth", &depth_, "fragment|fixed", "for far; default fragment"},
        {"--device", &device_, "DEVICE", help_of_option("device")},
        {"--self", &self_, "", help_of_option("self")},
+       ignore_row(ignore_),
        {"--frame", &frame_, "F", "of a scene that moves"},
        {"--frames", &frames_, "N|A:B",
         "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
@@ -141,7 +150,7 @@ RunOptions PictureCommand::usual_options() const {
 
 PictureArguments PictureCommand::arguments() const {
   PictureArguments out;
-  out.scene = scene_;
+  out.scene = with_ignored(scene_, ignore_);
   out.self = self_;
   out.zoom = zoom_;
   if (frame_) out.frame = parse_frame(*frame_);
@@ -237,6 +246,7 @@ int PictureCommand::run() const {
   }
   TerminalProgress terminal;
   Lab lab(arguments.panels.front().device, terminal.callback());
+  require_asked(open_scene(arguments, lab), {});
   if (html_) require_page_size(page_arguments, lab);
   const PictureResult result = make_picture(arguments, lab);
   if (outputs.picture) write_output(*outputs.picture, to_png(result.image, result.texts));

@@ -12,6 +12,7 @@
 #include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
+#include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/misses.h"
 #include "experiments/record/output.h"
@@ -140,7 +141,8 @@ class RunCommand {
   MethodOptions options_;
   Text frames_, kinds_, tiles_;
   Outputs outputs_;
-  bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false;
+  bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false, names_ = false,
+       verbose_ = false;
 };
 
 CLI::App* RunCommand::add_to(CLI::App& app) {
@@ -172,16 +174,22 @@ Rows RunCommand::output_rows() {
                 "triangles within their object; with --self also\n"
                 "neighbours, 0 or 1 (see farcull help pairs)"},
                {"--faces", &faces_, "", kFacesHelp},
+               {"--names", &names_, "",
+                "with --pairs: two more columns, name_a and name_b, the\n"
+                "names of the objects"},
                {"--contacts", &contacts_, "",
                 "how the triangles of each pair meet: counts in the table\n"
                 "and the record, a column `contact` in the file of\n"
                 "--pairs (see farcull help pairs)"},
                {"--segments", &segments_, "",
-                "with --pairs: the same, and the ends of what the two\n"
-                "triangles have in common"},
+                "with --pairs: the same, and the ends or the corners of\n"
+                "what the two triangles have in common"},
                {"--kinds", &kinds_, "LIST",
                 "with --pairs: the same, and pairs of these kinds alone,\n"
                 "as in crossing,coplanar"},
+               {"-v,--verbose", &verbose_, "",
+                "print the stages as well: what each took and left, and\n"
+                "what was left out and why"},
                {"--json", &outputs_.json, "FILE", kJsonHelp},
                {"--certificate", &outputs_.certificate, "FILE",
                 "write evidence for every pair to this file, for\n"
@@ -211,6 +219,7 @@ void RunCommand::refuse_outputs() const {
                 "give --pairs FILE.csv as well");
   };
   needs_pairs("--faces", faces_, "adds columns to");
+  needs_pairs("--names", names_, "adds columns to");
   needs_pairs("--segments", segments_, "adds columns to");
   needs_pairs("--kinds", kinds_.has_value(), "chooses the rows of");
   if (!outputs_.certificate) return;
@@ -227,6 +236,7 @@ PairColumns RunCommand::columns() const {
   return {.faces = faces_,
           .contacts = contacts_ || segments_ || kinds_,
           .segments = segments_,
+          .names = names_,
           .kinds = kinds_ ? parse_kinds(*kinds_) : std::vector<ContactKind>()};
 }
 
@@ -292,6 +302,8 @@ int RunCommand::run() const {
   columns();
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
+  if (range && verbose_)
+    throw Error("--verbose", "has no meaning with --frames", "leave it out, or name one frame");
   const Outputs outputs = checked(outputs_, read_files(range), range);
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
@@ -303,6 +315,7 @@ int RunCommand::plan(const RunOptions& options) const {
   require_pairs(nothing_to_test(scene), with_self());
   RunOptions all = options;
   all.ignored = left_out(scene);
+  require_asked(scene, all.ignored);
   const Plan planned = farcull::plan(scene, all);
   const MissesOfPlan misses = misses_of(scene, planned);
   if (outputs.json) write_json(plan_json(scene, planned, misses.predicted), *outputs.json);
@@ -320,6 +333,7 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   if (outputs.certificate) require_nothing_ignored(scene, "a certificate");
   RunOptions all = options;
   all.ignored = left_out(scene);
+  require_asked(scene, all.ignored);
   Session session(options.device);
   const Record record = farcull::run(scene, all, session, progress);
   terminal.clear();
@@ -334,8 +348,9 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   if (!outputs.to_stdout()) {
     std::string verdict;
     if (record.verification) verdict = verdict_line(*record.verification);
-    write_output("-", run_table(scene, record, verdict) + nested_line(scene, record) +
-                          weld_lines(scene, meeting_themselves(scene, record)));
+    write_output("-", run_answer(scene, record, verdict) + nested_line(scene, record) +
+                          weld_lines(scene, meeting_themselves(scene, record)) +
+                          (verbose_ ? run_details(record) : ""));
   }
   if (!broken(record, kind_ == Kind::verify)) return kExitDone;
   complain_broken(missed(record));
@@ -355,7 +370,10 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .certificates = outputs.certificate.has_value()};
   if (leaves_out()) {
     question.ignored = [this, lacking = Lacking::refused](const Scene& scene) mutable {
-      return left_out(scene, std::exchange(lacking, Lacking::passed_over));
+      std::vector<ObjectPair> out = left_out(scene, lacking);
+      if (std::exchange(lacking, Lacking::passed_over) == Lacking::refused)
+        require_asked(scene, out);
+      return out;
     };
   }
   if (progress) progress("reading the scene");
@@ -443,7 +461,8 @@ int RunCommand::run_tile(const RunOptions& options) const {
   }
   if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
   if (!outputs.to_stdout())
-    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile));
+    write_output("-", run_answer(tile.part.scene, tile.record) + tile_lines(tile) +
+                          (verbose_ ? run_details(tile.record) : ""));
   if (!broken(tile.record, false)) return kExitDone;
   complain_broken(missed(tile.record));
   return kExitBroken;

@@ -279,6 +279,8 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
         const Stopwatch watch;
         BenchAnswer answer = c.run(scene);
         const double ms = watch.ms();
+        // Other libraries know nothing of objects that are ignored.
+        remove_ignored(scene, scene.ignored, answer.pairs);
         if (round < 0) result.rows.push_back(cold_row(c, answer));
         // A cold run counts only if it is over the limit.
         if (round >= 0 || ms > rounds.limit_ms) parts[i].add(answer);

@@ -75,14 +75,18 @@ std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
 
 struct Insides::OfObject {
   Box box;
+  bool parity = false;
   std::once_flag closed_found, parts_found;
   Surface surface = Surface::open;
   std::vector<Vec3> parts;
 };
 
-Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scene.objects.size()]) {
-  for (std::size_t o = 0; o < scene.objects.size(); ++o)
+Insides::Insides(const Scene& scene, bool parity)
+    : scene_(scene), objects_(new OfObject[scene.objects.size()]) {
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     objects_[o].box = box_of(scene, scene.objects[o]);
+    objects_[o].parity = parity;
+  }
 }
 Insides::~Insides() = default;
 
@@ -92,7 +96,11 @@ bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_close
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
   if (!lies_within(in.box, out.box)) return false;
-  std::call_once(out.closed_found, [&] { out.surface = surface_of(scene_, outer); });
+  std::call_once(out.closed_found, [&] {
+    out.surface = surface_of(scene_, outer);
+    // Of a surface that is closed and not oriented inside() takes the parity.
+    if (out.parity && out.surface == Surface::oriented) out.surface = Surface::closed;
+  });
   if (out.surface == Surface::open) {
     not_closed = true;
     return false;
@@ -266,9 +274,12 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   if (options.pairs == DistancePairs::nearest) {
     near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
   } else {
-    const std::vector<ObjectPair> questions =
+    std::vector<ObjectPair> questions =
         std::isfinite(options.within) ? trees.objects_within(options.within, 4 * options.most_pairs)
                                       : every_two_objects(scene);
+    std::erase_if(questions, [&](const ObjectPair& pair) {
+      return std::ranges::binary_search(scene.ignored, pair);
+    });
     near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
   }
   record.counts = trees.counts();
@@ -304,7 +315,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
   }
   if (progress) progress("inside");
   const Stopwatch watch;
-  const Insides insides(scene);
+  const Insides insides(scene, record.options.parity);
   for_each_shared(record.distances.size(), record.options.threads, [&](std::size_t k) {
     Distance& d = record.distances[k];
     if (d.objects.a != d.objects.b && !d.closest.squared.is_zero())
@@ -341,9 +352,10 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   if (progress) progress("exact tests");
   const unsigned threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  const std::vector<TrianglePair> pairs =
+  std::vector<TrianglePair> pairs =
       decide(scene, near, {.clearance = options.within, .threads = threads, .neighbours = false})
           .pairs;
+  remove_ignored(scene, scene.ignored, pairs);
   record.trace.push_back({.kind = StageKind::exact,
                           .ran = true,
                           .reason = Reason::predicates,
@@ -470,6 +482,9 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
   require_few_questions(scene, options);
+  if (options.pairs == DistancePairs::nearest)
+    require_nothing_ignored(scene, "the search for nearest objects");
+  if (options.verify) require_nothing_ignored(scene, "the accounting of distances");
   const FloatingPointGuard guard;
   const Stopwatch watch;
   DistanceRecord out;

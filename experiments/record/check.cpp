@@ -15,6 +15,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
+#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -89,8 +90,15 @@ CheckResult check_list(const Scene& scene, const std::string& name,
     const TrianglePair pair = pair_of(scene, name, row);
     if (pair.a != pair.b) listed.push_back(pair);
   }
+  // The evidence is about all pairs, so it gets those of ignored objects, too.
+  if (const IgnoredObjects is_ignored(scene, scene.ignored); is_ignored.any()) {
+    for (const TrianglePair& pair : all_colliding_pairs(scene, {.clearance = clearance}).pairs) {
+      if (is_ignored(pair)) listed.push_back(pair);
+    }
+  }
   CheckResult result =
       check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
+  remove_ignored(scene, scene.ignored, result.meeting);
   result.unattested.clear();  // there is no run
   result.ms = start.ms();
   return result;
@@ -154,6 +162,7 @@ std::string proved_text(const Scene& scene, const SceneCheck& check) {
     out = "these " + grouped(pairs) + " pairs of the scene " +
           (near.empty() ? "meet" : "are " + near) + ", and no others";
   }
+  if (!scene.ignored.empty()) out += ", of objects that are not ignored";
   return !near.empty() && has_self(scene) ? out + " (neighbours only where they meet)" : out;
 }
 
@@ -170,8 +179,9 @@ std::string check_text(const Scene& scene, const SceneCheck& check) {
   const CheckResult& result = check.result;
   std::string out = verdict_text(scene, check);
   if (const Certificate::Claims& found = result.found; !result.list_sha256.empty()) {
-    out += fmt::format("list       SHA-256 of the pairs that {}: {}\n",
-                       check.clearance == 0 ? "meet" : "are within it", result.list_sha256);
+    out += fmt::format("list       SHA-256 of the pairs that {}{}: {}\n",
+                       check.clearance == 0 ? "meet" : "are within it",
+                       scene.ignored.empty() ? "" : ", of ignored objects too", result.list_sha256);
     if (check.differences) out += list_text(scene, check);
     out += not_asked_line(scene);
     out += fmt::format("boxes      {} {}: {} separated, {} neighbours, {} {}\n",
@@ -269,7 +279,7 @@ std::string FrameVerdicts::text(const std::string& proved) const {
 SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows) {
-  require_nothing_ignored(scene, "a check");
+  if (certificate) require_nothing_ignored(scene, "a certificate");
   SceneCheck out;
   out.clearance = clearance;
   if (certificate) {

@@ -47,26 +47,25 @@ std::string place_text(const ClashRow& row) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
-std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table,
-                      bool ignored) {
+std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
   Table out("lllrrrll");
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
   for (const ClashRow& row : record.rows) {
-    if (row.ignored != ignored) continue;
-    if (row.verdict == ClashVerdict::touch && !table.touches && !ignored) continue;
+    if (row.verdict == ClashVerdict::touch && !table.touches && !row.ignored) continue;
     if (++all > kRowsShown) continue;
-    out.add({to_string(row.verdict), name_of(scene, row.objects.a), name_of(scene, row.objects.b),
-             depth_text(row), row.curve > 0 ? short_number(row.curve) : "", distance_text(row),
-             place_text(row), clash_words(scene, row)});
+    out.add({to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
+             name_of(scene, row.objects.a), name_of(scene, row.objects.b), depth_text(row),
+             row.curve > 0 ? short_number(row.curve) : "", distance_text(row), place_text(row),
+             clash_words(scene, row)});
   }
   if (all == 0) return "";
   const std::string more =
       all > kRowsShown
           ? fmt::format("and {} more (--json and --csv have all)\n", grouped(all - kRowsShown))
           : "";
-  return "\n" + std::string(ignored ? "ignored pairs that meet:\n" : "") + out.text() + more;
+  return "\n" + out.text() + more;
 }
 
 std::string counts_text(const ClashRecord& record) {
@@ -85,14 +84,14 @@ Json row_json(const Scene& scene, const ClashRow& row) {
     if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
       kinds[std::string(farcull::name_of(kind))] = n;
   }
-  Json out = {{"a", row.objects.a},
-              {"b", row.objects.b},
+  Json out = {{"object_a", row.objects.a},
+              {"object_b", row.objects.b},
               {"name_a", name_of(scene, row.objects.a)},
               {"name_b", name_of(scene, row.objects.b)},
               {"verdict", to_string(row.verdict)},
               {"ignored", row.ignored},
               {"proved", row.proved},
-              {"pairs", row.pairs},
+              {"triangle_pairs", row.pairs},
               {"kinds", kinds},
               {"inner", json_of(row.inner)},
               {"distance", json_if(row.squared.has_value(), row.distance)},
@@ -102,20 +101,12 @@ Json row_json(const Scene& scene, const ClashRow& row) {
               {"curve", row.curve},
               {"depth", nullptr}};
   if (const auto& depth = row.depth) {
-    out["depth"] = {{"at_least", depth->lo},
-                    {"at_most", depth->hi},
+    out["depth"] = {{"least", depth->lo},
+                    {"most", depth->hi},
                     {"translation_of_a", point_json(depth->translation)},
                     {"direction", point_json(depth->direction)}};
   }
   return out;
-}
-
-/// A name as a cell of a CSV.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
 }
 
 }  // namespace
@@ -155,20 +146,21 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
   }
   for (const std::uint32_t object : record.empty)
     out += "not examined: " + name_of(scene, object) + " has no triangles\n";
-  out += rows_text(scene, record, table, false) + rows_text(scene, record, table, true);
-  return out + fmt::format("\ntime       {:.1f} ms\n", record.ms);
+  return out + rows_text(scene, record, table) + fmt::format("\ntime       {:.1f} ms\n", record.ms);
 }
 
 std::string clash_csv(const Scene& scene, const ClashRecord& record) {
   std::string out =
-      "object_a,object_b,name_a,name_b,verdict,ignored,proved,pairs,inner,distance,squared,"
+      "object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs,inner,distance,"
+      "squared,"
       "depth_least,depth_most,curve,x_lo,y_lo,z_lo,x_hi,y_hi,z_hi,x_a,y_a,z_a,x_b,y_b,z_b";
   for (const ContactKind kind : kContactKinds) out += fmt::format(",{}", farcull::name_of(kind));
   out += "\n";
   for (const ClashRow& row : record.rows) {
     out += fmt::format("{},{},{},{},{},{},{},{},{},", row.objects.a, row.objects.b,
-                       cell(name_of(scene, row.objects.a)), cell(name_of(scene, row.objects.b)),
-                       to_string(row.verdict), int{row.ignored}, int{row.proved}, row.pairs,
+                       csv_cell(name_of(scene, row.objects.a)),
+                       csv_cell(name_of(scene, row.objects.b)), to_string(row.verdict),
+                       int{row.ignored}, int{row.proved}, row.pairs,
                        row.inner ? std::to_string(*row.inner) : "");
     out += row.squared ? fmt::format("{},{},", row.distance, row.squared->text()) : ",,";
     out += row.depth ? fmt::format("{},{},", row.depth->lo, row.depth->hi) : ",,";

@@ -171,7 +171,10 @@ Json distances_json(const Scene& scene, const DistanceRecord& record,
           {"pairs_asked", to_string(static_cast<DistanceCertificate::Pairs>(o.pairs))},
           {"k", json_if(o.pairs == DistancePairs::nearest, o.k)},
           {"within", o.within},
-          {"inside_asked", o.inside},
+          {"inside_by", text_json(!o.inside  ? ""
+                                  : o.parity ? "parity"
+                                             : "winding number")},
+          {"ignored", scene.ignored.size()},
           {"pairs",
            json_list(record.distances, [&](const Distance& d) { return pair_json(scene, d); })},
           {"nearest", nearest_json(scene, record)},
@@ -235,6 +238,9 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
     out += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
   out += folded_text(scene);
   out += "\nasked      " + question_text(record.options) + "\n";
+  if (!scene.ignored.empty())
+    out +=
+        "ignored    " + counted(scene.ignored.size(), "pair of objects", "pairs of objects") + "\n";
   out += fmt::format("answered   {}\n", counted(record.distances.size(), "pair", "pairs"));
   out += least_line(scene, record.distances) + "\n";
   if (!record.distances.empty()) {

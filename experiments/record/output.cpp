@@ -137,6 +137,19 @@ void append_ends(const ContactShape& shape, std::string& out) {
   }
 }
 
+// Appends a cell with the corners of a polygon that two triangles have in common, all coordinates
+// with blanks between.
+void append_polygon(const Scene& scene, const TrianglePair& pair, const ContactShape& shape,
+                    std::string& out) {
+  out += ',';
+  if (shape.dimension != 2) return;
+  const char* blank = "";
+  for (const Vec3& p : contact_polygon(scene.corners(pair.a), scene.corners(pair.b))) {
+    fmt::format_to(std::back_inserter(out), "{}{} {} {}", blank, p.x(), p.y(), p.z());
+    blank = " ";
+  }
+}
+
 // The assumptions about the device, with their names in docs/reliability.md.
 std::vector<std::string> assumptions_about(const GlInfo& device) {
   std::vector<std::string> lines = {
@@ -266,13 +279,21 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   return out;
 }
 
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 std::string pairs_header(const Scene& scene, const PairColumns& columns) {
   std::string header =
       columns.numbers ? pair_list_header(columns.numbers->self) : pair_list_header(scene);
   header.pop_back();
   if (columns.contacts) header += ",contact";
-  if (columns.segments) header += ",x0,y0,z0,x1,y1,z1";
+  if (columns.segments) header += ",x0,y0,z0,x1,y1,z1,polygon";
   if (columns.faces) header += ",face_a,face_b";
+  if (columns.names) header += ",name_a,name_b";
   return header + '\n';
 }
 
@@ -320,10 +341,17 @@ class Rows {
     rows_.append(pair, out);
     out.pop_back();
     if (columns_.contacts) out.append(",").append(name_of(contacts.at(k).kind));
-    if (columns_.segments) append_ends(contacts.at(k), out);
+    if (columns_.segments) {
+      append_ends(contacts.at(k), out);
+      append_polygon(scene_, pair, contacts.at(k), out);
+    }
     if (columns_.faces) {
       fmt::format_to(std::back_inserter(out), ",{},{}", scene_.source_face[pair.a],
                      scene_.source_face[pair.b]);
+    }
+    if (columns_.names) {
+      for (const std::uint32_t t : {pair.a, pair.b})
+        out.append(",").append(csv_cell(scene_.objects[place_of(scene_, t).object].name));
     }
     out += '\n';
   }

@@ -120,19 +120,24 @@ nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
 nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
+/// A name as a cell of a CSV: in quotes if it has to be.
+std::string csv_cell(const std::string& text);
+
 /// Columns of pairs_csv() besides those that every list has, and which rows it writes.
 struct PairColumns {
   bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
   bool contacts = false;  // contact: the kind; the record must have the kinds
   bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of the common segment or point, in world
-                          // units; empty for a polygon or nothing. The record must have them
+                          // units; empty for a polygon or nothing. The record must have them.
+                          // polygon: the corners of a polygon, else empty
+  bool names = false;     // name_a, name_b: of the objects
   std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
   const ListNumbers* numbers = nullptr;  // set if the scene is a part of another scene; else null
 };
 
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; with
 /// colliding neighbours if an object of the scene is tested against itself. More columns come at
-/// the end: contact, the segment, the faces.
+/// the end: contact, the segment and the polygon, the faces, the names.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
 /// The same, given to `sink` part by part in order, so that the whole text is never in memory. All
 /// cores make the parts.

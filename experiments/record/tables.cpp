@@ -4,22 +4,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <set>
+#include <sstream>
 
-#include "core/boxes/join.h"
 #include "core/gl/base/context.h"
-#include "core/scene/near_points.h"
 #include "core/scene/scene.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
-#include "verify/inside.h"
 
 namespace farcull {
 namespace {
 
 constexpr std::size_t kExamplesShown = 5;
+
+// Breaks lines at blanks, so that each has at most 80 columns where its words allow it. The rest of
+// a line stands below its text, which begins in column 11.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kColumns = 80, kIndent = 11;
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    while (line.size() > kColumns) {
+      std::size_t at = line.rfind(' ', kColumns);
+      if (at == std::string::npos || at <= kIndent) at = line.find(' ', kColumns);
+      if (at == std::string::npos) break;
+      out += line.substr(0, at) + "\n";
+      line = std::string(kIndent, ' ') + line.substr(at + 1);
+    }
+    out += line + "\n";
+  }
+  return out;
+}
 
 std::string scene_line(const Scene& scene, const Record& record) {
   std::string line =
@@ -366,20 +380,19 @@ std::string not_asked_text(const Scene& scene) {
 
 std::string not_asked_line(const Scene& scene, const std::string& options) {
   const std::string text = not_asked_text(scene);
-  return text.empty()
-             ? ""
-             : "not asked  whether an object meets itself: " + text + " (" + options + " asks)\n";
+  return text.empty() ? "" : "untested   " + text + " (add " + options + ")\n";
 }
 
 std::string run_heading(const Scene& scene, const Record& record) {
   std::string out =
-      scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
-      method_text(record) + "\n" + default_method_line(record.options) + promise_line(record) +
+      "scene      " + scene_line(scene, record) + "method     " + method_text(record) + "\n" +
+      promise_line(record) + "device     " + device_text(record) + "\n" +
       not_asked_line(scene,
                      tests_self(record.options.method) ? "--self" : "--method far-pairs --self");
-  if (record.callers == kProved) return out;
-  return out + "arithmetic " + to_string(record.used) + "; the caller " +
-         to_string(record.callers) + "\n";
+  if (record.callers != kProved)
+    out +=
+        "arithmetic " + to_string(record.used) + "; the caller " + to_string(record.callers) + "\n";
+  return wrapped(out);
 }
 
 std::string verdict_text(const Accounting& accounting) {
@@ -400,19 +413,9 @@ std::string accounting_sum(const Accounting& v) {
       v.ignored > 0 ? " + " + grouped(v.ignored) + " ignored" : "", grouped(v.false_negatives));
 }
 
-std::string run_table(const Scene& scene, const Record& record, const std::string& verdict) {
-  std::string out = run_heading(scene, record);
-  if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
-  if (!record.found.pair_views().empty())
-    out += "views      " + views_text(record.found.pair_views()) + "\n";
-  out += radius_line(record);
-  out += "\n" + stage_table(record.trace) + "\n";
-  out += fmt::format("kept       {}, {}, {}\n",
-                     counted(record.found.object_count, "object", "objects"),
-                     counted(record.found.triangle_count, "triangle", "triangles"),
-                     counted(record.found.count, "candidate pair", "candidate pairs"));
+std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict) {
   const bool self = has_self(scene);
-  out += fmt::format(
+  std::string out = fmt::format(
       "colliding  {}{}\n",
       colliding_text(record.collisions.pairs.size(), record.collisions.neighbour_pairs.size(),
                      self),
@@ -420,83 +423,31 @@ std::string run_table(const Scene& scene, const Record& record, const std::strin
                  " of neighbours"
            : "");
   out += contacts_line(record) + limit_line(record) + ignored_line(record);
-  out += work_line(record);
-  out += device_work_line(record);
-  out += fmt::format(
+  const std::string time = fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}{}\n", record.ms.total,
       record.ms.setup, record.ms.cull, record.ms.exact,
       record.ms.contacts > 0 ? fmt::format("; contacts {:.1f} more", record.ms.contacts) : "",
       record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
-  out += verdict;
-  out += accounting_lines(scene, record);
-  return out;
+  return wrapped(out) + verdict + wrapped(accounting_lines(scene, record)) +
+         run_heading(scene, record) + wrapped(time);
 }
 
-std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record) {
-  std::set<std::uint32_t> found;
-  for (const auto* pairs : {&record.collisions.pairs, &record.collisions.neighbour_pairs}) {
-    for (const TrianglePair& pair : *pairs) {
-      const std::uint32_t a = place_of(scene, pair.a).object;
-      if (a == place_of(scene, pair.b).object) found.insert(a);
-    }
-  }
-  return {found.begin(), found.end()};
+std::string run_details(const Record& record) {
+  std::string out = default_method_line(record.options);
+  if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
+  if (!record.found.pair_views().empty())
+    out += "views      " + views_text(record.found.pair_views()) + "\n";
+  out += radius_line(record);
+  out += fmt::format("kept       {}, {}, {}\n",
+                     counted(record.found.object_count, "object", "objects"),
+                     counted(record.found.triangle_count, "triangle", "triangles"),
+                     counted(record.found.count, "candidate pair", "candidate pairs"));
+  out += work_line(record) + device_work_line(record);
+  return wrapped(out) + "\n" + stage_table(record.trace);
 }
 
-std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects) {
-  constexpr std::uint64_t kMostTriangles = 4'000'000;
-  constexpr std::size_t kMostLines = 3;
-  std::uint64_t triangles = 0;
-  for (const std::uint32_t o : objects) triangles += scene.objects[o].triangle_count;
-  if (triangles > kMostTriangles) return "";
-  std::string out;
-  std::size_t lines = 0;
-  for (const std::uint32_t o : objects) {
-    const std::optional<WeldHint> hint = weld_hint(scene, scene.objects[o]);
-    if (!hint) continue;
-    out += fmt::format(
-        "hint       {} is not closed: {}, one of them at {:.6g} {:.6g} {:.6g}. Their ends nearly\n"
-        "           coincide; --weld {:.0e}*size closes it\n",
-        scene.objects[o].name, counted(hint->open_edges, "open edge", "open edges"),
-        hint->place.x(), hint->place.y(), hint->place.z(), hint->tolerance);
-    if (++lines == kMostLines) break;
-  }
-  return out;
-}
-
-std::string nested_line(const Scene& scene, const Record& record) {
-  // Pairs of objects, of which the box of the first lies in the box of the second.
-  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
-  std::vector<std::uint32_t> all(boxes.size());
-  std::iota(all.begin(), all.end(), 0u);
-  constexpr std::size_t kMost = 1'000'000;
-  const std::vector<TrianglePair> overlapping = box_join(boxes, all, all, kMost);
-  if (overlapping.size() > kMost) return "";
-  std::set<ObjectPair> meet;
-  for (const TrianglePair& pair : record.collisions.pairs)
-    meet.insert({place_of(scene, pair.a).object, place_of(scene, pair.b).object});
-  meet.insert(record.options.ignored.begin(), record.options.ignored.end());
-  std::map<std::uint32_t, bool> closed;
-  std::uint64_t count = 0;
-  std::string first;
-  const auto within = [&](std::uint32_t a, std::uint32_t b) {
-    return (boxes[a].lo.array() >= boxes[b].lo.array()).all() &&
-           (boxes[a].hi.array() <= boxes[b].hi.array()).all();
-  };
-  for (const auto& [a, b] : overlapping) {
-    for (const auto& [in, out] : {ObjectPair{a, b}, ObjectPair{b, a}}) {
-      if (!within(in, out) || meet.contains({a, b})) continue;
-      if (!closed.contains(out)) closed[out] = is_closed(scene, out);
-      if (!closed[out]) continue;
-      if (count++ == 0) first = scene.objects[in].name + " in " + scene.objects[out].name;
-      break;
-    }
-  }
-  if (count == 0) return "";
-  return fmt::format(
-      "nested     {} may lie wholly inside a closed one, as {}. Surfaces that do\n"
-      "           not meet are no collision; farcull distance says what lies inside\n",
-      counted(count, "object", "objects"), first);
+std::string run_table(const Scene& scene, const Record& record, const std::string& verdict) {
+  return run_answer(scene, record, verdict) + run_details(record);
 }
 
 std::string comparison_table(const Scene& scene, const std::vector<Record>& records) {

@@ -52,20 +52,15 @@ std::string run_heading(const Scene& scene, const Record& record);
 /// A row for each stage: its time, how many items entered and how many were left, and why.
 std::string stage_table(const std::vector<Stage>& stages);
 
-/// The table of one run. The stages of a view are folded into one row, and so are all rounds after
-/// the first. The accounting is at the end; `verdict`, lines of the caller, comes before it.
+/// The answer of one run, in lines of at most 80 columns where the words allow it: the pairs, the
+/// accounting, and what was run on what. `verdict`, lines of the caller, stands before the
+/// accounting.
+std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict = "");
+/// What run --verbose adds: the views, the radius, and a row for each stage, with what was left out
+/// and why. The stages of a view are folded into one row, and so are all rounds after the first.
+std::string run_details(const Record& record);
+/// Both.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
-
-/// The objects of which two triangles collide with each other, ascending.
-std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
-
-/// Lines about these objects that are not closed, and that --weld would close: at which tolerance,
-/// and where; at most three. Empty for objects of more than 4 million triangles together.
-std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
-
-/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
-/// surfaces do not meet. Empty if there are none, or more than a million pairs of boxes to look at.
-std::string nested_line(const Scene& scene, const Record& record);
 
 /// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was
 /// culled, 26,214,400 pairs accounted for".

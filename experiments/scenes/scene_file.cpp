@@ -498,7 +498,11 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
   try {
     SceneWords words = scene_words(arguments);
     meshes.read_as(std::move(words.reading));
-    return load_any_scene(words.names, meshes);
+    Scene out = load_any_scene(words.names, meshes);
+    const std::vector<ObjectPair> more = ignored_objects(out, words.ignored);
+    out.ignored.insert(out.ignored.end(), more.begin(), more.end());
+    out.ignored = in_order(std::move(out.ignored));
+    return out;
   } catch (const std::bad_alloc&) {
     throw Error(arguments[0], "the scene does not fit into memory",
                 "give fewer or smaller objects, or use a larger machine");
@@ -506,7 +510,7 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
 }
 
 SceneWords scene_words(const std::vector<std::string>& arguments) {
-  constexpr std::string_view kWeld = "--weld=", kFormat = "--format=";
+  constexpr std::string_view kWeld = "--weld=", kFormat = "--format=", kIgnore = "--ignore=";
   SceneWords out;
   for (const std::string& word : arguments) {
     if (word.starts_with(kWeld)) {
@@ -514,6 +518,8 @@ SceneWords scene_words(const std::vector<std::string>& arguments) {
       parse_weld(out.reading.weld);
     } else if (word.starts_with(kFormat)) {
       out.reading.format = named_format(word.substr(kFormat.size()));
+    } else if (word.starts_with(kIgnore)) {
+      out.ignored = parse_ignored(word.substr(kIgnore.size()));
     } else {
       out.names.push_back(word);
     }

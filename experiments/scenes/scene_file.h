@@ -81,7 +81,8 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 /// in a scene file, the line (syntax, and names of ignored objects) or the place as in
 /// objects[1].rotate.axis (contents).
 /// Beside them may stand --weld=T (weld.h), which the name of the scene then says, and --format=F,
-/// for a mesh file "-", which is standard input.
+/// for a mesh file "-", which is standard input, and --ignore=LIST (parse_ignored()), pairs that
+/// Scene::ignored then has as well.
 Scene load_scene(const std::vector<std::string>& arguments);
 /// load_scene() that takes meshes from the cache `meshes`, where they stay.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
@@ -89,6 +90,7 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 struct SceneWords {
   std::vector<std::string> names;
   MeshReading reading;
+  std::vector<IgnoredNames> ignored;
 };
 /// The arguments of load_scene(), taken apart. Throws Error for a bad value.
 SceneWords scene_words(const std::vector<std::string>& arguments);

@@ -84,7 +84,7 @@ void Interruptible::done(long count) { items_done = count; }
 
 namespace {
 
-constexpr const char* kStdoutRemedy = "let it go somewhere, or write to a file with --json FILE";
+constexpr const char* kStdoutRemedy = "let it go to a place that takes it, such as a file";
 constexpr const char* kPathRemedy = "give a path in a folder with room that you may write to";
 
 [[noreturn]] void refuse(const std::string& path, int code) {

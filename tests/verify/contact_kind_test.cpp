@@ -251,6 +251,59 @@ TEST(ContactKind, EveryPairOnAGridHasOneKind) {
     EXPECT_GT(of_kind[static_cast<std::size_t>(kind)], 0) << name_of(kind);
 }
 
+/// A triangle with corners on a grid. With a step of a tenth many determinants are 0 although the
+/// coordinates have all 53 digits.
+Triangle on_grid(RandomDraws& random, int planes, double step) {
+  Triangle out;
+  for (Vec3& p : out) p = step * Vec3(random.below(4), random.below(4), random.below(planes));
+  return out;
+}
+
+TEST(ContactKind, BySignsAsByClipping) {
+  RandomDraws random(604);
+  std::array<int, kContactKinds.size()> of_kind{};
+  int wrong = 0, noticed = 0;
+  for (int n = 0; n < 6000; ++n) {
+    const double step = n % 2 == 0 ? 0.1 : 0.125;
+    Triangle a = on_grid(random, 1 + n % 3, step), b = on_grid(random, 1 + n % 3, step);
+    if (n % 40 == 0) b = {a[1], a[2], a[0]};
+    for (Triangle* t : {&a, &b}) {
+      for (Vec3& p : *t) p.z() += n % 2 * 0.5 * p.x();  // exact: planes along no axis
+    }
+    const ContactKind kind = contact_shape(a, b).kind;
+    ++of_kind[static_cast<std::size_t>(kind)];
+    wrong += contact_kind(a, b) != kind;
+    // The twin: a corner that is moved by one unit in the last place is noticed.
+    b[0].y() = std::nextafter(b[0].y(), 1);
+    noticed += contact_kind(a, b) != kind;
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(noticed, 100);
+  for (const int count : of_kind) EXPECT_GT(count, 20);
+}
+
+TEST(ContactShape, ThePolygonOfTrianglesInOnePlane) {
+  const Triangle a = {Vec3(0, 0, 1), Vec3(6, 0, 1), Vec3(0, 6, 1)};
+  const Triangle b = {Vec3(1, 1, 1), Vec3(7, 1, 1), Vec3(1, 7, 1)};
+  const std::vector<Vec3> common = {Vec3(1, 1, 1), Vec3(1, 5, 1), Vec3(5, 1, 1)};
+  const Triangle star = {Vec3(4, 4, 1), Vec3(-2, 4, 1), Vec3(4, -2, 1)};
+  const std::vector<Vec3> six = {Vec3(0, 2, 1), Vec3(0, 4, 1), Vec3(2, 4, 1),
+                                 Vec3(4, 2, 1), Vec3(4, 0, 1), Vec3(2, 0, 1)};
+  for (const auto& i : kPermutations) {
+    for (const auto& j : kPermutations) {
+      EXPECT_EQ(contact_polygon(reordered(a, i), reordered(b, j)), common);
+      EXPECT_EQ(contact_polygon(reordered(b, j), reordered(a, i)), common);
+      EXPECT_EQ(contact_polygon(reordered(star, j), reordered(a, i)), six);
+    }
+  }
+  EXPECT_EQ(contact_polygon(a, a),
+            (std::vector<Vec3>{Vec3(0, 0, 1), Vec3(0, 6, 1), Vec3(6, 0, 1)}));
+  // No polygon: a segment of an edge, a point, and nothing.
+  EXPECT_TRUE(contact_polygon(a, {Vec3(1, 0, 1), Vec3(2, 0, 1), Vec3(1, -1, 1)}).empty());
+  EXPECT_TRUE(contact_polygon(a, {Vec3(0, 0, 1), Vec3(-2, 0, 1), Vec3(0, -1, 1)}).empty());
+  EXPECT_TRUE(contact_polygon(a, {Vec3(0, 0, 2), Vec3(6, 0, 2), Vec3(0, 6, 2)}).empty());
+}
+
 TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
   Random random(603);
   const Scene scene = reference::soup(random, 40, 4);

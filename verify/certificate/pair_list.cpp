@@ -273,6 +273,10 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
     } else if (one_object && !scene.objects[row.object[0]].self) {
       wrong(row.line, pair,
             "the pair is of one object that is not tested against itself (--self asks)");
+    } else if (std::ranges::binary_search(scene.ignored,
+                                          ObjectPair{std::min(row.object[0], row.object[1]),
+                                                     std::max(row.object[0], row.object[1])})) {
+      wrong(row.line, pair, "the pair is of two objects that are ignored");
     } else if (!std::binary_search(meeting.begin(), meeting.end(), pair)) {
       wrong(row.line, pair,
             one_object && share_corner(scene, pair)

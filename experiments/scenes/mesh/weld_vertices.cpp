@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/near_points.h"
 #include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/near_points.h"
 #include "experiments/scenes/mesh/weld.h"
 
 namespace farcull {

@@ -58,7 +58,7 @@ rows(r"""
 pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
 good.obj << {T}; f 1 2 3
 away.obj << v 50 0 0; v 51 0 0; v 50 1 0; f 1 2 3
-0 run | run pierced.obj away.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^not asked .*\(--self asks\)$
+0 run | run pierced.obj away.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^untested .*\(add --self\)$
   | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":2,"pairs":1,"which":\[\[0,1\]\]\}
   | @p.json ~ "not_asked":\{"objects":2,"pairs":1\}
 # One object leaves nothing to test. That is an error that names the command which tests it.
@@ -71,24 +71,32 @@ bad nothing in a scene file | SCENE: .*: farcull verify one\.json --self$ | veri
   | ^verified: no colliding pair was culled, 1 pair accounted for$ | @something.json ^    "nothing_to_test": null,$
 one.json << {"objects": [{"mesh": "pierced.obj", "self": true}]}
 0 something in a scene file | verify one.json | ^verified:
+bad all ignored for {command} | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer pairs | {command} pierced.obj good.obj --ignore pierced:good
+0 bench with ignored objects | bench pierced.obj away.obj good.obj --ignore pierced:good --device cpu --repeat 1 --peers cgal-boxes --json - | "disagreement": null
+bad all ignored for bench | SCENE: nothing to test: all 1 pair | bench pierced.obj good.obj --ignore pierced:good --peers none
+bad all ignored for clash | SCENE: nothing to test: all 1 pair | clash pierced.obj good.obj --ignore pierced:good
+two.json << {"objects": [{"mesh": "pierced.obj"}, {"mesh": "good.obj"}], "ignore": [["pierced", "good"]]}
+bad all ignored by a scene file | SCENE: nothing to test: all 1 pair | run two.json
+bad all ignored in frames | SCENE: nothing to test: all 1 pair | run two-spheres --frames 1 --ignore first:second
+0 ignored, with self | run pierced.obj good.obj --ignore pierced:good --self | ^colliding +1 pair
 0 two objects | verify pierced.obj good.obj | ^verified:
 0 check | check p.json pierced.obj away.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
 0 verify | verify pierced.obj away.obj --method far-pairs | {unasked}
-0 run far | run pierced.obj away.obj --method far --device software --resolution 64 | {unasked} | ^not asked .*\(--self asks\)$
+0 run far | run pierced.obj away.obj --method far --device software --resolution 64 | {unasked} | ^untested .*\(add --self\)$
 0 run cullide | run pierced.obj away.obj --method cullide --device software --resolution 64 | {unasked}
-  | ^not asked .*\(--method far-pairs --self asks\)$
+  | ^untested .*\(add --method far-pairs$
 0 compare | compare pierced.obj away.obj --methods far-pairs,exact | {unasked}
 0 bench | bench pierced.obj away.obj --device cpu --repeat 1 --peers none | {unasked}
 $ cp pierced.obj pierced0.obj
-0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 | ^not asked .* 1 pair of triangles inside pierced
+0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 | ^untested +1 pair of triangles inside pierced
 0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":2,"pairs":1,
 $ ! "$farcull" run pierced%d.obj --frames 1 >/dev/null 2>err && grep -q 'SCENE: nothing to test.*farcull run pierced%d.obj --frames 1 --self$' err
 0 plan | plan pierced.obj away.obj --method far-pairs
-  | ^not asked  whether an object meets itself: 1 pair of triangles inside pierced,
-0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! not asked
+  | ^untested   1 pair of triangles inside pierced,
+0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! untested
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
-     unasked=r'^not asked +whether an object meets itself: 1 pair of triangles inside pierced, away \(')
+     unasked=r'^untested +1 pair of triangles inside pierced, away \(')
 
 # ---- outputs that are inputs
 

@@ -43,11 +43,11 @@ rows(r"""
 0 beyond the clearance | clash parts --fail-on near --clearance 1.9999 | ! ^near
 0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
 1 contained | clash parts/a.obj inner.obj | ^contained +a +inner .* inner inside$ | ! clean
-0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^ignored pairs that meet| ^examined   5 of 5 .*: clean$
+0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^clash .ignored. +a +b[ ] | ^examined   5 of 5 .*: clean$
 list.txt << # allowed; a:b
 0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
-1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
+1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
-1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "at_least": 0.99999
-  | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["at_least"] <= 1 <= d["at_most"] < 1.0001, d'
+1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
+  | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["least"] <= 1 <= d["most"] < 1.0001, d'
 """)

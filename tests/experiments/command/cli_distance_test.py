@@ -23,7 +23,13 @@ bad k '{k}' | --k: | {two} --pairs nearest --k {k}
 bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
 bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
 bad threads '{threads}' | --threads: | {two} --threads {threads}
-bad inside maybe | --inside: .*give yes or no | {two} --inside maybe
+bad inside maybe | --inside: .*give yes, parity or no | {two} --inside maybe
+bad parity with {proof} | --inside: parity is not what | {two} --inside parity {*proof}
+bad nearest of ignored objects | [^:]*: the scene ignores .* nearest objects .*; leave ignore out | {three} --ignore small:right --pairs nearest
+bad an accounting of ignored objects | [^:]*: the scene ignores .* accounting | {three} --ignore small:right --verify
+bad a certificate of ignored objects | [^:]*: the scene ignores .* certificate | {three} --ignore small:right --certificate c.json
+bad all ignored | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer | {two} --ignore small:right
+bad no such name | --ignore: .*none | {two} --ignore small:none
 bad no such option | --clearance: farcull distance has no such option | {two} --clearance 1
 bad no such file | none\.obj: | distance small.obj none.obj --json old.json
 each {0}: | {two} | --inside yes --pairs all --within 1 | --csv right.obj
@@ -42,7 +48,8 @@ bad a full disk for {output} | /dev/full: cannot be written: No space left | {tw
 0 a certificate | {two} --certificate whole.json
 $ for size in 0 1 100 300; do head -c $size whole.json >cut$size.json; done
 bad {size} bytes of a certificate | cut{size}\.json: not JSON at byte | check cut{size}.json small.obj right.obj
-""", open=OPEN, two='distance small.obj right.obj', output=['--json', '--csv', '--certificate'],
+""", open=OPEN, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj',
+     proof=['--verify', '--certificate c.json'], output=['--json', '--csv', '--certificate'],
      within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS, cells=[*NUMBERS, '16385'],
      threads=['0', '-1', '1025', 'x', ''], size=['0', '1', '100', '300'])
 rows(r"""
@@ -64,6 +71,14 @@ rows(r"""
 0 inside | distance small.obj large.obj --csv - | ,a$
 0 outside in | distance large.obj small.obj --csv - | ,b$
 0 not closed | distance small.obj open.obj --csv - | ,not closed$
+# Two shells that overlap, in one file: inside both the winding number is 2, and the parity even.
+shells.obj << {T}; v 0.1 0.1 0.1; v 9.1 0.1 0.1; v 0.1 9.1 0.1; v 0.1 0.1 9.1; {closed}
+point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
+0 inside two shells | distance point.obj shells.obj --csv - | ,a$
+0 by parity | distance point.obj shells.obj --inside parity --csv - --json parity.json | ,none$ | @parity.json "inside_by": "parity"
+0 ignored | {three} --ignore small:right --csv ignored.csv | ^ignored    1 pair of objects$
+  | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && (($(wc -l <ignored.csv) == 3))
+0 triangles of ignored objects | {three} --ignore small:right --pairs all --within 9 --csv ignored.csv | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && grep -q '^0,[0-9]*,2,' ignored.csv
 0 inside not asked | distance small.obj large.obj --inside no --csv - | ,$
 0 within less | {two} --within 0.999 --csv - | $ (($(wc -l <"$out") == 1))
 0 within as much | {two} --within 1 --csv - | ^0,0,1,0,1,
@@ -102,6 +117,7 @@ left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
   | $ cmp -s <(cut -d, -f1-4,7 gl.csv) <(cut -d, -f1-4,7 cpu-{form}.csv) | @gl.json ^    "renderer":
   | @gl.json ^    "probes": "[0-9]+ probes of[ ]
 """, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'],
+     closed='f 1 3 2; f 1 2 4; f 1 4 3; f 2 3 4; f 5 7 6; f 5 6 8; f 5 8 7; f 6 7 8',
      pairs=['objects', 'nearest'], frame=['1', '2', '3', '4'], form=['published', 'reliable'])
 
 # ---- certificates: two squares of two triangles each, 2 apart; a third one 3 above

@@ -32,7 +32,7 @@ edge.obj << v 0 0 0; v 1 0 0; v 0 -1 0; v 0 0 1e-17; v 1 0 -1e-17; v 0 1 0; f 1 
 # Corners that differ in the last digits.
 0 apart | run edge.obj --self | ^colliding +1 pair = 1 \+ 0 of neighbours
 0 welded | run edge.obj --self --weld 1e-7*size --certificate c.json --json r.json
-  | @err ^farcull: edge\.obj: 2 vertices merged by --weld 1e-7\*size$ | #0 ^edge, welded at 1e-7\*size: 1 object
+  | @err ^farcull: edge\.obj: 2 vertices merged by --weld 1e-7\*size$ | ^scene      edge, welded at 1e-7\*size: 1 object
   | ^colliding +0 pairs | @r.json "edge, welded at 1e-7\*size" | @c.json welded at 1e-7
 0 checked | check c.json edge.obj --self --weld 1e-7*size | @err merged | #0 ^proved
 1 checked without | check c.json edge.obj --self | #0 not proved
@@ -46,7 +46,7 @@ bad a name | two-sphere: neither .*; did you mean two-spheres\? | run two-sphere
 # Standard input.
 bad without a format | -: standard input does not say | run - --self
 bad of a format | --format: 'step' is no format | run - --format step --self
-$ "$farcull" run - part.obj --format obj <house.obj >out && grep -q '^stdin+part: 2 objects' out
+$ "$farcull" run - part.obj --format obj <house.obj >out && grep -q '^scene      stdin+part: 2 objects' out
 $ "$farcull" run - --format off --self </dev/null 2>err >out; [[ $? = 2 ]] && grep -q 'standard input: the file is empty' err
 # What readers pass over.
 notes.obj << v 0 0 0; v 1 0 0; v 0 1 0; v nan 0 0; t 3; f 1 2 3
@@ -56,7 +56,7 @@ notes.obj << v 0 0 0; v 1 0 0; v 0 1 0; v nan 0 0; t 3; f 1 2 3
   | farcull distance says what lies inside
 0 not nested | run house.obj through.obj | ! ^nested
 0 not closed | run open.obj part.obj | ! ^nested
-0 ignored | run house.obj part.obj --ignore house:part | ! ^nested
+0 ignored | run house.obj part.obj --ignore house:part --self | ! ^nested
 # Only some pairs of objects.
 0 all pairs | run house.obj through.obj cad.obj --pairs all.csv
 0 only | run house.obj through.obj cad.obj --only house:th* --pairs some.csv

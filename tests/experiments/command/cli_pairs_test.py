@@ -63,7 +63,7 @@ rows(r"""
 0 a clearance of 0 | run {pairs} --device cpu --clearance 0 --pairs - >plain.csv
 0 far-pairs without | run {pairs} --device cpu --pairs - | $ cmp -s "$out" plain.csv
 0 exact pairs | run two-spheres --method exact --pairs - | $ cmp -s "$out" plain.csv
-0 far-pairs as asked | verify {pairs} --device cpu --views x,1:2:3 --resolution 64
+0 far-pairs as asked | verify {pairs} --device cpu --views x,1:2:3 --resolution 64 -v
   | ^method     far-pairs at 64 px;[ ] | ^views      x [0-9]+ x [0-9]+, 1:2:3[ ]
 0 far-pairs auto | run {pairs} --views auto --resolution auto --json - | ^ *"method": "far-pairs"
   | ^ *"resolution": "auto" | ^ *"clearance": 0\.0 | ^ *"promises": true | ^ *"neighbour_pairs": 0

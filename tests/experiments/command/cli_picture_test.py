@@ -22,6 +22,8 @@ each {0}: | {p} | -o '' | -o --zoom | --html '' | --html - | --frames 5 -o new.p
   | --resolutions 32,64 --method far -o new.png | --resolutions 32, --method far --html new.html
   | --resolutions 32 --compare exact,far:64 --html new.html | --device nope --method cullide -o new.png | --nope -o new.png
 bad an output named like a mesh | -o: .*mesh | {p} -o crossing.obj
+bad all ignored | SCENE: nothing to test: all 1 pair | {p} --ignore first:second -o new.png
+bad a picture that is no PNG | -o: .new.jpg. .*; give -o new.png$ | {p} -o new.jpg
 bad a folder for the output | folder: | {p} -o folder
 bad no such folder | nofolder/new.png: | {p} -o nofolder/new.png
 each {0}: 'nope' | {p} | --method nope -o new.png | --compare far,nope -o new.png
@@ -54,6 +56,7 @@ $ printf '\x89PNG\r\n\x1a\n' >signature
   | ^cullide at 64 px: missed [1-9][0-9,]* of [0-9,]+ colliding pairs$ | ^The picture is in cullide.png$
 0 compare | picture two-spheres --compare cullide:32,far:64,exact {small} -o old.png | $ cmp -sn 8 signature old.png
   | ^far at 64 px: missed 0 of[ ] | ^exact: missed 0 of[ ] | @old.png Scene hash
+0 ignored | picture crowd:40 --method exact --ignore '*1:*2' {small} -o i.png | ^exact: missed 0 of[ ]
 0 standard output | picture crossing.obj --method exact --self {small} -o - | $ cmp -sn 8 signature "$out"
 0 a view of the method | picture two-spheres --method far --resolution 32 --view-depth=-x {small} -o v.png
   | ^far at 32 px, along -x: this view loses 0 of[ ]

@@ -89,11 +89,12 @@ each missing/new: cannot be written | | compare two-spheres --resolutions 64 --d
   | scenes --json missing/new | doctor --json missing/new
 each standard output: cannot be written | | run {spheres} {to} | run {spheres} --json - {to} | scenes {to} | run --help >/dev/full
   | compare two-spheres --resolutions 64 >closed | --version >closed
-each standard output: cannot be written: Broken pipe | run {spheres} | >broken | --json - >broken
+each standard output: cannot be written: Broken pipe; let it go | run {spheres} | >broken
+each standard output: cannot be written: Broken pipe; name a file instead: {option} FILE$ | run {spheres} | {option} - >broken
 # A table that cannot be shown takes no file with it.
 2 JSON file beside a broken pipe | run {spheres} --json new.json >broken | @err ^farcull: standard output: | @new.json #-1 ^}$
 $ rm new.json
-""", **VALUES, to=['>/dev/full', '>closed'])
+""", **VALUES, to=['>/dev/full', '>closed'], option=['--json', '--pairs'])
 if os.getuid() != 0:
     os.chmod('folder', 0o555)
     rows('bad a folder without permission | folder/new: cannot be written: Permission | run {spheres} --json folder/new',
@@ -224,9 +225,10 @@ rows(r"""
 0 frames of these meshes | verify tubes/scene.json --method far-pairs --frames 9:11 --json read.json
 0 the same frames, built in | verify cylinders:2@ground --method far-pairs --frames 9:11 --json built.json
   | $ cmp -s <(grep '"hash"' built.json) <(grep '"hash"' read.json)
-0 run | run {spheres} | ^two-spheres: 2 objects, 10,240 triangles$ | [ ]\+ 0 missed$
+0 run | run {spheres} | ^scene      two-spheres: 2 objects, 10,240 triangles$ | #0 ^colliding[ ] | ! .{81} | ! left out | [ ]\+ 0 missed$
 0 cullide misses | run {cullide} | [ ]\+ [1-9][0-9,]* missed$
-0 verify | verify {spheres} | #-3 {verified} | ^accounted  26,214,400 pairs =[ ]
+0 stages | run {spheres} -v | ^stage +ms +in +out$ | ^kept[ ] | ^radius[ ]
+0 verify | verify {spheres} | #1 {verified} | ^accounted  26,214,400 pairs =[ ]
 1 verify cullide | verify {cullide} | @err ^farcull: cullide at 64 px[ ] | ! {verified}
   | ^NOT verified: [1-9][0-9,]* colliding pairs were culled, 26,214,400 pairs accounted for$
 0 verify frames | verify two-spheres --frames 2 | ^accounted  52,428,800 pairs =[ ]

@@ -103,8 +103,8 @@ TEST(Help, ExplainsEveryLineAndColumnOfATable) {
   const Record far = record_of(scene, Method::far);
   const std::string table = run_table(scene, far, verdict_text(*far.verification) + "\n");
   std::vector<std::string> lines;
-  for (const char* line : {"device", "method", "default", "not asked", "views", "radius", "kept",
-                           "colliding", "drawn", "accounted", "time"}) {
+  for (const char* line : {"scene", "device", "method", "default", "untested", "views", "radius",
+                           "kept", "colliding", "drawn", "accounted", "time"}) {
     EXPECT_EQ(cells_of(line_with(table, line)).at(0).find(line), 0u) << line;
     lines.emplace_back(line);
   }

@@ -154,11 +154,11 @@ TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
   const PairColumns columns{.faces = true, .contacts = true, .segments = true};
   const std::string csv = pairs_csv(scene, record, columns);
   EXPECT_TRUE(csv.starts_with(
-      "object_a,triangle_a,object_b,triangle_b,contact,x0,y0,z0,x1,y1,z1,face_a,face_b\n"));
+      "object_a,triangle_a,object_b,triangle_b,contact,x0,y0,z0,x1,y1,z1,polygon,face_a,face_b\n"));
   const auto rows = static_cast<std::size_t>(std::ranges::count(csv, '\n'));
   EXPECT_EQ(rows, record.contacts.size() + 1);
-  // Twelve commas in each row, whatever is empty.
-  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, ',')), 12 * rows);
+  // Thirteen commas in each row, whatever is empty.
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, ',')), 13 * rows);
   EXPECT_TRUE(has_text(csv, ",coplanar,,,,,,,"));
 
   const auto of = [&](std::vector<ContactKind> kinds) {

@@ -241,15 +241,13 @@ TEST(NotAsked, IsSaidBesideThePromise) {
   record.options.method = Method::far;
   record.promise.holds = true;
   const std::string heading = run_heading(folded(false), record);
-  EXPECT_TRUE(has_text(heading,
-                       "promises to miss nothing\nnot asked  whether an object meets itself: 3 "
-                       "pairs of triangles inside sheet, "));
-  EXPECT_TRUE(has_text(heading, "(--self asks)\n"));
+  EXPECT_TRUE(has_text(heading, "\nuntested   3 pairs of triangles inside sheet, "));
+  EXPECT_TRUE(has_text(heading, "(add --self)\n"));
   record.options.method = Method::cullide;
-  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--method far-pairs --self asks)\n"));
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --method far-pairs --self)\n"));
   record.options.method = Method::exact;
-  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--self asks)\n"));
-  EXPECT_FALSE(has_text(run_heading(folded(true), record), "not asked"));
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --self)\n"));
+  EXPECT_FALSE(has_text(run_heading(folded(true), record), "untested"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Files as people have them: forms that programs write although the formats do not quite say so,
 // corners that differ in the last digits, and files with a wrong extension.
-#include "core/scene/near_points.h"
+#include "experiments/scenes/mesh/near_points.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/weld.h"
 #include "experiments/scenes/scene_file.h"

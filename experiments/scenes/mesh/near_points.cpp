@@ -1,7 +1,7 @@
 // Looks for near points in the 27 cells around a point of a grid whose cells are twice as wide as
 // the tolerance, so that rounding moves no near point beyond them. Each cell keeps the points in it
 // that no earlier one replaced.
-#include "core/scene/near_points.h"
+#include "experiments/scenes/mesh/near_points.h"
 
 #include <algorithm>
 #include <cmath>
