@@ -28,7 +28,7 @@ def verdict(words):
     """What a checker says: its exit status and the word of its verdict; no word if it cannot read the file."""
     status, text = output(words)
     words = [found[1] for line in text.split('\n') if (found := VERDICT.match(line))]
-    return status, words[0] if status < 2 and words else '', text
+    return status, words[-1] if status < 2 and words else '', text
 
 
 # ---- scenes ----
@@ -166,13 +166,18 @@ class Comparison:
     def __init__(self, farcull, checker):
         self.farcull, self.checker, self.seen, self.wrong = farcull, checker, {}, []
 
-    def both(self, certificate, scene, words, why):
-        one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
+    def both(self, certificate, scene, words, why, tiles=0):
+        """tiles: how many certificates there are, with a number in their name; 0: one without."""
+        files = [certificate % k for k in range(1, tiles + 1)] if tiles else [certificate]
+        one = verdict([self.farcull, 'check', certificate, scene, *(['--tiles', str(tiles)] if tiles else [])])
+        two = verdict([self.checker, *(['--tiles'] if tiles else []), *files, words])
         self.seen[one[1] or f'status {one[0]}'] = self.seen.get(one[1] or f'status {one[0]}', 0) + 1
         if one[:2] != two[:2]:
-            kept = f'{certificate}.{len(self.wrong)}'
-            shutil.copy(certificate, kept)
+            kept = f'{files[0]}.{len(self.wrong)}'
+            for k, file in enumerate(files):
+                shutil.copy(file, f'{kept}{k or ""}')
             self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
+        return two[1]
 
     def fuzzed(self, archive, folder):
         """The inputs of the fuzzer of certificates."""
@@ -199,6 +204,57 @@ class Comparison:
         if said[0] != 2 or 'the two checkers disagree' not in said[1]:
             self.wrong.append(f'check --verified with a checker that disagrees: {said}')
         os.remove(program)
+
+    def tiles(self, name, folder, objects, number, clearance):
+        """Certificates of tiles, one by one and together; and forged ones: one is missing or there twice, a border is moved, a
+        pair is left out, one is of another scene."""
+        scene, words, file, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/t%d.json', random.Random(number)
+        write_words(words, objects)
+        count = draw.randrange(2, 5)
+        for k in range(1, count + 1):
+            status, text = output([self.farcull, 'run', scene, '--device', 'cpu', '--no-verify', '--clearance', repr(clearance),
+                                   '--tiles', f'{k}/{count}', '--certificate', file % k])
+            if status:
+                if 'nothing to test' not in text:
+                    self.wrong.append(f'{name}: no certificate of a tile: {text[:300]}')
+                return
+        texts = [open(file % k, encoding='utf-8').read() for k in range(1, count + 1)]
+
+        def together(others, why, proved=False):
+            for k, text in enumerate(others, 1):
+                with open(file % k, 'w', encoding='utf-8') as out:
+                    out.write(text)
+            seen = self.both(file, scene, words, f'{name}, tiles, {why}', len(others))
+            if (seen == 'proved') != proved:
+                self.wrong.append(f'{name}, tiles, {why}: {seen} ({scene}, {file})')
+
+        together(texts, 'all', True)
+        roots = [json.loads(text) for text in texts]
+        which = draw.choice([k for k, root in enumerate(roots) if root['tile']['from'] != root['tile']['to']])  # one that is not empty
+        self.both(file % (which + 1), scene, words, f'{name}, tile {which + 1} of {count}')
+        changed = list(forged(texts[which], number))
+        self.both_text(draw.choice(changed), file % (which + 1), scene, words, f'{name}, a tile that is changed')
+        together(texts[:which] + texts[which + 1:], 'one is missing')
+        together(texts[:which] + [texts[which]] + texts[which:], 'one is there twice')
+        border = draw.randrange(count - 1)
+        moved = roots[border]['tile']['to'] + draw.choice([-1, 1]) * 2.0 ** -20 * (abs(roots[border]['tile']['to']) + 1)
+        roots[border]['tile']['to'] = moved
+        together([json.dumps(root) for root in roots], 'a border is moved')
+        data = base64.b64decode(roots[which]['evidence'])
+        if data:
+            at = draw.randrange(len(data))
+            root = json.loads(texts[which])
+            root['evidence'] = base64.b64encode(data[:at] + data[at + 1:]).decode()
+            recount(root, data[:at] + data[at + 1:])
+            together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'a pair is left out')
+        root = json.loads(texts[which])
+        root['scene']['hash'] = 'f' * 16
+        together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'one is of another scene')
+
+    def both_text(self, text, file, scene, words, why):
+        with open(file, 'w', encoding='utf-8') as out:
+            out.write(text)
+        self.both(file, scene, words, why)
 
     def scene(self, name, folder, objects, number, spoil=False, clearance=None):
         scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
@@ -236,6 +292,7 @@ def compare(farcull, checker, folder, count):
         comparison.scene(name, place, objects, index, spoil=name in SPOILED)
         points = [point for _, triangles in objects for triangle in triangles for point in triangle]
         size = max(max(axis) - min(axis) for axis in zip(*points))
+        comparison.tiles(name, place, objects, index, 0)
         comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
@@ -244,6 +301,8 @@ def compare(farcull, checker, folder, count):
         objects, scale = random_scene(number, place)
         comparison.scene(f'random scene {number}', place, objects, number)
         clearance = scale * random.Random(number).choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
+        if number % 4 == 0:
+            comparison.tiles(f'random scene {number}', place, objects, number, clearance if number % 8 == 0 else 0)
         comparison.scene(f'random scene {number}, clearance {clearance!r}', place, objects, number, clearance=clearance)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
           f'; the two checkers disagree about {len(comparison.wrong)}')

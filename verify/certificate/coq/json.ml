@@ -179,19 +179,35 @@ let base64 v =
   done;
   Bytes.sub_string out 0 size
 
-let clearance root = match member "version" root with
-  | Number "4" -> (match member "clearance" root with Number s -> float_of_string s | _ -> 0.)
-  | _ -> 0.
+let version root = match member "version" root with
+  | Number (("3" | "4" | "5") as v) -> int_of_string v
+  | _ -> bad "version is not 3, 4 or 5"
+let clearance root =
+  if version root = 3 then 0.
+  else match member "clearance" root with Number s -> float_of_string s | _ -> 0.
+
+(* Of version 5: the axis of the tile, and where it begins and ends. *)
+let is_place = function
+  | Null -> ()
+  | Number s when Float.abs (float_of_string s) < infinity -> ()
+  | _ -> bad "no finite number and not null"
+let tile root =
+  if version root < 5 then None
+  else
+    let tile = member "tile" root in
+    let place key = match member key tile with Number s -> Some (float_of_string s) | _ -> None in
+    Some (text (member "axis" tile), place "from", place "to")
+let is_axis v = if not (List.mem (text v) [ "x"; "y"; "z" ]) then bad "axis is not x, y or z"
 
 let certificate text_of_file =
   let root = parse text_of_file in
   if text (member "format" root) <> "farcull-certificate" then bad "format is not farcull-certificate";
-  let near = member "version" root = Number "4" in
-  if not near && member "version" root <> Number "3" then bad "version is not 3 or 4";
-  let is_clearance v = is_length v; if clearance root = 0. then bad "clearance is 0" in
+  let version = version root in
+  let is_clearance v = is_length v; if version = 4 && clearance root = 0. then bad "clearance is 0" in
   let counts keys = has (List.map (fun key -> (key, is_count)) keys) in
   let texts keys = has (List.map (fun key -> (key, is_text)) keys) in
-  has ((if near then [ "clearance", is_clearance ] else []) @ [
+  has ((if version > 3 then [ "clearance", is_clearance ] else [])
+       @ (if version = 5 then [ "tile", has [ "axis", is_axis; "from", is_place; "to", is_place ] ] else []) @ [
         "format", is_text; "version", is_count;
         "scene", has [ "name", is_text; "objects", is_count; "triangles", is_count; "hash", is_hex 16 ];
         "not_asked", counts [ "objects"; "pairs" ];
