@@ -32,7 +32,7 @@ mkdir -p "$work"
 rm -rf "${work:?}"/*
 cp verify/certificate/coq/*.v verify/certificate/coq/*.ml "$work"
 echo "coq: $(coqc --version | head -n 1)"
-wc -l "$work"/{Spec,Checker,Geometry,Points,Descent,Pairs,Proofs}.v | sed "s|$work/||"
+wc -l "$work"/{Spec,Checker,DistanceChecker,Geometry,Points,Descent,Pairs,Proofs,Distances}.v | sed "s|$work/||"
 if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' "$work"/*.v; then
   echo "coq: the proof assumes something" && exit 1
 fi
@@ -41,14 +41,14 @@ sys.exit("".join("    " + line if line.strip() else line for line in spec.splitl
   docs/verified.md "$work/Spec.v"; then
   echo "coq: docs/verified.md does not quote Spec.v as it is" && exit 1
 fi
-for file in Spec Checker Geometry Points Descent Pairs Proofs; do
+for file in Spec Checker Geometry Points Descent Pairs Proofs DistanceChecker Distances; do
   if ! (cd "$work" && coqc -q "$file.v") >"$work/$file.log" 2>&1; then
     cat "$work/$file.log"
     echo "coq: $file.v is not accepted" && exit 1
   fi
 done
-cat "$work/Proofs.log"
-if [[ $(grep -c '^Closed under the global context$' "$work/Proofs.log") != 4 ]]; then
+cat "$work"/{Proofs,Distances}.log
+if [[ $(cat "$work"/{Proofs,Distances}.log | grep -c '^Closed under the global context$') != 5 ]]; then
   echo "coq: a theorem needs axioms" && exit 1
 fi
 if ! sh verify/certificate/coq/build.sh "$work/program" >"$work/ocaml.log" 2>&1; then

@@ -1,15 +1,13 @@
 // Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
 // checkers of verify/certificate find.
-#include "experiments/command/command.h"
+#include "experiments/command/check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -17,15 +15,11 @@
 #include <string_view>
 #include <utility>
 
-#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/text.h"
 #include "core/scene/scene.h"
-#include "experiments/command/verified.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
-#include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
@@ -38,15 +32,32 @@
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
 Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxCheckedBytes), clean_name(path));
 }
+
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out;
+}
+
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status, bool weaker) {
+  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
+  if ((verified == kExitDone) == (status == kExitDone) || (weaker && verified == kExitDone)) return;
+  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
+              "keep the certificate and the scene, and report them: one of the checkers is wrong");
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
 
 // The clearance to check: --clearance, or the clearance of the certificate. If there are several
 // frames, the caller gives the first frame's certificate, so that all frames answer one question.
@@ -87,17 +98,6 @@ void require_no_list(const CheckArguments& arguments) {
               "does not go with a certificate of distances", "leave it out");
 }
 
-// Replaces what a terminal cannot show, line by line.
-std::string clean_lines(const std::string& text) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
-  return out;
-}
-
 // Whether the file exists and its start is that of a certificate of distances.
 bool is_of_distances(const std::string& file) {
   std::array<char, 1024> start{};
@@ -128,189 +128,6 @@ Scene checked_scene(const CheckArguments& arguments) {
   return scene;
 }
 
-// Asks the proved checker as well. Returns the exit status of both. words: gives those of the
-// scene.
-int check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
-                const std::function<void(const TakeWord&)>& words, int status) {
-  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
-  if ((verified == kExitDone) == (status == kExitDone)) return status;
-  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
-              "keep the certificate and the scene, and report them: one of the checkers is wrong");
-}
-
-// ---- certificates of tiles ----
-
-// A row of a list: the objects and triangles of its pair, and the line.
-using Row = std::pair<std::array<std::uint64_t, 4>, std::string>;
-
-Row row_of(const PairListRows& rows, const TrianglePair& pair) {
-  Row out;
-  rows.append(pair, out.second);
-  std::string_view rest = out.second;
-  for (std::uint64_t& number : out.first) {
-    number = take_number<std::uint64_t>(rest).value_or(0);
-    rest.remove_prefix(1);
-  }
-  return out;
-}
-
-struct CheckedTile {
-  std::string file;
-  Slab slab;
-  double clearance = 0;
-  CheckResult result;  // without the pairs that meet
-  std::string pair;    // the one that refutes, by the numbers in the whole scene
-};
-
-// Why the tiles are not a whole; empty if each begins where the one before it ends, the first has
-// no beginning and the last no end. docs/tiles.md: then each pair belongs to one of them.
-std::string not_whole(const std::vector<CheckedTile>& tiles) {
-  double place = -HUGE_VAL;
-  for (const CheckedTile& tile : tiles) {
-    if (tile.slab.axis != tiles.front().slab.axis)
-      return fmt::format("{} is of a tile along another axis than the first", tile.file);
-    if (tile.clearance != tiles.front().clearance)
-      return fmt::format("{} is of another clearance than the first", tile.file);
-    if (tile.slab.from != place) {
-      return fmt::format("{} is of the tile {}, which does not begin where the tile before it ends",
-                         tile.file, interval_text(tile.slab));
-    }
-    place = tile.slab.to;
-  }
-  return place == HUGE_VAL ? ""
-                           : fmt::format("a tile is missing: {}, the last one, has an end",
-                                         interval_text(tiles.back().slab));
-}
-
-// How the file differs from the list; empty if it is the list, byte for byte.
-std::string other_list(const std::string& path, std::string_view list) {
-  const std::string text = read_file(path, kMaxCheckedBytes);
-  if (text == list) return "";
-  std::string_view given = text;
-  for (std::uint64_t line = 1;; ++line) {
-    const auto next = [](std::string_view& from) {
-      const std::size_t end = std::min(from.find('\n'), from.size());
-      const std::string_view out = from.substr(0, end);
-      from.remove_prefix(std::min(end + 1, from.size()));
-      return std::string(out);
-    };
-    const std::string is = next(given), should = next(list);
-    if (is == should && !(given.empty() && list.empty())) continue;
-    return fmt::format("{} is another list: line {} is '{}' and should be '{}'", clean_name(path),
-                       line, clean_name(is), should);
-  }
-}
-
-// Checks the certificates one after the other, each with the triangles that meet its tile: the
-// memory is that of the largest part of the scene and of one tile. whole: they have to be those of
-// all tiles.
-int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files,
-                bool whole) {
-  const SceneSource source = [&](const TakePart& take) {
-    return stream_scene(arguments.scene, [&](Scene& part) {
-      if (arguments.self) make_self(part);
-      take(part);
-    });
-  };
-  Census census = take_census(source, 0);
-  Scene ignoring;
-  ignoring.name = census.name;
-  ignoring.ignored = census.ignored;
-  require_nothing_ignored(ignoring, "a check");
-  std::vector<CheckedTile> tiles;
-  std::vector<Row> rows;
-  for (const std::string& file : files) {
-    const Certificate certificate = read_certificate(file);
-    if (!certificate.tile) {
-      throw Error(clean_name(file), "is about a whole scene, and not about a tile",
-                  "check it without --tiles");
-    }
-    census.clearance = certificate.clearance;
-    const TileScene part = gather_tile(source, census, *certificate.tile);
-    const WholeScene scene = whole_scene(census, *certificate.tile, part);
-    tiles.push_back({clean_name(file), *certificate.tile, certificate.clearance,
-                     check_certificate(certificate, part.scene, &scene), ""});
-    CheckedTile& tile = tiles.back();
-    const PairListRows numbered_rows(part.scene, &part.numbers);
-    for (const TrianglePair& pair : tile.result.meeting)
-      rows.push_back(row_of(numbered_rows, pair));
-    tile.result.meeting = {};
-    if (tile.result.pair) {
-      const auto [a, i, b, j] = row_of(numbered_rows, *tile.result.pair).first;
-      tile.pair = fmt::format("object {} triangle {} and object {} triangle {}", a, i, b, j);
-    }
-  }
-  std::ranges::sort(rows, {}, &Row::first);
-  std::string list = pair_list_header(census.self_objects > 0);
-  for (const Row& row : rows) list += row.second;
-  Verdict verdict = Verdict::proved;
-  std::string reason, table;
-  Json each = Json::array();
-  Certificate::Claims sum;
-  double ms = 0;
-  for (const CheckedTile& tile : tiles) {
-    const CheckResult& result = tile.result;
-    const std::string why =
-        result.reason + (tile.pair.empty() ? "" : fmt::format(": {}", tile.pair));
-    table += fmt::format("tile       {}, {}: {}\n", tile.file, interval_text(tile.slab),
-                         result.verdict == Verdict::proved
-                             ? counted(result.found.meeting, "pair", "pairs")
-                             : to_string(result.verdict) + ": " + why);
-    each.push_back({{"certificate", tile.file},
-                    {"tile", interval_text(tile.slab)},
-                    {"verdict", to_string(result.verdict)},
-                    {"reason", text_json(why)},
-                    {"box_pairs", result.found.box_pairs},
-                    {"meeting", result.found.meeting},
-                    {"list_sha256", text_json(result.list_sha256)}});
-    sum.box_pairs += result.found.box_pairs;
-    ms += result.ms;
-    if (result.verdict == Verdict::proved || verdict == Verdict::refuted) continue;
-    if (verdict == Verdict::not_proved && result.verdict != Verdict::refuted) continue;
-    verdict = result.verdict;
-    reason = tile.file + ": " + why;
-  }
-  if (reason.empty() && whole) reason = not_whole(tiles);
-  const int certified = reason.empty() ? kExitDone : kExitBroken;  // whatever list is given
-  if (reason.empty() && !arguments.pairs.empty()) reason = other_list(arguments.pairs, list);
-  if (!reason.empty() && verdict == Verdict::proved) verdict = Verdict::not_proved;
-  const std::string proves =
-      (whole ? "" : "of the pairs that belong to the tile, ") +
-      proved_text(rows.size(), tiles.front().clearance, census.self_objects > 0);
-  Sha256 hash;
-  hash.add(list);
-  const std::string sha256 = hash.digest();
-  const int status = verdict == Verdict::proved ? kExitDone : kExitBroken;
-  if (!arguments.json.empty()) {
-    write_json({{"verdict", to_string(verdict)},
-                {"proves", json_if(status == kExitDone, proves)},
-                {"reason", text_json(reason)},
-                {"list_sha256", sha256},
-                {"tiles", each},
-                {"ms", ms}},
-               arguments.json);
-  }
-  if (arguments.json != "-") {
-    SceneCheck last;
-    last.result.unattested = tiles.back().result.unattested;
-    write_output("-", clean_lines(fmt::format(
-                          "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}"
-                          "time       {:.1f} ms without reading the scene\n",
-                          to_string(verdict), status == kExitDone ? proves : reason, table, sha256,
-                          counted(sum.box_pairs, "pair", "pairs"), unattested_text(last), ms)));
-  }
-  if (!arguments.verified) return status;
-  const auto words = [&](const TakeWord& take) {
-    take(census.objects);
-    for (const auto& [word, times] : census.sizes) {
-      for (std::uint64_t k = 0; k < times; ++k) take(word);
-    }
-    source([&](Scene& part) { give_coordinates(part, take); });
-  };
-  check_again(arguments, files, words, certified);
-  return status;
-}
-
 // Certificates are read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
@@ -319,13 +136,19 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const std::string name = clean_name(arguments.certificate);
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
-      if (arguments.verified) {
-        throw Error("--verified", "does not go with a certificate of distances", "leave it out");
-      }
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
+      if (arguments.verified && of_distances.pairs != DistanceCertificate::Pairs::objects) {
+        throw Error("--verified", "proves distances of all objects, and no other distances",
+                    "leave it out");
+      }
       const Scene scene = checked_scene(arguments);
-      return write_check(arguments, scene,
-                         check_with(arguments.certificate, std::move(of_distances), scene));
+      const int status = write_check(
+          arguments, scene, check_with(arguments.certificate, std::move(of_distances), scene));
+      if (arguments.verified) {
+        const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+        check_again(arguments, {arguments.certificate}, words, status, true);
+      }
+      return status;
     }
     certificate = parse_certificate(text, name);
     if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
@@ -337,10 +160,11 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
                                    clean_name(arguments.certificate), certificate, scene, list,
                                    list ? std::span<const ListedPair>(list->rows)
                                         : std::span<const ListedPair>()));
-  if (!arguments.verified) return status;
-  return check_again(
-      arguments, {arguments.certificate}, [&](const TakeWord& take) { give_words(scene, take); },
-      status);
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+    check_again(arguments, {arguments.certificate}, words, status);
+  }
+  return status;
 }
 
 // The output of the checks of frames: a row of the table and an element of the record for each,
@@ -523,7 +347,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
         "check the certificates of all N tiles of the scene\n(farcull run --tiles), with a number "
         "(%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
        {"--verified", &arguments_.verified, "",
-        "the checker that Coq has proved must agree; build it\nwith tests/coq.sh"},
+        "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
+        "(docs/verified.md)"},
        {"--json", &json_, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kProgram = "farcull-check-verified";
 constexpr const char* kRemedy =
-    "build it with `bash tests/coq.sh`, which puts it into build/, or leave --verified out";
+    "install coq, ocaml-findlib and libzarith-ocaml-dev and build again, or leave --verified out";
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
 

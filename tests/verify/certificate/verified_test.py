@@ -12,10 +12,12 @@ import struct
 import subprocess
 import sys
 import tarfile
+from fractions import Fraction
 
 BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
             'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
 SPOILED = ['degenerate', 'cloth:8']  # small, so that every change of their certificates is tried
+DISTANT = ['needles:60', 'gap:216', 'degenerate', 'two-spheres', 'crowd:60']
 VERDICT = re.compile(r'(?:verified +)?(proved|refuted|not proved|undecided)\b')
 
 
@@ -251,6 +253,43 @@ class Comparison:
         root['scene']['hash'] = 'f' * 16
         together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'one is of another scene')
 
+    def distances(self, name, folder, objects, number):
+        """The proved checker proves distances of objects that farcull proves, and none that are wrong."""
+        scene, words, certificate, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/distances.json', random.Random(number)
+        write_words(words, objects)
+        within = draw.choice([[], [], ['--within', '0'], ['--within', '0.75'], ['--within', '1e9']])
+        if output([self.farcull, 'distance', scene, '--certificate', certificate, *within])[0]:
+            return  # as of a scene that has none
+        text = open(certificate, encoding='utf-8').read()
+
+        def told(root, why, wrong=True):
+            with open(certificate, 'w', encoding='utf-8') as out:
+                json.dump(root, out)
+            one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
+            self.seen[f'distances {two[1]}'] = self.seen.get(f'distances {two[1]}', 0) + 1
+            if (one[1] == 'proved') == wrong or (two[1] == 'proved') == wrong or two[0] > 1:
+                self.wrong.append(f'{name}, distances, {why} ({scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
+
+        told(json.loads(text), 'as they are', False)
+        if within == [] and number % 8 == 0:
+            said = output([self.farcull, 'check', certificate, scene, '--verified'])
+            if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
+                self.wrong.append(f'check --verified of distances: {said}')
+        root = json.loads(text)
+        if not root['distances']:
+            return
+        at = draw.randrange(len(root['distances']))
+        over, under = map(int, root['distances'][at]['squared'].split('/'))
+        for change in (1, -1) if over else (1,):
+            part = Fraction(over, under) + Fraction(change * max(over, 1), draw.choice([1, 2, 2 ** 60]) * under)
+            root['distances'][at]['squared'] = f'{part.numerator}/{part.denominator}'
+            told(root, f'the square is {part}')
+        root = json.loads(text)
+        told({**root, 'distances': root['distances'][:at] + root['distances'][at + 1:]}, 'one is left out')
+        told({**root, 'distances': root['distances'][:at + 1] + root['distances'][at:]}, 'one is there twice')
+        root['scene']['hash'] = 'f' * 16
+        told(root, 'of another scene')
+
     def both_text(self, text, file, scene, words, why):
         with open(file, 'w', encoding='utf-8') as out:
             out.write(text)
@@ -293,6 +332,8 @@ def compare(farcull, checker, folder, count):
         points = [point for _, triangles in objects for triangle in triangles for point in triangle]
         size = max(max(axis) - min(axis) for axis in zip(*points))
         comparison.tiles(name, place, objects, index, 0)
+        if name in DISTANT:
+            comparison.distances(name, place, objects, index)
         comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
@@ -302,6 +343,7 @@ def compare(farcull, checker, folder, count):
         comparison.scene(f'random scene {number}', place, objects, number)
         clearance = scale * random.Random(number).choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
         if number % 4 == 0:
+            comparison.distances(f'random scene {number}', place, objects, number)
             comparison.tiles(f'random scene {number}', place, objects, number, clearance if number % 8 == 0 else 0)
         comparison.scene(f'random scene {number}, clearance {clearance!r}', place, objects, number, clearance=clearance)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
@@ -328,29 +370,40 @@ MUTANTS = [
     ('(x l <=? x h\')', '(x l <? x h\')'),
     ('(obj a <? obj b) ||', '(obj a <=? obj b) ||'),
     ('own a && (num a <? num b)', 'own a && (num a <=? num b)'),
-    ('((obj a <? last b) ||', '((last b <? obj a) ||')]
-FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs']
+    ('((obj a <? last b) ||', '((last b <? obj a) ||'),
+    ('scaled e d <? scaled e place', 'scaled e d <=? scaled e place'),
+    ('scaled e place <=? scaled e d + scaled e reach', 'scaled e place <? scaled e d + scaled e reach'),
+    ('(coordinate k (lo a) <? p)', '(coordinate k (lo a) <=? p)'),
+    ('negb (both_before e (tile_axis t) p a b)', 'both_before e (tile_axis t) p a b'),
+    ('n * dot d d <=? m * (gap * gap)', 'm * (gap * gap) <=? n * dot d d'),
+    ('m * dot w w <=? n * (r * r)', 'n * (r * r) <=? m * dot w w'),
+    ('numerator f (squared e) <=? denominator (squared e) * (d * d)', 'denominator (squared e) * (d * d) <=? numerator f (squared e)'),
+    ('negb (obj a <? obj b) || is_given es a b', 'negb (obj b <? obj a) || is_given es a b'),
+    ('(Z.max 0 n / m) + 1', '(Z.max 0 n / m)')]
+FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs', 'DistanceChecker', 'Distances']
+PROGRAMS = ['Checker', 'DistanceChecker']  # the files that are changed
 
 
 def mutants(sources, folder):
     """Each change compiles as a program, and its proof does not."""
     os.makedirs(folder, exist_ok=True)
-    text = open(f'{sources}/Checker.v', encoding='utf-8').read()
+    texts = {program: open(f'{sources}/{program}.v', encoding='utf-8').read() for program in PROGRAMS}
     failed = []
     for number, (old, new) in enumerate(MUTANTS):
-        if text.count(old) != 1:
+        if [text.count(old) for text in texts.values() if old in text] != [1]:
             failed.append(f'{old!r} does not occur once')
             continue
+        program, text = next((program, text) for program, text in texts.items() if old in text)
         for name in os.listdir(sources):
             if name.endswith(('.v', '.vo')):
                 shutil.copy(f'{sources}/{name}', folder)
-        with open(f'{folder}/Checker.v', 'w', encoding='utf-8') as file:
+        with open(f'{folder}/{program}.v', 'w', encoding='utf-8') as file:
             file.write(text.replace(old, new))
-        broken = next((name for name in FILES if subprocess.run(
+        broken = next((name for name in FILES[FILES.index(program):] if subprocess.run(
             ['timeout', '300', 'coqc', f'{name}.v'], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             check=False).returncode), 'none')
         print(f'mutant {number + 1}: {old}  ->  {new}: breaks {broken}', flush=True)
-        if broken in ('none', 'Checker'):
+        if broken in ('none', program):
             failed.append(f'{new!r} breaks {broken}')
     print('\n'.join(failed) or f'mutants: each of the {len(MUTANTS)} changes breaks the proof')
     return bool(failed)

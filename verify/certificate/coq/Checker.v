@@ -104,11 +104,13 @@ Definition each (f : index -> index -> direction) : list direction :=
 Definition directions : list direction :=
   each Between ++ Normal_a :: Normal_b :: each Edge_edge ++ each Foot_a ++ each Foot_b.
 
-(** The gap along d is longer than the clearance. *)
-Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
+Definition gap_along (a b : triangle Z) (d : vec Z) : Z :=
   let a1 := dot d (p1 a) in let a2 := dot d (p2 a) in let a3 := dot d (p3 a) in
   let b1 := dot d (p1 b) in let b2 := dot d (p2 b) in let b3 := dot d (p3 b) in
-  let gap := Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3) in
+  Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3).
+(** The gap along d is longer than the clearance. *)
+Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
+  let gap := gap_along a b d in
   (0 <? gap) && (clearance * clearance * dot d d <? gap * gap).
 Definition separated (clearance : Z) (a b : triangle Z) : bool :=
   existsb (fun d => separates clearance a b (vector a b d)) directions.
@@ -185,15 +187,18 @@ Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
   let n := normal a in let l := dot n n in
   map (fun i => on_edge i 1 0) indices ++ map on_side indices ++
   locate a (sub (scale l p) (scale (dot n (sub p (p1 a))) n)) l.
-Definition near_corner (clearance : Z) (a b : triangle Z) : bool :=
-  existsb (fun j =>
-    existsb (fun u => are_near clearance a b u (on_edge j 1 0)) (feet a b j)) indices.
-Definition near_edges (clearance : Z) (a b : triangle Z) : bool :=
+(** [good a b u v] judges the points of weights u and v. *)
+Definition near_corner (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
+  existsb (fun j => existsb (fun u => good a b u (on_edge j 1 0)) (feet a b j)) indices.
+Definition near_edges (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
   existsb (fun i => existsb (fun j =>
-    are_near clearance a b (probe_weights a b (Meeting_edges i j))
-                           (probe_weights b a (Meeting_edges j i))) indices) indices.
-Definition has_near (clearance : Z) (a b : triangle Z) : bool :=
-  near_corner clearance a b || near_corner clearance b a || near_edges clearance a b.
+    good a b (probe_weights a b (Meeting_edges i j))
+             (probe_weights b a (Meeting_edges j i))) indices) indices.
+Definition has_near (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
+  near_corner good a b || near_corner good b a || near_edges good a b.
 
 (** * Neighbours that have no more in common than their shared part *)
 Definition is_corner_of (t : triangle Z) (c : vec Z) : bool :=
@@ -303,7 +308,7 @@ Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : 
                | _ => if only_shared 7 a b shared indices indices then Some Only_shared else None
                end in
   let common (_ : unit) :=
-    match shared with [] => (0 <? clearance) && has_near clearance a b | _ => false end ||
+    match shared with [] => (0 <? clearance) && has_near (are_near clearance) a b | _ => false end ||
     has_common (off_shared shared) a b in
   if first then (if common tt then Some Meeting else apart)
   else match apart with
@@ -456,14 +461,14 @@ Fixpoint put (mine : item -> item -> bool) (a : item) (partners : list item)
   | [] => done
   | b :: rest => put mine a rest (if mine a b then (a, b) :: done else done)
   end.
-Fixpoint collect (mine : item -> item -> bool) (reach : Z) (t : tree) (l : list item)
+Fixpoint collect (mine : item -> item -> bool) (reach : item -> Z) (t : tree) (l : list item)
   (done : list (item * item)) :=
   match l with
   | [] => done
   | a :: rest =>
-      collect mine reach t rest (put mine a (Sorting.sort (query (grow reach a) t [])) done)
+      collect mine reach t rest (put mine a (Sorting.sort (query (grow (reach a) a) t [])) done)
   end.
-Definition pairs (mine : item -> item -> bool) (reach : Z) (l : list item) : list (item * item) :=
+Definition pairs (mine : item -> item -> bool) (reach : item -> Z) (l : list item) : list (item * item) :=
   collect mine reach (build 64 l) l [].
 
 (** * The check of a certificate *)
@@ -546,7 +551,7 @@ Definition check (l : list named) (b : tile) (clearance reach : double) (less : 
   let f := lowest l e in
   let d := scaled f clearance in let r := scaled f reach - (if less then 1 else 0) in
   if (0 <=? d) && (d <=? r)
-  then judge_all d c (pairs (is_of f b) r (items_of f l)) es (Tally [] None None 0 0 0 0 0)
+  then judge_all d c (pairs (is_of f b) (fun _ => r) (items_of f l)) es (Tally [] None None 0 0 0 0 0)
   else Bad_reach.
 
 (** * The lists of tiles make a whole: each tile begins where the one before it ends *)

@@ -131,7 +131,7 @@ Qed.
 Lemma collect_all mine r t l : sound_tree t -> forall done a b,
   In (a, b) (collect mine r t l done) <->
   In (a, b) done \/
-  (In a l /\ In b (leaves t) /\ candidate (grow r a) b = true /\ mine a b = true).
+  (In a l /\ In b (leaves t) /\ candidate (grow (r a) a) b = true /\ mine a b = true).
 Proof.
   intros S. induction l as [|c l IH]; intros done a b; cbn [collect]; [simpl; tauto|].
   rewrite IH, put_all. split.
@@ -141,7 +141,7 @@ Proof.
     split; [|auto]. apply sort_all, query_all; [assumption | auto].
 Qed.
 Theorem pairs_all mine r l a b : In (a, b) (pairs mine r l) <->
-  In a l /\ In b l /\ candidate (grow r a) b = true /\ mine a b = true.
+  In a l /\ In b l /\ candidate (grow (r a) a) b = true /\ mine a b = true.
 Proof.
   unfold pairs. destruct (build_sound 64 l) as [S L].
   rewrite (collect_all _ _ _ _ S), L. simpl. tauto.

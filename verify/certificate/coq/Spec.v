@@ -113,3 +113,30 @@ Definition right_and_complete_in (b : tile) (s : scene) (clearance : double) (l 
     (answer s clearance o i o' i' /\ in_tile b s o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
     (forall r, In r l -> names r o i o' i' ->
                (neighbours r = true <-> are_neighbours s o i o' i')).
+
+(** Distances. No two points of the triangles are nearer than the root of q; two are as near. *)
+Definition no_nearer (q : Q) (a b : triangle Q) : Prop :=
+  forall p r, inside a p -> inside b r -> q <= squared_distance p r.
+Definition squared_is (q : Q) (a b : triangle Q) : Prop :=
+  no_nearer q a b /\ exists p r, inside a p /\ inside b r /\ squared_distance p r == q.
+
+(** The pairs that have a distance: all that are asked for, but not neighbours. *)
+Definition measured (s : scene) (o i o' i' : nat) (t t' : triangle double) : Prop :=
+  asked s o i o' i' /\ is_triangle s o i t /\ is_triangle s o' i' t' /\ ~ are_neighbours s o i o' i'.
+
+(** The answer: two triangles of two objects (or of one that is [self]), and the square of their
+    distance, which is that of the objects. Each two objects that are so near are there; [within]
+    None: each two that have a distance. *)
+Record entry := Entry { nearest : row; squared : Q }.
+Definition right_entry (s : scene) (e : entry) (o i o' i' : nat) : Prop :=
+  names (nearest e) o i o' i' /\
+  (exists t t', measured s o i o' i' t t' /\
+                squared_is (squared e) (map_triangle value t) (map_triangle value t')) /\
+  (forall j j' t t', measured s o j o' j' t t' ->
+                     no_nearer (squared e) (map_triangle value t) (map_triangle value t')).
+Definition right_distances (s : scene) (within : option double) (l : list entry) : Prop :=
+  (forall e, In e l -> exists o i o' i', right_entry s e o i o' i' /\
+     forall d, within = Some d -> squared e <= value d * value d) /\
+  (forall o i o' i' t t', measured s o i o' i' t t' ->
+     (forall d, within = Some d -> near (value d) (map_triangle value t) (map_triangle value t')) ->
+     exists e j j', In e l /\ names (nearest e) o j o' j').

@@ -4,9 +4,9 @@ let bad format = Printf.ksprintf (fun text -> raise (Bad text)) format
 
 type t = Object of (string * t) list | Array of t list | String of string | Number of string | Null | Truth
 
-let most_values = 10_000 and deepest = 8
+let deepest = 8
 
-let parse text =
+let parse most_values text =
   let at = ref 0 and values = ref 0 in
   let stop what = bad "not JSON at byte %d: %s" (!at + 1) what in
   let peek () = if !at < String.length text then text.[!at] else '\000' in
@@ -200,7 +200,7 @@ let tile root =
 let is_axis v = if not (List.mem (text v) [ "x"; "y"; "z" ]) then bad "axis is not x, y or z"
 
 let certificate text_of_file =
-  let root = parse text_of_file in
+  let root = parse 10_000 text_of_file in
   if text (member "format" root) <> "farcull-certificate" then bad "format is not farcull-certificate";
   let version = version root in
   let is_clearance v = is_length v; if version = 4 && clearance root = 0. then bad "clearance is 0" in
@@ -220,4 +220,44 @@ let certificate text_of_file =
           "device", (function Null -> () | v -> texts [ "vendor"; "renderer"; "version"; "glsl" ] v);
           "assumptions", every is_text ];
         "evidence", (fun v -> ignore (base64 v)) ]) root;
+  root
+
+(* ---- certificates of distances ---- *)
+
+let distances_format = "farcull-distances"
+(* The key `format` comes first. *)
+let is_of_distances text_of_file =
+  let start = String.sub text_of_file 0 (min 200 (String.length text_of_file)) in
+  List.exists (fun part -> part = distances_format) (String.split_on_char '"' start)
+
+(* "5/4" as two numbers, in lowest terms. *)
+let fraction v =
+  let digits s = s <> "" && String.length s <= 4000 && (s = "0" || s.[0] <> '0')
+                 && String.for_all (fun c -> c >= '0' && c <= '9') s in
+  match String.split_on_char '/' (text v) with
+  | [ n; d ] when digits n && digits d && d <> "0" ->
+    let n = Z.of_string n and d = Z.of_string d in
+    if not (Z.equal (Z.gcd n d) Z.one) then bad "squared is not in lowest terms";
+    (n, d)
+  | _ -> bad "squared is no fraction"
+
+let two test = function Array [ a; b ] -> test a; test b | _ -> bad "two values are missing"
+let distances text_of_file =
+  let root = parse (max 10_000 (String.length text_of_file)) text_of_file in
+  if text (member "format" root) <> distances_format then bad "format is not farcull-distances";
+  if member "version" root <> Number "2" then bad "version is not 2";
+  let or_null test = function Null -> () | v -> test v in
+  let one_of words v = if not (List.mem (text v) words) then bad "an unknown word" in
+  let features = [ "vertex 0"; "vertex 1"; "vertex 2"; "edge 0"; "edge 1"; "edge 2"; "face" ] in
+  has [ "format", is_text; "version", is_count;
+        "scene", has [ "name", is_text; "objects", is_count; "triangles", is_count; "hash", is_hex 16 ];
+        "query", has [ "pairs", one_of [ "objects"; "nearest"; "all" ]; "k", or_null is_count;
+                       "within", or_null is_length ];
+        "distances", every (has [
+            "objects", two is_count; "triangles", two is_count;
+            "squared", (fun v -> ignore (fraction v)); "features", two (one_of features);
+            "inside", or_null (one_of [ "a"; "b"; "none"; "not closed" ]) ]) ] root;
+  let query = member "query" root in
+  if member "pairs" query <> String "objects" || member "k" query <> Null
+  then bad "only distances of all objects (--pairs objects) are checked here";
   root

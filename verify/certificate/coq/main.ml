@@ -243,6 +243,15 @@ let not_proved text = say "not proved: %s" text; Error "not proved"
 let status_of = function Ok _ -> 0 | Error "undecided" -> 3 | Error _ -> 1
 let hash_of has_self rows = sha256 (list_text has_self rows)
 
+let other_scene root found =
+  let key = Json.member "scene" root in
+  not (Z.equal (number_of key "objects") (Z.of_int found.objects))
+  || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
+  || Json.text (Json.member "hash" key) <> found.fnv
+let say_hashes text found =
+  say "certificate sha256 %s" (sha256 text);
+  say "scene       sha256 %s" found.sha
+
 (* Of one certificate: the tile, the rows, the clearance and whether the scene has objects that are
    self, if it is proved; else what it is. *)
 let check_file scene certificate =
@@ -252,13 +261,10 @@ let check_file scene certificate =
   let clearance = Json.clearance root and piece = tile_of root in
   let reach, less = reach_of clearance in
   let found = read_scene scene piece reach in
-  say "certificate sha256 %s" (sha256 text);
-  say "scene       sha256 %s" found.sha;
-  let key = Json.member "scene" root and unasked = Json.member "not_asked" root in
+  say_hashes text found;
+  let unasked = Json.member "not_asked" root in
   let has_self = found.has_self in
-  if not (Z.equal (number_of key "objects") (Z.of_int found.objects))
-  || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
-  || Json.text (Json.member "hash" key) <> found.fnv
+  if other_scene root found
   then not_proved "the certificate is of another scene"
   else
     let right_unasked = Z.equal (number_of unasked "objects") found.unasked_objects
@@ -284,6 +290,35 @@ let check_file scene certificate =
           (List.length rows);
         Ok (piece, rows, clearance, has_self)
       end
+
+(* Of a certificate of distances. *)
+let check_distance_file scene text =
+  let root = Json.distances text in
+  let found = read_scene scene everything zero in
+  say_hashes text found;
+  let within = match Json.member "within" (Json.member "query" root) with
+    | Json.Number s -> Some (double_of (Int64.bits_of_float (float_of_string s)))
+    | _ -> None in
+  let entry_of v =
+    let two key = match Json.member key v with
+      | Json.Array [ a; b ] -> (Json.whole a, Json.whole b) | _ -> bad "two numbers are missing" in
+    let object_a, object_b = two "objects" and triangle_a, triangle_b = two "triangles" in
+    let qnum, qden = Json.fraction (Json.member "squared" v) in
+    { nearest = { object_a; triangle_a; object_b; triangle_b; neighbours = false };
+      squared = { qnum; qden } } in
+  let entries = match Json.member "distances" root with
+    | Json.Array l -> List.rev (List.rev_map entry_of l) | _ -> [] in
+  if other_scene root found then not_proved "the certificate is of another scene"
+  else match check_distances found.kept within entries with
+    | Bad_limit -> bad "the limit is negative"
+    | Bad_entries -> not_proved "two answers are about the same objects, or one is beyond the limit"
+    | Bad_entry e -> not_proved ("this is not the distance of the triangles: " ^ pair e.nearest)
+    | Bad_pair r -> not_proved ("a pair is nearer than its objects are said to be: " ^ pair r)
+    | Missing_objects -> not_proved "two objects are not there"
+    | Distances_proved ->
+      say "proved: these %d squares of distances are right, and no two objects are left out" (List.length entries);
+      say "features, the order of the answers and what is inside are not looked at";
+      Ok ()
 
 (* The certificates of all tiles of a scene, in the order of the tiles. *)
 let check_tiles scene certificates =
@@ -315,5 +350,9 @@ let () =
   | _ :: "--tiles" :: (_ :: _ :: _ as files) ->
     let scene, certificates = List.hd (List.rev files), List.rev (List.tl (List.rev files)) in
     run (fun () -> check_tiles scene certificates)
-  | [ _; certificate; scene ] -> run (fun () -> check_file scene certificate)
+  | [ _; certificate; scene ] ->
+    run (fun () ->
+        let text = read_file certificate in
+        if Json.is_of_distances text then check_distance_file scene text
+        else Result.map ignore (check_file scene certificate))
   | _ -> prerr_endline "usage: farcull-check-verified [--tiles] CERTIFICATE... SCENE"; exit 2
