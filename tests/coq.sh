@@ -14,7 +14,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
 build=build scenes=60 mutants=yes
 case ${1-} in
-  --built) build=$2 scenes=15 mutants=no ;;
+  --built) build=$2 scenes=20 mutants=no ;;
   --long) scenes=10000 ;;
 esac
 if [[ $build == build ]]; then

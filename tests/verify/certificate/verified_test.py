@@ -1,6 +1,6 @@
 """Compares the verdicts of farcull check and of farcull-check-verified, on certificates and on forged ones, and changes
 inequalities of the proved checker, which must break its proof. tests/coq.sh calls it.
-  verified_test.py compare FARCULL CHECKER FOLDER RANDOM   RANDOM scenes on a small grid, besides those that are built in
+  verified_test.py compare FARCULL CHECKER FOLDER RANDOM   about RANDOM scenes on a small grid, besides those that are built in
   verified_test.py mutants SOURCES FOLDER"""
 import base64
 import json
@@ -54,15 +54,15 @@ def write_words(path, objects):
             file.write(b''.join(struct.pack('<3d', *point) for triangle in triangles for point in triangle))
 
 
-def write_scene(folder, objects):
+def write_scene(folder, objects, ending='', meshes=True):
     os.makedirs(folder, exist_ok=True)
-    for index, (_, triangles) in enumerate(objects):
-        with open(f'{folder}/o{index}.off', 'w', encoding='utf-8') as file:
+    for index, (_, triangles) in enumerate(objects if meshes else []):
+        with open(f'{folder}/o{index}{ending}.off', 'w', encoding='utf-8') as file:
             file.write(f'OFF\n{3 * len(triangles)} {len(triangles)} 0\n')
             file.writelines('%.17g %.17g %.17g\n' % tuple(point) for triangle in triangles for point in triangle)
             file.writelines(f'3 {3 * t} {3 * t + 1} {3 * t + 2}\n' for t in range(len(triangles)))
     with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
-        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}.off', **({'self': True} if inner else {})}
+        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}{ending}.off', **({'self': True} if inner else {})}
                                for i, (inner, _) in enumerate(objects)]}, file)
 
 
@@ -76,19 +76,13 @@ FUZZ_SCENE = [(False, triangles) for triangles in (
      [(2, 1 + ULP, 1), (1, 2 + 2 * ULP, 1), (2, 2, 1.5)]])]
 
 
-def random_scene(number, folder, most=40):
-    """Triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
-    draw = random.Random(number)
-    side, scale = draw.choice([2, 2, 3, 4]), draw.choice([1.0, 0.1, 3e-5, 1e10])
-    flat = draw.random() < 0.3
-    objects = []
-    for _ in range(draw.choice([1, 2, 2, 3])):
+def random_triangles(draw, count, scale, most):
+    """Objects of triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
+    side, flat = draw.choice([2, 2, 3, 4]), draw.random() < 0.3
+    for _ in range(count):
         corners = [tuple(scale * (0 if flat and axis == 2 else draw.randrange(side)) for axis in range(3))
                    for _ in range(draw.choice([4, 6, 10, 3 * most]))]
-        triangles = [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(1, most))]
-        objects.append((draw.random() < 0.7, triangles))
-    write_scene(folder, objects)
-    return objects, scale
+        yield [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(2, most))]
 
 
 # ---- forged certificates ----
@@ -271,7 +265,7 @@ class Comparison:
                 self.wrong.append(f'{name}, distances, {why} ({scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
 
         told(json.loads(text), 'as they are', False)
-        if within == [] and number % 8 == 0:
+        if within == [] and number % 4 == 0:
             said = output([self.farcull, 'check', certificate, scene, '--verified'])
             if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
                 self.wrong.append(f'check --verified of distances: {said}')
@@ -289,6 +283,61 @@ class Comparison:
         told({**root, 'distances': root['distances'][:at + 1] + root['distances'][at:]}, 'one is there twice')
         root['scene']['hash'] = 'f' * 16
         told(root, 'of another scene')
+
+    def batch(self, number, size, folder):
+        """Random scenes, without and with a clearance, as the frames of one scene: farcull then checks all of them at once.
+        The first one is also divided into tiles, and its distances are compared."""
+        draw = random.Random(number)
+        count = draw.choice([1, 2, 2, 3])
+        inner = [count == 1 or draw.random() < 0.7 for _ in range(count)]
+        scale = draw.choice([1.0, 0.1, 3e-5, 1e10])
+        clearance = scale * draw.choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
+        most = 40 if number % 25 == 0 else 12  # the time grows with the square
+        frames = [list(zip(inner, random_triangles(random.Random(f'{number} {k}'), count, scale, most))) for k in range(size)]
+        scene, texts = f'{folder}/scene.json', []
+        for k, objects in enumerate(frames):
+            write_scene(folder, objects, f'_{k}')
+            write_words(f'{folder}/words_{k}', objects)
+        write_scene(folder, frames[0], '_%d', False)
+        for how in (['--method', 'exact'], ['--method', 'far-pairs', '--device', 'cpu', '--clearance', repr(clearance)]):
+            name = f'random scenes {number} {how[1]}'
+            status, text = output([self.farcull, 'run', scene, '--frames', f'0:{size - 1}', '--no-verify', *how, '--certificate', f'{folder}/c_%d.json'])
+            if status:
+                self.wrong.append(f'{name}: no certificates: {text[:300]}')
+                continue
+            texts = [open(f'{folder}/c_{k}.json', encoding='utf-8').read() for k in range(size)]
+            changed = [random.Random(number).sample(list(forged(text, f'{number} {k}')), 3) for k, text in enumerate(texts)]
+            self.frames(name, folder, size)
+            for n in range(3):
+                for k in range(size):
+                    with open(f'{folder}/c_{k}.json', 'w', encoding='utf-8') as out:
+                        out.write(changed[k][n])
+                self.frames(f'{name}, changed', folder, size)
+        write_scene(folder, frames[0])
+        self.distances(f'random scene {number}', folder, frames[0], number)
+        self.tiles(f'random scene {number}', folder, frames[0], number, clearance if number % 2 == 0 else 0)
+
+    def frames(self, name, folder, size):
+        """Both verdicts about the certificate of each frame."""
+        text = output([self.farcull, 'check', f'{folder}/c_%d.json', f'{folder}/scene.json', '--frames', f'0:{size - 1}', '--json', '-'])[1]
+        try:
+            said = [frame['verdict'] for frame in json.loads(text)['frames']]
+        except ValueError:
+            said = []
+        if len(said) != size:
+            self.wrong.append(f'{name}: not checked: {text[:300]}')
+            return
+        text = output([self.checker, *(f'{folder}/{name}' for k in range(size) for name in (f'c_{k}.json', f'words_{k}'))])[1]
+        proved = [found[1] for line in text.split('\n') if (found := VERDICT.match(line))]
+        if len(proved) != size:
+            self.wrong.append(f'{name}: not verified: {text[-300:]}')
+            return
+        for k, (one, two) in enumerate(zip(said, proved)):
+            self.seen[two] = self.seen.get(two, 0) + 1
+            if one != two:
+                kept = f'{folder}/c_{k}.json.{len(self.wrong)}'
+                shutil.copy(f'{folder}/c_{k}.json', kept)
+                self.wrong.append(f'{name}, frame {k} ({kept})\n  farcull: {one}\n  verified: {two}')
 
     def both_text(self, text, file, scene, words, why):
         with open(file, 'w', encoding='utf-8') as out:
@@ -338,14 +387,9 @@ def compare(farcull, checker, folder, count):
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
-    for number in range(first, first + count):
-        objects, scale = random_scene(number, place)
-        comparison.scene(f'random scene {number}', place, objects, number)
-        clearance = scale * random.Random(number).choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
-        if number % 4 == 0:
-            comparison.distances(f'random scene {number}', place, objects, number)
-            comparison.tiles(f'random scene {number}', place, objects, number, clearance if number % 8 == 0 else 0)
-        comparison.scene(f'random scene {number}, clearance {clearance!r}', place, objects, number, clearance=clearance)
+    size = 40 if count > 100 else 10
+    for number in range(first, first + count // size):
+        comparison.batch(number, size, place)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
           f'; the two checkers disagree about {len(comparison.wrong)}')
     print('\n'.join(comparison.wrong[:5]))

@@ -1,10 +1,10 @@
-(* farcull-check-verified [--tiles] CERTIFICATE... SCENE: reads the files, calls the checker that
-   Checker.v defines and Proofs.v proves, and prints its verdict. This file is trusted: it turns
-   bytes into the values of Spec.v, and a verdict into a line. SCENE holds the words that `farcull check
-   --verified` writes: 64 bits each, lowest byte first. docs/certificate.md describes the
-   certificate. With --tiles the certificates are those of all tiles of the scene, in their order.
-   Exit status as of `farcull check`: 0 proved; 1 refuted or not proved; 2 a file that cannot be
-   read; 3 the checker could not decide a pair. *)
+(* farcull-check-verified CERTIFICATE SCENE: reads both files, calls the checker that Checker.v
+   defines and Proofs.v proves, and prints its verdict; so for more pairs of files. This file is
+   trusted: it turns bytes into the values of Spec.v, and a verdict into a line. SCENE holds the
+   words that `farcull check --verified` writes: 64 bits each, lowest byte first.
+   docs/certificate.md describes the certificate. With --tiles CERTIFICATE... SCENE the certificates
+   are those of all tiles of the scene, in their order. Exit status as of `farcull check`: 0 proved;
+   1 refuted or not proved; 2 a file that cannot be read; 3 the checker could not decide a pair. *)
 module Integer = Z
 open Checker
 module Z = Integer  (* zarith's; the checker has a Z of its own *)
@@ -341,18 +341,23 @@ let check_tiles scene certificates =
         (hash_of has_self rows) (List.length rows) (List.length proved);
       Ok ()
 
+let usage = "usage: farcull-check-verified CERTIFICATE SCENE [CERTIFICATE SCENE]...\n\
+             or: farcull-check-verified --tiles CERTIFICATE... SCENE"
 let () =
   let run check =
-    try exit (status_of (check ())) with
-     | Bad text | Json.Bad text -> Printf.eprintf "farcull-check-verified: %s\n" text; exit 2
-     | Sys_error text -> Printf.eprintf "farcull-check-verified: %s\n" text; exit 2 in
-  match Array.to_list Sys.argv with
-  | _ :: "--tiles" :: (_ :: _ :: _ as files) ->
-    let scene, certificates = List.hd (List.rev files), List.rev (List.tl (List.rev files)) in
-    run (fun () -> check_tiles scene certificates)
-  | [ _; certificate; scene ] ->
+    let failed text = Printf.eprintf "farcull-check-verified: %s\n%!" text; 2 in
+    try status_of (check ()) with Bad text | Json.Bad text | Sys_error text -> failed text in
+  let one certificate scene =
     run (fun () ->
         let text = read_file certificate in
         if Json.is_of_distances text then check_distance_file scene text
-        else Result.map ignore (check_file scene certificate))
-  | _ -> prerr_endline "usage: farcull-check-verified [--tiles] CERTIFICATE... SCENE"; exit 2
+        else Result.map ignore (check_file scene certificate)) in
+  let rec each worst = function
+    | certificate :: scene :: rest -> each (max worst (one certificate scene)) rest
+    | _ -> worst in
+  match List.tl (Array.to_list Sys.argv) with
+  | "--tiles" :: (_ :: _ :: _ as files) ->
+    let scene, certificates = List.hd (List.rev files), List.rev (List.tl (List.rev files)) in
+    exit (run (fun () -> check_tiles scene certificates))
+  | _ :: _ as files when List.length files mod 2 = 0 -> exit (each 0 files)
+  | _ -> prerr_endline usage; exit 2
