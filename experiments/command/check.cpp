@@ -151,6 +151,10 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
       return status;
     }
     certificate = parse_certificate(text, name);
+    if (certificate->tile && arguments.clearance) {
+      throw Error("--clearance", "does not go with the certificate of a tile, which names its own",
+                  "leave it out");
+    }
     if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
   }
   const Scene scene = checked_scene(arguments);

@@ -27,10 +27,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A row of a list: the objects and triangles of its pair, and the line.
-using Row = std::pair<std::array<std::uint64_t, 4>, std::string>;
+using ListRow = std::pair<std::array<std::uint64_t, 4>, std::string>;
 
-Row row_of(const PairListRows& rows, const TrianglePair& pair) {
-  Row out;
+ListRow row_of(const PairListRows& rows, const TrianglePair& pair) {
+  ListRow out;
   rows.append(pair, out.second);
   std::string_view rest = out.second;
   for (std::uint64_t& number : out.first) {
@@ -103,7 +103,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   ignoring.ignored = census.ignored;
   require_nothing_ignored(ignoring, "a check");
   std::vector<CheckedTile> tiles;
-  std::vector<Row> rows;
+  std::vector<ListRow> rows;
   for (const std::string& file : files) {
     const Certificate certificate = read_certificate(file);
     if (!certificate.tile) {
@@ -125,9 +125,9 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
       tile.pair = fmt::format("object {} triangle {} and object {} triangle {}", a, i, b, j);
     }
   }
-  std::ranges::sort(rows, {}, &Row::first);
+  std::ranges::sort(rows, {}, &ListRow::first);
   std::string list = pair_list_header(census.self_objects > 0);
-  for (const Row& row : rows) list += row.second;
+  for (const ListRow& row : rows) list += row.second;
   Verdict verdict = Verdict::proved;
   std::string reason, table;
   Json each = Json::array();

@@ -210,8 +210,8 @@ let tile_text root =
   match Json.tile root with
   | None -> ""
   | Some (axis, from, to_) ->
-    let place = function None -> "its end" | Some x -> Printf.sprintf "%.17g" x in
-    Printf.sprintf " for the tile of %s from %s to %s" axis (place from) (place to_)
+    let place end_ = function None -> end_ | Some x -> Printf.sprintf "%.17g" x in
+    Printf.sprintf " for the tile of %s from %s to %s" axis (place "-inf" from) (place "+inf" to_)
 
 (* ---- the verdict ---- *)
 
