@@ -26,7 +26,7 @@ Scene grid_scene(RandomNumbers& random) {
   return scene;
 }
 
-SceneSource source_of(const Scene& scene) {
+SceneSource whole_source(const Scene& scene) {
   return [&scene](const TakePart& take) {
     Scene part = scene;
     take(part);
@@ -46,7 +46,7 @@ struct Tiles {
     options.device = "native";
     options.clearance = clearance;
     for (std::size_t k = 1; k <= n; ++k) {
-      runs.push_back(run_tile(source_of(scene), {.options = options, .tile = {k, n}}, session));
+      runs.push_back(run_tile(whole_source(scene), {.options = options, .tile = {k, n}}, session));
       const WholeScene whole = whole_of(k - 1);
       const Certificate made = certificate_of(runs.back().part.scene, runs.back().record, &whole);
       certificates.push_back(parse_certificate(to_text(made), "tile"));
@@ -109,7 +109,7 @@ TEST(TileCertificates, ForgedOnesAreNotProved) {
       Certificate forged = honest;
       double& border = k == 0 ? forged.tile->to : forged.tile->from;
       border += k == 0 ? -1 : 1;
-      const TileScene part = gather_tile(source_of(scene), tiles.runs[k].census, *forged.tile);
+      const TileScene part = gather_tile(whole_source(scene), tiles.runs[k].census, *forged.tile);
       const WholeScene other = whole_scene(tiles.runs[k].census, *forged.tile, part);
       const CheckResult moved = check_certificate(forged, part.scene, &other);
       const bool same_pairs = moved.found.box_pairs == honest.claims.box_pairs;
