@@ -16,7 +16,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
 build=build scenes=60 mutants=yes gappa=no
 case ${1-} in
-  --built) build=$2 scenes=15 mutants=no ;;
+  --built) build=$2 scenes=20 mutants=no ;;
   --long) scenes=10000 gappa=yes ;;
 esac
 if [[ $build == build ]]; then
@@ -37,7 +37,7 @@ mkdir -p "$culling"
 cp verify/certificate/coq/*.v verify/certificate/coq/*.ml "$work"
 cp tests/proofs/coq/*.v tests/proofs/coq/*.ml "$culling"
 echo "coq: $(coqc --version | head -n 1)"
-wc -l "$work"/{Spec,Checker,Geometry,Points,Descent,Pairs,Proofs}.v "$culling"/*.v | sed "s|$work/||"
+wc -l "$work"/{Spec,Checker,DistanceChecker,Geometry,Points,Descent,Pairs,Proofs,Distances}.v "$culling"/*.v | sed "s|$work/||"
 if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' "$work"/*.v "$culling"/*.v; then
   echo "coq: the proof assumes something" && exit 1
 fi
@@ -66,16 +66,14 @@ check() {
     fi
   done
 }
-check "$work" none Spec Checker Geometry Points Descent Pairs Proofs Extract
+check "$work" none Spec Checker Geometry Points Descent Pairs Proofs DistanceChecker Distances
 check "$culling" none Passes PassProofs PassExtract
 check "$culling" 'ClassicalDedekindReals\.sig_(forall|not)_dec|FunctionalExtensionality\.functional_extensionality_dep' Fan View
-# Warnings are those of code that Coq has written.
-if ! (cd "$work" && ocamlfind ocamlopt -package zarith -linkpkg -inline 100 -w -a checker.mli checker.ml json.ml main.ml \
-  -o farcull-check-verified) >"$work/ocaml.log" 2>&1; then
+if ! sh verify/certificate/coq/build.sh "$work/program" >"$work/ocaml.log" 2>&1; then
   cat "$work/ocaml.log"
   exit 2
 fi
-cp "$work/farcull-check-verified" "$build/farcull-check-verified.new"
+cp "$work/program/farcull-check-verified" "$build/farcull-check-verified.new"
 mv "$build/farcull-check-verified.new" "$build/farcull-check-verified"
 echo "coq: built $build/farcull-check-verified"
 

@@ -1,6 +1,6 @@
 // Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
 // checkers of verify/certificate find.
-#include "experiments/command/command.h"
+#include "experiments/command/check.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
-#include "experiments/command/verified.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -27,20 +26,38 @@
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
+#include "experiments/tiles/run_tile.h"
 #include "verify/certificate/certificate.h"
 #include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
 Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxCheckedBytes), clean_name(path));
 }
+
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out;
+}
+
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status, bool weaker) {
+  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
+  if ((verified == kExitDone) == (status == kExitDone) || (weaker && verified == kExitDone)) return;
+  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
+              "keep the certificate and the scene, and report them: one of the checkers is wrong");
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
 
 // The clearance to check: --clearance, or the clearance of the certificate. If there are several
 // frames, the caller gives the first frame's certificate, so that all frames answer one question.
@@ -81,17 +98,6 @@ void require_no_list(const CheckArguments& arguments) {
               "does not go with a certificate of distances", "leave it out");
 }
 
-// Replaces what a terminal cannot show, line by line.
-std::string clean_lines(const std::string& text) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
-  return out;
-}
-
 // Whether the file exists and its start is that of a certificate of distances.
 bool is_of_distances(const std::string& file) {
   std::array<char, 1024> start{};
@@ -122,14 +128,6 @@ Scene checked_scene(const CheckArguments& arguments) {
   return scene;
 }
 
-// Asks the proved checker as well. Returns the exit status of both.
-int check_again(const CheckArguments& arguments, const Scene& scene, int status) {
-  const int verified = run_verified_checker(arguments.certificate, scene);
-  if ((verified == kExitDone) == (status == kExitDone)) return status;
-  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
-              "keep the certificate and the scene, and report them: one of the checkers is wrong");
-}
-
 // Certificates are read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
@@ -138,15 +136,26 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const std::string name = clean_name(arguments.certificate);
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
-      if (arguments.verified) {
-        throw Error("--verified", "does not go with a certificate of distances", "leave it out");
-      }
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
+      if (arguments.verified && of_distances.pairs != DistanceCertificate::Pairs::objects) {
+        throw Error("--verified", "proves distances of all objects, and no other distances",
+                    "leave it out");
+      }
       const Scene scene = checked_scene(arguments);
-      return write_check(arguments, scene,
-                         check_with(arguments.certificate, std::move(of_distances), scene));
+      const int status = write_check(
+          arguments, scene, check_with(arguments.certificate, std::move(of_distances), scene));
+      if (arguments.verified) {
+        const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+        check_again(arguments, {arguments.certificate}, words, status, true);
+      }
+      return status;
     }
     certificate = parse_certificate(text, name);
+    if (certificate->tile && arguments.clearance) {
+      throw Error("--clearance", "does not go with the certificate of a tile, which names its own",
+                  "leave it out");
+    }
+    if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
   }
   const Scene scene = checked_scene(arguments);
   const int status =
@@ -155,7 +164,11 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
                                    clean_name(arguments.certificate), certificate, scene, list,
                                    list ? std::span<const ListedPair>(list->rows)
                                         : std::span<const ListedPair>()));
-  return arguments.verified ? check_again(arguments, scene, status) : status;
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+    check_again(arguments, {arguments.certificate}, words, status);
+  }
+  return status;
 }
 
 // The output of the checks of frames: a row of the table and an element of the record for each,
@@ -276,15 +289,15 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       (several ? "of the last frame's run: " : "") + unattested_text(last));
 }
 
-// Requires a number in the name of the certificate if, and only if, frames are named.
-void require_number(const std::string& certificate, bool frames) {
-  if (certificate.empty() || is_numbered(certificate) == frames) return;
-  if (frames) {
-    throw Error("CERTIFICATE", "'" + certificate + "' has no place for the number of the frame",
-                "put %d or %04d there, as for farcull run --certificate");
+// Requires a number in the name of the certificate if, and only if, frames or tiles are asked for.
+void require_number(const std::string& certificate, bool numbers) {
+  if (certificate.empty() || is_numbered(certificate) == numbers) return;
+  if (numbers) {
+    throw Error("CERTIFICATE", "'" + certificate + "' has no place for a number",
+                "put %d or %04d where the number of the frame or tile is in its name");
   }
-  throw Error("CERTIFICATE", "'" + certificate + "' has a place for the number of a frame",
-              "say which frames with --frames N or --frames FIRST:LAST");
+  throw Error("CERTIFICATE", "'" + certificate + "' has a place for a number",
+              "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
 }
 
 }  // namespace
@@ -293,6 +306,9 @@ int run_check(const CheckArguments& arguments) {
   const FloatingPointGuard guard;
   if (arguments.certificate.empty() && arguments.pairs.empty())
     throw std::logic_error("run_check: neither a certificate nor a list");
+  if (arguments.tiles) {
+    return check_tiles(arguments, numbered_files(arguments.certificate, arguments.tiles), true);
+  }
   std::optional<GivenList> list;
   if (!arguments.pairs.empty()) list = read_list(arguments);
   const GivenList* const given = list ? &*list : nullptr;
@@ -308,7 +324,7 @@ class CheckCommand {
 
  private:
   CheckArguments arguments_;
-  Text ignore_, json_, pairs_, clearance_, frames_;
+  Text ignore_, json_, pairs_, clearance_, frames_, tiles_;
 };
 
 CLI::App* CheckCommand::add_to(CLI::App& app) {
@@ -332,8 +348,12 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
         "check these frames, as of farcull run --frames: with\n"
         "a number (%d or %04d) in the name of CERTIFICATE and\n"
         "a column `frame` in the list"},
+       {"--tiles", &tiles_, "N",
+        "check the certificates of all N tiles of the scene\n(farcull run --tiles), with a number "
+        "(%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
        {"--verified", &arguments_.verified, "",
-        "the checker that Coq has proved must agree; build it\nwith tests/coq.sh"},
+        "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
+        "(docs/verified.md)"},
        {"--json", &json_, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
@@ -343,6 +363,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "  farcull check d.json two-spheres\n"
       "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
       "  farcull check c_%04d.json two-spheres --frames 10\n"
+      "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
+      "  farcull check t%d.json two-tori --tiles 2\n"
       "  farcull distance two-tori --certificate e.json\n"
       "  farcull check e.json two-tori\n\n"
       "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
@@ -376,14 +398,19 @@ int CheckCommand::run() {
   to.scene = with_ignored(to.scene, ignore_);
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);
-  require_number(to.certificate, to.frames.has_value());
-  if (to.verified && (to.certificate.empty() || to.frames || pairs_ || clearance_)) {
+  if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
+  if (tiles_ && (to.certificate.empty() || to.frames || clearance_)) {
+    throw Error("--tiles", "is for certificates of tiles, without --frames and --clearance",
+                "leave it out, or name the certificates of the tiles");
+  }
+  require_number(to.certificate, to.frames || to.tiles);
+  if (to.verified && (to.certificate.empty() || to.frames || (pairs_ && !tiles_) || clearance_)) {
     throw Error("--verified", "is for one certificate, without --frames, --pairs and --clearance",
                 "leave it out, or check each frame by its own certificate");
   }
   std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);
   if (!to.certificate.empty()) {
-    for (const std::string& file : numbered_files(to.certificate, to.frames))
+    for (const std::string& file : numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
       inputs.push_back({"CERTIFICATE", file});
   }
   if (pairs_) inputs.push_back({"--pairs", *pairs_});

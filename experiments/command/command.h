@@ -329,13 +329,14 @@ struct CheckArguments {
   std::string pairs = {};          // "" for none, or a list as `farcull run --pairs` writes it
   std::optional<double> clearance = {};  // of the list; a certificate must have it too
   std::optional<FrameRange> frames = {};
-  bool verified = false;  // the proved checker must agree; goes with one certificate alone
+  std::optional<FrameRange> tiles = {};  // the numbers of the tiles in the name of the certificate
+  bool verified = false;  // the proved checker must agree; goes with certificates of one scene
 };
 
-/// Prints the verdict; with frames one verdict per frame and one for all. Returns 0 if proved, and
-/// the given list is the proved one; 1 if refuted or not proved. Throws Error if the certificate,
-/// the scene or the list cannot be read, and if the list has frames but the arguments name none, or
-/// the reverse.
+/// Prints the verdict; with frames one verdict per frame and one for all, and likewise with tiles.
+/// Returns 0 if proved, and the given list is the proved one; 1 if refuted or not proved. Throws
+/// Error if the certificate, the scene or the list cannot be read, and if the list has frames but
+/// the arguments name none, or the reverse.
 int run_check(const CheckArguments& arguments);
 
 // ---- `farcull picture` ----

@@ -433,7 +433,6 @@ void RunCommand::refuse_with_tiles(const RunOptions& options) const {
                 "leave --tiles out, or use --method far-pairs");
   }
   refuse("--frames", frames_.has_value(), "a tile is of a scene that stands still");
-  refuse("--certificate", outputs_.certificate.has_value(), "a certificate is about a whole scene");
   refuse("--limit", options_.has("limit"), "no tile knows how many pairs the others have");
 }
 
@@ -451,6 +450,15 @@ int RunCommand::run_tile(const RunOptions& options) const {
   const TileRun tile = farcull::run_tile(source(), question, session, progress);
   terminal.clear();
   require_pairs(nothing_to_test(tile.census), with_self());
+  if (outputs.certificate) {
+    Scene ignoring;
+    ignoring.name = tile.census.name;
+    ignoring.ignored = tile.ignored;
+    require_nothing_ignored(ignoring, "a certificate");
+    const WholeScene whole = whole_scene(tile.census, tile.slab, tile.part);
+    write_output(*outputs.certificate,
+                 to_text(certificate_of(tile.part.scene, tile.record, &whole)));
+  }
   std::optional<TileList> list;
   if (outputs.pairs) {
     list = TileList{.text = tile_list(tile, chosen), .file = {}, .columns = chosen};
@@ -477,7 +485,7 @@ int RunCommand::plan_tiles(const RunOptions& options) const {
   const Census census = take_census(source(), options.clearance, leaves_out());
   if (leaves_out()) left_out(names_of(census));  // throws if a name matches no object
   const Cuts cuts = choose_cuts(census, tiles);
-  const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
+  const std::vector<TileCount> counts = count_tiles(source(), census, cuts);
   terminal.clear();
   if (outputs.json) write_json(tiles_json(census, cuts, counts), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", tiles_table(census, cuts, counts));

@@ -150,9 +150,12 @@ std::string pair_text(const Scene& scene, const TrianglePair& pair) {
 
 // The text names the scene and not the run, since a proof is about the scene.
 std::string proved_text(const Scene& scene, const SceneCheck& check) {
-  const std::size_t pairs = check.result.meeting.size();
-  const std::string near =
-      check.clearance == 0 ? "" : fmt::format("at distance {} or less", check.clearance);
+  return proved_text(check.result.meeting.size(), check.clearance, has_self(scene)) +
+         (scene.ignored.empty() ? "" : ", of objects that are not ignored");
+}
+
+std::string proved_text(std::size_t pairs, double clearance, bool self) {
+  const std::string near = clearance == 0 ? "" : fmt::format("at distance {} or less", clearance);
   std::string out;
   if (pairs == 0) {
     out = "no pair of the scene " + (near.empty() ? "meets" : "is " + near);
@@ -162,8 +165,7 @@ std::string proved_text(const Scene& scene, const SceneCheck& check) {
     out = "these " + grouped(pairs) + " pairs of the scene " +
           (near.empty() ? "meet" : "are " + near) + ", and no others";
   }
-  if (!scene.ignored.empty()) out += ", of objects that are not ignored";
-  return !near.empty() && has_self(scene) ? out + " (neighbours only where they meet)" : out;
+  return !near.empty() && self ? out + " (neighbours only where they meet)" : out;
 }
 
 std::string verdict_text(const Scene& scene, const SceneCheck& check) {

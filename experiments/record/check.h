@@ -35,6 +35,8 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 /// The statement that the check has proved if its verdict is `proved`: "these 12 pairs of the scene
 /// meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
+/// The same for so many pairs; self: whether an object is tested against itself.
+std::string proved_text(std::size_t pairs, double clearance, bool self);
 /// The verdict with its reason, and the pair that it is about: one line or two.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 /// The verdict and everything else.

@@ -420,7 +420,7 @@ std::string pairs_csv(const Scene& scene, const Record& record, const PairColumn
   return pairs_header(scene, columns) + pairs_rows(scene, record, "", columns);
 }
 
-Certificate certificate_of(const Scene& scene, const Record& record) {
+Certificate certificate_of(const Scene& scene, const Record& record, const WholeScene* whole) {
   const RunOptions& options = record.options;
   if (!options.ignored.empty() || options.limit > 0) {
     throw Error(options.ignored.empty() ? "--limit" : scene.name,
@@ -450,7 +450,8 @@ Certificate certificate_of(const Scene& scene, const Record& record) {
     run.device = {device.vendor, device.renderer, device.version, device.glsl};
     run.assumptions = assumptions_about(device);
   }
-  return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance);
+  return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance,
+                          whole);
 }
 
 // Prints a plan stage by stage, in the words of the record of a run.

@@ -149,8 +149,9 @@ std::string pairs_rows(const Scene& scene, const Record& record, const std::stri
                        const PairColumns& columns = {});
 
 /// The certificate of the run: its claims about every pair of the scene, with evidence. Times are
-/// left out, so the same run gives the same text.
-Certificate certificate_of(const Scene& scene, const Record& record);
+/// left out, so the same run gives the same text. whole: as for make_certificate().
+Certificate certificate_of(const Scene& scene, const Record& record,
+                           const WholeScene* whole = nullptr);
 
 // `farcull plan`: a plan as a table and as JSON.
 

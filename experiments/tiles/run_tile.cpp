@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
+#include "core/boxes/block.h"
 #include "core/scene/scene.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
@@ -62,21 +63,26 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The tile in which a place lies: the number of cuts at or before the place.
-std::size_t tile_at(const Cuts& cuts, double at) {
-  return static_cast<std::size_t>(std::upper_bound(cuts.at.begin(), cuts.at.end(), at) -
-                                  cuts.at.begin());
+// The number of cuts at or before the place, or less than `reach` after it, as meets() rounds. With
+// no reach this is the tile in which the place lies.
+std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
+  const auto end =
+      std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
+  return static_cast<std::size_t>(end - cuts.at.begin());
 }
+
+Box box_of(const Scene& scene, std::uint32_t triangle) { return grown_box(scene, triangle, 0); }
 
 // Counts the boxes that meet each tile, from the tiles where the boxes begin and end.
 class Loads {
  public:
-  explicit Loads(const Cuts& cuts) : cuts_(cuts), step_(cuts.tiles() + 1, 0), home_(cuts.tiles()) {}
+  Loads(const Cuts& cuts, double clearance)
+      : cuts_(cuts), clearance_(clearance), step_(cuts.tiles() + 1, 0), home_(cuts.tiles()) {}
   void add(const Box& box) {
     const std::size_t first = tile_at(cuts_, box.lo[cuts_.axis]);
     ++home_[first];
     ++step_[first];
-    --step_[tile_at(cuts_, box.hi[cuts_.axis]) + 1];
+    --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
   std::vector<TileCount> counts() const {
     std::vector<TileCount> out(cuts_.tiles());
@@ -90,6 +96,7 @@ class Loads {
 
  private:
   const Cuts& cuts_;
+  double clearance_;
   std::vector<std::int64_t> step_;
   std::vector<std::uint64_t> home_;
 };
@@ -111,6 +118,7 @@ std::uint64_t size_word(const Object& object) {
 
 Census take_census(const SceneSource& source, double clearance, bool names) {
   Census out;
+  out.clearance = clearance;
   Sampler sampler;
   out.ignored = source([&](Scene& part) {
     out.name = part.name;
@@ -123,8 +131,7 @@ Census take_census(const SceneSource& source, double clearance, bool names) {
       if (names) out.names.push_back(object.name);
     }
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    for (std::uint32_t t = 0; t < count; ++t)
-      sampler.add(out.triangles++, grown_box(part, t, clearance));
+    for (std::uint32_t t = 0; t < count; ++t) sampler.add(out.triangles++, box_of(part, t));
   });
   out.sample = sampler.take();
   return out;
@@ -147,7 +154,7 @@ Cuts choose_cuts(const Census& census, std::size_t tiles) {
     std::sort(places.begin(), places.end());
     Cuts cuts{.axis = axis, .at = {}};
     for (std::size_t k = 1; k < tiles; ++k) cuts.at.push_back(places[places.size() * k / tiles]);
-    Loads loads(cuts);
+    Loads loads(cuts, census.clearance);
     for (const Box& box : census.sample) loads.add(box);
     auto load = std::pair(std::uint64_t{0}, std::uint64_t{0});
     for (const TileCount& count : loads.counts()) {
@@ -162,11 +169,12 @@ Cuts choose_cuts(const Census& census, std::size_t tiles) {
   return best;
 }
 
-std::vector<TileCount> count_tiles(const SceneSource& source, const Cuts& cuts, double clearance) {
-  Loads loads(cuts);
+std::vector<TileCount> count_tiles(const SceneSource& source, const Census& census,
+                                   const Cuts& cuts) {
+  Loads loads(cuts, census.clearance);
   source([&](Scene& part) {
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    for (std::uint32_t t = 0; t < count; ++t) loads.add(grown_box(part, t, clearance));
+    for (std::uint32_t t = 0; t < count; ++t) loads.add(box_of(part, t));
   });
   return loads.counts();
 }
@@ -179,8 +187,8 @@ constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, s
 
 class Gathering {
  public:
-  Gathering(const Census& census, const Slab& slab, double clearance)
-      : census_(census), slab_(slab), clearance_(clearance), hash_(census.begun_hash()) {
+  Gathering(const Census& census, const Slab& slab)
+      : census_(census), slab_(slab), hash_(census.begun_hash()) {
     out_.numbers.self = census.self_objects > 0;
   }
 
@@ -233,9 +241,10 @@ class Gathering {
         for (int i = 0; i < 3; ++i) hash_.add(std::bit_cast<std::uint64_t>(p[i]));
       }
       faces_.add(std::uint64_t{part.source_face[t]});
-      const Box box = grown_box(part, t, clearance_);
-      if (!meets(slab_, box)) continue;
-      out_.home += holds(slab_, box.lo[slab_.axis]);
+      const Box box = box_of(part, t);
+      const double lo = box.lo[slab_.axis], hi = box.hi[slab_.axis];
+      if (!meets(slab_, lo, hi, census_.clearance)) continue;
+      out_.home += holds(slab_, lo);
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(part, part.triangles[t][i]);
       to.triangles.push_back(corners);
@@ -264,7 +273,6 @@ class Gathering {
 
   const Census& census_;
   Slab slab_;
-  double clearance_;
   Fnv1a hash_, faces_;
   TileScene out_;
   std::size_t run_ = 0;       // index in census_.sizes of the next object's run
@@ -309,22 +317,35 @@ TileNumber parse_tile(const std::string& text) {
               fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostTiles));
 }
 
-TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
-                      double clearance) {
-  Gathering gathering(census, slab, clearance);
+TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab) {
+  Gathering gathering(census, slab);
   source([&](Scene& part) { gathering.add(part); });
   return gathering.take();
+}
+
+WholeScene whole_scene(const Census& census, const Slab& slab, const TileScene& part) {
+  WholeScene out{.tile = slab,
+                 .numbers = &part.numbers,
+                 .key = {census.name, census.objects, census.triangles, part.hash},
+                 .not_asked = {}};
+  for (const auto& [word, times] : census.sizes) {
+    const std::uint64_t self = word >> 32, n = word & 0xffffffff;
+    if (self != 0) continue;
+    out.not_asked.objects += times;
+    if (n > 0) out.not_asked.pairs += times * (n * (n - 1) / 2);
+  }
+  return out;
 }
 
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
                  const Progress& progress) {
   if (question.options.method != Method::far_pairs || question.options.limit > 0)
     throw std::logic_error("run_tile: a tile is of far-pairs, without a limit");
-  const double clearance = question.options.clearance;
   const Stopwatch reading;
   if (progress) progress("reading the scene for the cuts");
   TileRun out{.tile = question.tile,
-              .census = take_census(source, clearance, static_cast<bool>(question.ignored)),
+              .census = take_census(source, question.options.clearance,
+                                    static_cast<bool>(question.ignored)),
               .cuts = {},
               .slab = {},
               .part = {},
@@ -338,7 +359,7 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
   out.cuts = choose_cuts(out.census, question.tile.n);
   out.slab = slab_of(out.cuts.axis, out.cuts.at, question.tile.k - 1);
   if (progress) progress("reading the triangles of the tile");
-  out.part = gather_tile(source, out.census, out.slab, clearance);
+  out.part = gather_tile(source, out.census, out.slab);
   out.part.scene.name += fmt::format(" (tile {} of {})", out.tile.k, out.tile.n);
   out.read_ms = reading.ms();
   RunOptions options = question.options;
@@ -346,7 +367,8 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
   const Scene& scene = out.part.scene;
   const auto keep_ours = [&](std::vector<TrianglePair>& candidates) {
     out.elsewhere = std::erase_if(candidates, [&](const TrianglePair& pair) {
-      return !owns(out.slab, scene, pair, clearance);
+      const auto begin = [&](std::uint32_t t) { return box_of(scene, t).lo[out.slab.axis]; };
+      return !owns(out.slab, begin(pair.a), begin(pair.b));
     });
   };
   out.record =
@@ -389,14 +411,6 @@ std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   return fmt::format("{}, {}", counted(ignored.size(), "pair", "pairs"), hash.hex());
 }
 
-std::string interval_text(const Slab& slab) {
-  const bool first = slab.from == -HUGE_VAL, last = slab.to == HUGE_VAL;
-  if (first && last) return "everything";
-  if (first) return fmt::format("{} below {}", axis_name(slab.axis), slab.to);
-  if (last) return fmt::format("{} from {} on", axis_name(slab.axis), slab.from);
-  return fmt::format("{} from {} to below {}", axis_name(slab.axis), slab.from, slab.to);
-}
-
 // Writes a triangle of the part with its numbers in the whole scene.
 void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
               std::uint32_t triangle, Json& place) {
@@ -425,6 +439,14 @@ double expected_mib(const TileCount& count) {
 }
 
 }  // namespace
+
+std::string interval_text(const Slab& slab) {
+  const bool first = slab.from == -HUGE_VAL, last = slab.to == HUGE_VAL;
+  if (first && last) return "everything";
+  if (first) return fmt::format("{} below {}", axis_name(slab.axis), slab.to);
+  if (last) return fmt::format("{} from {} on", axis_name(slab.axis), slab.from);
+  return fmt::format("{} from {} to below {}", axis_name(slab.axis), slab.from, slab.to);
+}
 
 Json tile_json(const TileRun& run, const TileList* list) {
   const Scene& scene = run.part.scene;

@@ -2,7 +2,6 @@
 // what `farcull merge` joins. docs/tiles.md has the proof that each pair belongs to one tile.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,13 +16,14 @@
 
 #include "core/base/bytes.h"
 #include "core/base/stage.h"
-#include "core/boxes/block.h"
 #include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
+#include "verify/certificate/certificate.h"
 #include "verify/certificate/pair_list.h"
+#include "verify/certificate/tile.h"
 
 namespace farcull {
 
@@ -39,9 +39,10 @@ using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 struct Census {
   std::string name;
   std::uint64_t objects = 0, self_objects = 0, triangles = 0;
+  double clearance = 0;             // of the question, world units
   std::vector<std::string> names;   // of the objects; empty where they were not asked for
   std::vector<ObjectPair> ignored;  // by the scene, as in_order() gives them
-  /// Grown boxes (core/boxes/block.h) of all triangles if there are at most 65,536, else of those
+  /// Boxes of all triangles if there are at most 65,536, else of those
   /// that a fixed hash of their numbers chooses. So the same scene gives the same sample
   /// everywhere.
   std::vector<Box> sample;
@@ -55,8 +56,8 @@ struct Census {
 /// An object's number of triangles and `self`, as scene_hash() hashes them before the coordinates.
 std::uint64_t size_word(const Object& object);
 
-/// clearance: as in grown_box(). names: whether to keep the names of the objects. An exception of
-/// `source` is passed on.
+/// clearance: at which two triangles still count (world units). names: whether to keep the names of
+/// the objects. An exception of `source` is passed on.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
 
 /// A scene whose objects have names but no triangles.
@@ -81,42 +82,11 @@ struct TileCount {
   std::uint64_t home = 0;       // whose box begins in the tile: in one tile each
 };
 /// Reads the scene once more and counts the triangles of each tile. Memory O(tiles).
-std::vector<TileCount> count_tiles(const SceneSource& source, const Cuts& cuts, double clearance);
+std::vector<TileCount> count_tiles(const SceneSource& source, const Census& census,
+                                   const Cuts& cuts);
 
-// A tile of a scene: a half-open interval of one axis. Which triangles meet it, and which pairs of
-// triangles belong to it (docs/tiles.md has the proof that each pair belongs to exactly one).
-
-/// The tile from .. to of an axis (0, 1 or 2), in world units: `from` belongs to it, `to` does not.
-struct Slab {
-  int axis = 0;
-  double from = -std::numeric_limits<double>::infinity();
-  double to = std::numeric_limits<double>::infinity();
-};
-
-/// Tile k of the cuts.size() + 1 tiles of an axis. Preconditions: the cuts ascend, some may be
-/// equal; k <= cuts.size(). The first tile begins at minus infinity, the last ends at infinity.
-inline Slab slab_of(int axis, std::span<const double> cuts, std::size_t k) {
-  Slab out{.axis = axis};
-  if (k > 0) out.from = cuts[k - 1];
-  if (k < cuts.size()) out.to = cuts[k];
-  return out;
-}
-
-/// Whether a place on the axis is in the tile. Exact: it only compares doubles.
-inline bool holds(const Slab& slab, double at) { return at >= slab.from && at < slab.to; }
-
-/// Whether a closed box has a point in the tile. Precondition: the box is not empty, and begins
-/// below infinity.
-inline bool meets(const Slab& slab, const Box& box) {
-  return box.lo[slab.axis] < slab.to && box.hi[slab.axis] >= slab.from;
-}
-
-/// Whether the pair belongs to the tile: whether the later one of the two triangles' boxes begins
-/// in the tile. Each box is grown by half the clearance (core/boxes/block.h).
-inline bool owns(const Slab& slab, const Scene& scene, const TrianglePair& pair, double clearance) {
-  return holds(slab, std::max(grown_box(scene, pair.a, clearance).lo[slab.axis],
-                              grown_box(scene, pair.b, clearance).lo[slab.axis]));
-}
+/// "x from 1.5 to below 3".
+std::string interval_text(const Slab& slab);
 
 /// Tile k of n, 1 <= k <= n.
 struct TileNumber {
@@ -133,18 +103,20 @@ inline constexpr std::size_t kMostTiles = 10'000;
 struct TileScene {
   Scene scene;             // with the whole scene's name
   ListNumbers numbers;     // of its objects and triangles in the whole scene
-  std::uint64_t home = 0;  // triangles whose grown box begins in the tile
+  std::uint64_t home = 0;  // triangles whose box begins in the tile
   std::string hash;        // scene_hash() of the whole scene
   std::string faces_hash;  // of its source faces, which scene_hash() leaves out
 };
 
-/// Reads all parts of the scene and keeps the triangles whose boxes, grown by half the clearance,
-/// meet the tile: both triangles of every pair that belongs to the tile are kept. Memory O(largest
-/// part + triangles that meet the tile). Throws Error naming the scene if it differs from the
+/// Reads all parts of the scene and keeps the triangles that meet the tile at the clearance of the
+/// census: both triangles of every pair that belongs to the tile are kept. Memory O(largest part +
+/// triangles that meet the tile). Throws Error naming the scene if it differs from the
 /// census in an object's number of triangles or self, and if 2^31 or more triangles and objects
 /// meet the tile. An exception of `source` is passed on.
-TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
-                      double clearance);
+TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab);
+
+/// For certificates: the scene of which `part` is the tile. The part must outlive the result.
+WholeScene whole_scene(const Census& census, const Slab& slab, const TileScene& part);
 
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty

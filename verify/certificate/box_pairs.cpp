@@ -66,8 +66,8 @@ void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
 
 // ---- a tree over all triangles; each triangle asks it for later ones whose boxes it meets ----
 
-BoxPairs::BoxPairs(const Scene& scene, double clearance)
-    : scene_(scene), clearance_(clearance), tree_(scene) {
+BoxPairs::BoxPairs(const Scene& scene, double clearance, const Slab& tile)
+    : scene_(scene), clearance_(clearance), tile_(tile), tree_(scene) {
   const auto count = static_cast<std::uint32_t>(scene.triangles.size());
   if (count > 0) tree_.add(0, count);
 }
@@ -106,7 +106,9 @@ bool BoxPairs::next(std::vector<TrianglePair>& pairs, std::size_t enough) {
       if (tree_.is_leaf(n)) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
           const std::uint32_t other = tree_.order[i];
-          if (other >= later && meet(tree_.bounds[other], bounds))
+          const BoundsTree::Bounds& its = tree_.bounds[other];
+          if (other >= later && meet(its, bounds) &&
+              owns(tile_, bounds.lo[tile_.axis], its.lo[tile_.axis]))
             pairs.push_back({triangle_, other});
         }
       }

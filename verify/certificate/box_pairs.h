@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/tile.h"
 
 namespace farcull {
 
@@ -51,11 +52,12 @@ struct BoundsTree {
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
 /// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
 /// With a clearance > 0 (world units, finite): the pairs whose boxes are no farther apart than the
-/// clearance along any axis, by differences in double. Memory O(triangles). Precondition:
-/// validate() accepts the scene. The scene must outlive the object.
+/// clearance along any axis, by differences in double. With a tile: those of them that belong to
+/// it. Memory O(triangles). Precondition: validate() accepts the scene. The scene must outlive the
+/// object.
 class BoxPairs {
  public:
-  explicit BoxPairs(const Scene& scene, double clearance = 0);
+  explicit BoxPairs(const Scene& scene, double clearance = 0, const Slab& tile = {});
 
   /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at
   /// least `enough` or the scene ends. Returns false, with no pairs, after the last pair.
@@ -66,6 +68,7 @@ class BoxPairs {
 
   const Scene& scene_;
   double clearance_;
+  Slab tile_;
   BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
   std::uint32_t triangle_ = 0;  // the next to be asked

@@ -33,6 +33,15 @@ NotAsked not_asked(const Scene& scene) {
   return out;
 }
 
+Certificate::SceneKey key_of(const Scene& scene) {
+  return {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
+}
+
+Certificate::Unasked unasked_of(const Scene& scene) {
+  const NotAsked unasked = not_asked(scene);
+  return {unasked.objects, unasked.pairs};
+}
+
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -90,22 +99,22 @@ class Marked {
 
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
-                             double clearance) {
+                             double clearance, const WholeScene* whole) {
   const FloatingPointGuard guard;
   if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error("make_certificate: a clearance must be finite and not negative");
   constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
   constexpr std::size_t kPerThread = 1024;  // pairs per thread, enough to pay for it
   Certificate out;
-  out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
+  out.scene = whole ? whole->key : key_of(scene);
   out.clearance = clearance;
-  const NotAsked unasked = not_asked(scene);
-  out.not_asked = {unasked.objects, unasked.pairs};
+  if (whole) out.tile = whole->tile;
+  out.not_asked = whole ? whole->not_asked : unasked_of(scene);
   out.run = std::move(run);
 
   Marked kept_pairs(kept, "kept", clearance > 0);
   Marked colliding_pairs(colliding, "colliding", false);
-  BoxPairs enumeration(scene, clearance);
+  BoxPairs enumeration(scene, clearance, whole ? whole->tile : Slab());
   const std::vector<std::uint32_t> owner = owners(scene);
   std::vector<TrianglePair> pairs;
   std::vector<std::array<bool, 2>> marks;
@@ -129,7 +138,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   }
   kept_pairs.finish();
   colliding_pairs.finish();
-  out.list_sha256 = pair_list_hash(scene, colliding);
+  out.list_sha256 = pair_list_hash(scene, colliding, whole ? whole->numbers : nullptr);
 
   out.claims.box_pairs = out.evidence.size();
   for (const std::uint8_t byte : out.evidence) {

@@ -14,6 +14,9 @@
 // With a clearance D > 0 read "meets" as "is at distance D or less", "overlap" as "are no farther
 // apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
 // decided as without a clearance.
+//
+// The certificate of a tile (docs/tiles.md) is about the pairs that belong to the tile alone. Those
+// of tiles that follow each other from one end of an axis to the other prove the whole list.
 #pragma once
 
 #include <array>
@@ -25,6 +28,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/tile.h"
 
 namespace farcull {
 
@@ -91,9 +95,10 @@ struct Certificate {
     bool operator==(const Run&) const = default;
   };
 
-  SceneKey scene;
-  double clearance = 0;  // world units, finite, >= 0
-  Unasked not_asked;
+  SceneKey scene;            // the whole scene, also of a tile's certificate
+  double clearance = 0;      // world units, finite, >= 0
+  std::optional<Slab> tile;  // none: the certificate is about all pairs
+  Unasked not_asked;         // of the whole scene
   Claims claims;
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
@@ -108,6 +113,20 @@ constexpr std::uint8_t kMeets = 38;
 constexpr std::uint8_t kNeighbours = 39;
 constexpr std::uint8_t kKept = 0x40;
 
+struct ListNumbers;
+
+/// The whole scene of which a scene has the triangles that meet a tile.
+struct WholeScene {
+  Slab tile;
+  const ListNumbers* numbers = nullptr;  // of the objects and triangles of the part in the whole
+  Certificate::SceneKey key;
+  Certificate::Unasked not_asked;
+};
+
+/// The key, and what is not asked, of the scene itself.
+Certificate::SceneKey key_of(const Scene& scene);
+Certificate::Unasked unasked_of(const Scene& scene);
+
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
 /// those of them that the run found to meet, neighbours included. Both are sorted, each pair once,
 /// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. Throws
@@ -116,10 +135,11 @@ constexpr std::uint8_t kKept = 0x40;
 /// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept (neighbours:
 /// kNeighbours), and kMeets if it was culled. The hash of the list is that of `colliding`. With a
 /// clearance > 0, kept pairs whose boxes are farther apart than the clearance are left out: they
-/// need no evidence, and a method may keep such pairs.
+/// need no evidence, and a method may keep such pairs. whole: not null if the run was on a tile;
+/// then all pairs belong to the tile.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
-                             double clearance = 0);
+                             double clearance = 0, const WholeScene* whole = nullptr);
 
 /// Makes a certificate for a list that has none, as for a run that kept just these pairs and found
 /// that they meet. Pairs of the list that do not count, or whose boxes are disjoint, are left out:
@@ -128,8 +148,8 @@ Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> li
                                 double clearance = 0);
 
 /// The certificate as JSON, the keys always in the same order, with a final newline. The version is
-/// 3, or 4 with a clearance. Bytes of strings that are not UTF-8 become U+FFFD. Throws
-/// std::logic_error if a radius is not finite.
+/// 3, or 4 with a clearance, or 5 of a tile. Bytes of strings that are not UTF-8 become U+FFFD.
+/// Throws std::logic_error if a radius is not finite.
 std::string to_text(const Certificate& certificate);
 
 /// The inverse of to_text(). Throws Error naming `name` and the fault if the text is not JSON of
@@ -163,11 +183,15 @@ struct CheckResult {
 /// - proved: neither. So the pairs of the list meet, and no others that count. The check does not
 ///   prove which pairs the run kept, nor anything else in Run.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
+/// With `whole`, the scene has the triangles that meet the tile, and the check is about the pairs
+/// that belong to it; the certificate has to be of this tile and of the whole scene.
 /// Throws std::logic_error if the clearance is negative or not finite. Precondition: validate()
 /// accepts the scene.
-CheckResult check_certificate(const Certificate& certificate, const Scene& scene);
+CheckResult check_certificate(const Certificate& certificate, const Scene& scene,
+                              const WholeScene* whole = nullptr);
 
-/// "the certificate is of another scene: ..." with the difference; empty if the key is the scene's.
-std::string other_scene(const Certificate::SceneKey& key, const Scene& scene);
+/// "the certificate is of another scene: ..." with the difference; empty if the keys are the same
+/// but for the name.
+std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found);
 
 }  // namespace farcull

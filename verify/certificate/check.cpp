@@ -119,12 +119,11 @@ std::vector<std::string> unattested_of(const Certificate::Run& run) {
   return out;
 }
 
-std::string wrong_count(const Certificate& certificate, const Scene& scene,
+std::string wrong_count(const Certificate& certificate, const Certificate::Unasked& unasked,
                         const Certificate::Claims& found) {
   using Claims = Certificate::Claims;
   const Claims& claimed = certificate.claims;
-  const NotAsked unasked = not_asked(scene);
-  if (certificate.not_asked != Certificate::Unasked{unasked.objects, unasked.pairs}) {
+  if (certificate.not_asked != unasked) {
     return "not_asked is not what the scene leaves out: " + std::to_string(unasked.pairs) +
            " pairs inside " + std::to_string(unasked.objects) + " objects";
   }
@@ -172,11 +171,13 @@ class Tally {
   }
 
   /// The result. Every pair has been added.
-  CheckResult finish(const Certificate& certificate, const Scene& scene, double decide_ms) {
+  CheckResult finish(const Certificate& certificate, const Scene& scene, const WholeScene* whole,
+                     double decide_ms) {
     result_.decide_ms = decide_ms;
-    result_.list_sha256 = pair_list_hash(scene, result_.meeting);
+    result_.list_sha256 = pair_list_hash(scene, result_.meeting, whole ? whole->numbers : nullptr);
     if (!result_.pair) {
-      result_.reason = wrong_count(certificate, scene, result_.found);
+      result_.reason =
+          wrong_count(certificate, whole ? whole->not_asked : unasked_of(scene), result_.found);
       if (result_.reason.empty())
         result_.reason = wrong_list(certificate.list_sha256, result_.list_sha256);
       result_.verdict = result_.reason.empty() ? Verdict::proved : Verdict::not_proved;
@@ -195,10 +196,11 @@ CheckResult not_proved(std::string reason) {
   return result;
 }
 
-CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
+CheckResult decide_all(const Certificate& certificate, const Scene& scene,
+                       const WholeScene* whole) {
   constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
   constexpr std::size_t kPerThread = 1024;
-  BoxPairs enumeration(scene, certificate.clearance);
+  BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Slab());
   const std::vector<std::uint32_t> owner = owners(scene);
   Tally tally(certificate.clearance > 0);
   std::vector<TrianglePair> pairs;
@@ -229,25 +231,24 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
     return not_proved("the evidence is too long: " + std::to_string(certificate.evidence.size()) +
                       " bytes for " + std::to_string(done) + " pairs with overlapping boxes");
   }
-  return tally.finish(certificate, scene, decide_ms);
+  return tally.finish(certificate, scene, whole, decide_ms);
 }
 
 }  // namespace
 
-std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
-  const auto differ = [](const char* what, const std::string& claimed, const std::string& found) {
-    return std::string("the certificate is of another scene: ") + what + " " + claimed +
-           ", given " + found;
+std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
+  const auto differ = [](const char* what, const std::string& one, const std::string& other) {
+    return std::string("the certificate is of another scene: ") + what + " " + one + ", given " +
+           other;
   };
-  if (key.objects != scene.objects.size())
-    return differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
-  if (key.triangles != scene.triangles.size()) {
-    return differ("triangles", std::to_string(key.triangles),
-                  std::to_string(scene.triangles.size()));
-  }
-  const std::string hash = scene_hash(scene);
-  return key.hash == hash ? ""
-                          : differ("hash (coordinates, or which objects are self)", key.hash, hash);
+  const auto differ_in = [&](const char* what, std::uint64_t one, std::uint64_t other) {
+    return differ(what, std::to_string(one), std::to_string(other));
+  };
+  if (claimed.objects != found.objects) return differ_in("objects", claimed.objects, found.objects);
+  if (claimed.triangles != found.triangles)
+    return differ_in("triangles", claimed.triangles, found.triangles);
+  if (claimed.hash == found.hash) return "";
+  return differ("hash (coordinates, or which objects are self)", claimed.hash, found.hash);
 }
 
 std::string to_string(Verdict verdict) {
@@ -262,14 +263,17 @@ std::string to_string(Verdict verdict) {
   return "not proved";
 }
 
-CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
+CheckResult check_certificate(const Certificate& certificate, const Scene& scene,
+                              const WholeScene* whole) {
   const FloatingPointGuard guard;
   const Stopwatch start;
   if (!(certificate.clearance >= 0 && std::isfinite(certificate.clearance)))
     throw std::logic_error("check_certificate: a clearance must be finite and not negative");
-  std::string other = other_scene(certificate.scene, scene);
+  std::string other = other_scene(certificate.scene, whole ? whole->key : key_of(scene));
+  if (other.empty() && certificate.tile != (whole ? std::optional(whole->tile) : std::nullopt))
+    other = whole ? "the certificate is not of this tile" : "the certificate is of a tile alone";
   CheckResult result =
-      other.empty() ? decide_all(certificate, scene) : not_proved(std::move(other));
+      other.empty() ? decide_all(certificate, scene, whole) : not_proved(std::move(other));
   result.unattested = unattested_of(certificate.run);
   result.ms = start.ms();
   return result;

@@ -424,7 +424,7 @@ DistanceCheck check_distances(const DistanceCertificate& certificate, const Scen
     throw std::logic_error("check_distances: a bad question");
   }
   DistanceCheck result;
-  result.reason = other_scene(certificate.scene, scene);
+  result.reason = other_scene(certificate.scene, key_of(scene));
   if (result.reason.empty()) result = Checker(certificate, scene, name).run();
   result.ms = start.ms();
   return result;

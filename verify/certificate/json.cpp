@@ -139,8 +139,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-// The versions are the same except that kVersionWithClearance has a clearance.
-constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4;
+// The versions are the same except that the second has a clearance, and the third a tile as well.
+constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile = 5;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
@@ -194,6 +194,32 @@ Certificate::Run read_run(const Reader& reader, const Json& value) {
   return run;
 }
 
+constexpr std::string_view kAxes = "xyz";
+
+Slab read_tile(const Reader& reader, const Json& value) {
+  reader.object(value, "tile", {"axis", "from", "to"});
+  const std::string axis = reader.text(value["axis"], "tile.axis");
+  if (axis.size() != 1 || kAxes.find(axis) == kAxes.npos) reader.fail("tile.axis is not x, y or z");
+  Slab tile{.axis = static_cast<int>(kAxes.find(axis))};
+  const auto place = [&](const char* key, double& to) {
+    const Json& at = value[key];
+    if (at.is_null()) return;
+    if (!at.is_number() || !std::isfinite(at.get<double>()))
+      reader.fail(std::string("tile.") + key + " is no finite number and not null");
+    to = at.get<double>();
+  };
+  place("from", tile.from);
+  place("to", tile.to);
+  return tile;
+}
+
+Json tile_json(const Slab& tile) {
+  const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
+  return {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile.axis)])},
+          {"from", place(tile.from)},
+          {"to", place(tile.to)}};
+}
+
 double finite(double length) {
   if (!std::isfinite(length)) throw std::logic_error("to_text: a length that is not finite");
   return length;
@@ -217,11 +243,13 @@ std::string to_text(const Certificate& certificate) {
               {"version", run.device->version},
               {"glsl", run.device->glsl}};
   }
-  const bool clearance = certificate.clearance > 0;
-  Json json = {{"format", kFormat},
-               {"version", clearance ? kVersionWithClearance : kVersion},
-               {"scene", scene_key_json(certificate.scene)}};
-  if (clearance) json["clearance"] = finite(certificate.clearance);
+  const std::uint64_t version = certificate.tile            ? kVersionOfTile
+                                : certificate.clearance > 0 ? kVersionWithClearance
+                                                            : kVersion;
+  Json json = {
+      {"format", kFormat}, {"version", version}, {"scene", scene_key_json(certificate.scene)}};
+  if (version > kVersion) json["clearance"] = finite(certificate.clearance);
+  if (certificate.tile) json["tile"] = tile_json(*certificate.tile);
   json["not_asked"] = {{"objects", certificate.not_asked.objects},
                        {"pairs", certificate.not_asked.pairs}};
   json["claims"] = {
@@ -248,23 +276,27 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   if (!root.is_object()) reader.fail("the certificate is no object");
   if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
   const Json version = root.value("version", Json());
-  const bool clearance = version == kVersionWithClearance;
-  if (!version.is_number_unsigned() || (version != kVersion && !clearance)) {
-    reader.fail("version is not " + std::to_string(kVersion) + " or " +
-                std::to_string(kVersionWithClearance));
-  }
+  const bool tile = version == kVersionOfTile, clearance = tile || version == kVersionWithClearance;
+  if (!version.is_number_unsigned() || (version != kVersion && !clearance))
+    reader.fail("version is not 3, 4 or 5");
   Certificate certificate;
-  if (clearance) {
+  if (tile) {
+    reader.object(root, "",
+                  {"format", "version", "scene", "clearance", "tile", "not_asked", "claims",
+                   "list_sha256", "unattested", "evidence"});
+    certificate.tile = read_tile(reader, root["tile"]);
+  } else if (clearance) {
     reader.object(root, "",
                   {"format", "version", "scene", "clearance", "not_asked", "claims", "list_sha256",
                    "unattested", "evidence"});
-    certificate.clearance = reader.length(root["clearance"], "clearance");
-    if (certificate.clearance == 0) reader.fail("clearance is 0, which version 3 is for");
   } else {
     reader.object(root, "",
                   {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
                    "evidence"});
   }
+  if (clearance) certificate.clearance = reader.length(root["clearance"], "clearance");
+  if (clearance && !tile && certificate.clearance == 0)
+    reader.fail("clearance is 0, which version 3 is for");
   certificate.scene = read_scene_key(reader, root["scene"]);
   certificate.not_asked = read_not_asked(reader, root["not_asked"]);
   certificate.claims = read_claims(reader, root["claims"]);

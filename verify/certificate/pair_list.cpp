@@ -69,10 +69,11 @@ std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs) {
   return out;
 }
 
-std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs) {
+std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
+                           const ListNumbers* numbers) {
   Sha256 hash;
-  hash.add(pair_list_header(scene));
-  const PairListRows rows(scene);
+  hash.add(pair_list_header(numbers ? numbers->self : has_self(scene)));
+  const PairListRows rows(scene, numbers);
   std::string line;
   for (const TrianglePair& pair : pairs) {
     line.clear();

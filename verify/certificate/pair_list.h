@@ -48,9 +48,10 @@ class PairListRows {
 /// The whole list: the header, then the lines of the pairs in the order given.
 std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs);
 
-/// SHA-256 of pair_list(): 64 lower-case hexadecimal digits. Memory O(triangles), whatever the
-/// number of pairs.
-std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs);
+/// SHA-256 of pair_list(), or of the list with these numbers: 64 lower-case hexadecimal digits.
+/// Memory O(triangles), whatever the number of pairs.
+std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
+                           const ListNumbers* numbers = nullptr);
 
 /// A row of a list, as it stands there.
 struct ListedPair {

@@ -76,7 +76,7 @@ rows(r"""
   | accounted [ ]
 # What cannot be answered in tiles, and values that are none.
 bad far | --tiles: are of far-pairs | run two-spheres --tiles 1/2 --method far
-each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3 | --certificate c.json
+each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3
 bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
 bad a number that is none | .*'1/2' is no number of tiles | plan two-spheres --tiles 1/2
 each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*' | plan crowd --tiles 2 --ignore 'nobody:*'
@@ -104,3 +104,36 @@ bad no tile | .*is no record of a tile, as the others are | merge t1.json result
 $ head -c 100 t2.csv >short.csv && mv short.csv t2.csv
 bad cut short | .*it was cut short | merge t1.json t2.json t3.json -o merged.csv
 """)
+
+# Certificates of tiles prove the list of the whole together. Twins: a tile that is missing or there twice, a border that is
+# moved, a pair at a border that is left out, another scene, another list.
+bash('rm -f *.json *.csv')
+SCENE = 'field:3000 --clearance 0.02 --no-verify'
+for k in 1, 2, 3:
+    good('a certificate of a tile', 0, ['run', *shlex.split(SCENE), '--tiles', f'{k}/3', '--json', f'r{k}.json', '--pairs', f'p{k}.csv',
+                                        '--certificate', f't{k}.json'])
+border = re.search('"to": ([^\n]*)', read('t2.json'))[1]
+rows(r"""
+0 merged | merge r1.json r2.json r3.json -o merged.csv
+0 whole | check t%d.json field:3000 --tiles 3 --pairs merged.csv --json c.json
+  | #0 ^proved: these [0-9,]* pairs of the scene are at distance 0.02 or less, and no others$ | ^tile +t3.json, [xyz] from
+$ grep -qF "$(sha256sum <merged.csv | cut -c 1-64)" c.json && grep -qF '"verdict": "proved"' c.json
+0 one tile | check t2.json field:3000 --pairs p2.csv | #0 ^proved: of the pairs that belong to the tile, these
+1 another list | check t%d.json field:3000 --tiles 3 --pairs p2.csv | #0 ^not proved: p2\.csv is another list: line
+$ sed '5d' merged.csv >less.csv
+1 a row less | check t%d.json field:3000 --tiles 3 --pairs less.csv | #0 ^not proved: less\.csv is another list: line 5 is
+1 another scene | check t%d.json field:3000@far --tiles 3 | #0 ^not proved: t1\.json: the certificate is of another scene
+1 two of three | check t%d.json field:3000 --tiles 2 | #0 ^not proved: a tile is missing:
+bad four of three | t4\.json | check t%d.json field:3000 --tiles 4
+$ cp t1.json u1.json && cp t2.json u2.json && cp t2.json u3.json
+1 one of them twice | check u%d.json field:3000 --tiles 3 | #0 ^not proved: u3\.json is of the tile .*does not begin where
+$ cp t3.json u2.json && cp t2.json u3.json
+1 in another order | check u%d.json field:3000 --tiles 3 | #0 ^not proved: u2\.json is of the tile .*does not begin where
+$ cp t1.json u1.json && sed 's/"to": {border}/"to": 1e9/' t2.json >u2.json && cp t3.json u3.json
+1 a moved border | check u%d.json field:3000 --tiles 3 | #0 ^not proved: u2\.json: the evidence is too short
+0 whole | run field:3000 --no-verify --certificate w1.json
+bad a whole scene | .*is about a whole scene | check w%d.json field:3000 --tiles 1
+bad no number | CERTIFICATE: .*has no place for a number | check t1.json field:3000 --tiles 3
+bad frames | --tiles: | check t%d.json field:3000 --tiles 3 --frames 2
+bad ignored pairs | .*ignores pairs of objects, and a certificate | run crowd/ignores.json --tiles 1/2 --certificate i.json
+""", border=re.escape(border))

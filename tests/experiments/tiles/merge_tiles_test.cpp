@@ -101,6 +101,9 @@ TEST_F(MergeTiles, RefuseWhatIsNotOfOneScene) {
   run(2, kTiles, "field:9000@seed8");
   expect_refused("is of another scene");
   run(2, kTiles, "field:9000", 1e-3);
+  expect_refused("was run with other options");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["cuts"][0] = 1e9; });
   expect_refused("is cut elsewhere");
   run(2, 4, "field:9000");
   expect_refused("is of another number of tiles");

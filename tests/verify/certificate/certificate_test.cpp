@@ -423,7 +423,7 @@ TEST(CertificateText, RefusesAnotherForm) {
   for (const char* text : {"null", "7", "\"text\"", "[]"}) expect_refused(text, "no object");
   expect_refused("{}", "format is not");
   expect_refused(changed_text("farcull-certificate", "farcull-record"), "format is not");
-  for (const char* version : {"1", "2", "5", "0", "-1", "3.0", "4.0", "\"3\"", "null", "[3]"})
+  for (const char* version : {"1", "2", "6", "0", "-1", "3.0", "4.0", "\"3\"", "null", "[3]"})
     expect_refused(changed_text("\"version\": 3", std::string("\"version\": ") + version),
                    "version is not");
   expect_refused(changed_text("\"version\": 3", "\"version\": 3, \"more\": 2"),

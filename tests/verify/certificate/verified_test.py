@@ -1,6 +1,6 @@
 """Compares the verdicts of farcull check and of farcull-check-verified, on certificates and on forged ones, and changes
 inequalities of the proved checker, or rules of the passes (tests/proofs/coq), which must break their proofs. tests/coq.sh calls it.
-  verified_test.py compare FARCULL CHECKER FOLDER RANDOM   RANDOM scenes on a small grid, besides those that are built in
+  verified_test.py compare FARCULL CHECKER FOLDER RANDOM   about RANDOM scenes on a small grid, besides those that are built in
   verified_test.py mutants SOURCES FOLDER"""
 import base64
 import json
@@ -12,10 +12,12 @@ import struct
 import subprocess
 import sys
 import tarfile
+from fractions import Fraction
 
 BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
             'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
 SPOILED = ['degenerate', 'cloth:8']  # small, so that every change of their certificates is tried
+DISTANT = ['needles:60', 'gap:216', 'degenerate', 'two-spheres', 'crowd:60']
 VERDICT = re.compile(r'(?:verified +)?(proved|refuted|not proved|undecided)\b')
 
 
@@ -28,7 +30,7 @@ def verdict(words):
     """What a checker says: its exit status and the word of its verdict; no word if it cannot read the file."""
     status, text = output(words)
     words = [found[1] for line in text.split('\n') if (found := VERDICT.match(line))]
-    return status, words[0] if status < 2 and words else '', text
+    return status, words[-1] if status < 2 and words else '', text
 
 
 # ---- scenes ----
@@ -52,15 +54,15 @@ def write_words(path, objects):
             file.write(b''.join(struct.pack('<3d', *point) for triangle in triangles for point in triangle))
 
 
-def write_scene(folder, objects):
+def write_scene(folder, objects, ending='', meshes=True):
     os.makedirs(folder, exist_ok=True)
-    for index, (_, triangles) in enumerate(objects):
-        with open(f'{folder}/o{index}.off', 'w', encoding='utf-8') as file:
+    for index, (_, triangles) in enumerate(objects if meshes else []):
+        with open(f'{folder}/o{index}{ending}.off', 'w', encoding='utf-8') as file:
             file.write(f'OFF\n{3 * len(triangles)} {len(triangles)} 0\n')
             file.writelines('%.17g %.17g %.17g\n' % tuple(point) for triangle in triangles for point in triangle)
             file.writelines(f'3 {3 * t} {3 * t + 1} {3 * t + 2}\n' for t in range(len(triangles)))
     with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
-        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}.off', **({'self': True} if inner else {})}
+        json.dump({'objects': [{'name': f'o{i}', 'mesh': f'o{i}{ending}.off', **({'self': True} if inner else {})}
                                for i, (inner, _) in enumerate(objects)]}, file)
 
 
@@ -74,19 +76,13 @@ FUZZ_SCENE = [(False, triangles) for triangles in (
      [(2, 1 + ULP, 1), (1, 2 + 2 * ULP, 1), (2, 2, 1.5)]])]
 
 
-def random_scene(number, folder, most=40):
-    """Triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
-    draw = random.Random(number)
-    side, scale = draw.choice([2, 2, 3, 4]), draw.choice([1.0, 0.1, 3e-5, 1e10])
-    flat = draw.random() < 0.3
-    objects = []
-    for _ in range(draw.choice([1, 2, 2, 3])):
+def random_triangles(draw, count, scale, most):
+    """Objects of triangles whose corners lie on a small grid: most pairs touch, and many lie in one plane or on one line."""
+    side, flat = draw.choice([2, 2, 3, 4]), draw.random() < 0.3
+    for _ in range(count):
         corners = [tuple(scale * (0 if flat and axis == 2 else draw.randrange(side)) for axis in range(3))
                    for _ in range(draw.choice([4, 6, 10, 3 * most]))]
-        triangles = [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(1, most))]
-        objects.append((draw.random() < 0.7, triangles))
-    write_scene(folder, objects)
-    return objects, scale
+        yield [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(2, most))]
 
 
 # ---- forged certificates ----
@@ -166,13 +162,18 @@ class Comparison:
     def __init__(self, farcull, checker):
         self.farcull, self.checker, self.seen, self.wrong = farcull, checker, {}, []
 
-    def both(self, certificate, scene, words, why):
-        one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
+    def both(self, certificate, scene, words, why, tiles=0):
+        """tiles: how many certificates there are, with a number in their name; 0: one without."""
+        files = [certificate % k for k in range(1, tiles + 1)] if tiles else [certificate]
+        one = verdict([self.farcull, 'check', certificate, scene, *(['--tiles', str(tiles)] if tiles else [])])
+        two = verdict([self.checker, *(['--tiles'] if tiles else []), *files, words])
         self.seen[one[1] or f'status {one[0]}'] = self.seen.get(one[1] or f'status {one[0]}', 0) + 1
         if one[:2] != two[:2]:
-            kept = f'{certificate}.{len(self.wrong)}'
-            shutil.copy(certificate, kept)
+            kept = f'{files[0]}.{len(self.wrong)}'
+            for k, file in enumerate(files):
+                shutil.copy(file, f'{kept}{k or ""}')
             self.wrong.append(f'{why} ({kept}, {scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
+        return two[1]
 
     def fuzzed(self, archive, folder):
         """The inputs of the fuzzer of certificates."""
@@ -199,6 +200,149 @@ class Comparison:
         if said[0] != 2 or 'the two checkers disagree' not in said[1]:
             self.wrong.append(f'check --verified with a checker that disagrees: {said}')
         os.remove(program)
+
+    def tiles(self, name, folder, objects, number, clearance):
+        """Certificates of tiles, one by one and together; and forged ones: one is missing or there twice, a border is moved, a
+        pair is left out, one is of another scene."""
+        scene, words, file, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/t%d.json', random.Random(number)
+        write_words(words, objects)
+        count = draw.randrange(2, 5)
+        for k in range(1, count + 1):
+            status, text = output([self.farcull, 'run', scene, '--device', 'cpu', '--no-verify', '--clearance', repr(clearance),
+                                   '--tiles', f'{k}/{count}', '--certificate', file % k])
+            if status:
+                if 'nothing to test' not in text:
+                    self.wrong.append(f'{name}: no certificate of a tile: {text[:300]}')
+                return
+        texts = [open(file % k, encoding='utf-8').read() for k in range(1, count + 1)]
+
+        def together(others, why, proved=False):
+            for k, text in enumerate(others, 1):
+                with open(file % k, 'w', encoding='utf-8') as out:
+                    out.write(text)
+            seen = self.both(file, scene, words, f'{name}, tiles, {why}', len(others))
+            if (seen == 'proved') != proved:
+                self.wrong.append(f'{name}, tiles, {why}: {seen} ({scene}, {file})')
+
+        together(texts, 'all', True)
+        roots = [json.loads(text) for text in texts]
+        which = draw.choice([k for k, root in enumerate(roots) if root['tile']['from'] != root['tile']['to']])  # one that is not empty
+        self.both(file % (which + 1), scene, words, f'{name}, tile {which + 1} of {count}')
+        changed = list(forged(texts[which], number))
+        self.both_text(draw.choice(changed), file % (which + 1), scene, words, f'{name}, a tile that is changed')
+        together(texts[:which] + texts[which + 1:], 'one is missing')
+        together(texts[:which] + [texts[which]] + texts[which:], 'one is there twice')
+        border = draw.randrange(count - 1)
+        moved = roots[border]['tile']['to'] + draw.choice([-1, 1]) * 2.0 ** -20 * (abs(roots[border]['tile']['to']) + 1)
+        roots[border]['tile']['to'] = moved
+        together([json.dumps(root) for root in roots], 'a border is moved')
+        data = base64.b64decode(roots[which]['evidence'])
+        if data:
+            at = draw.randrange(len(data))
+            root = json.loads(texts[which])
+            root['evidence'] = base64.b64encode(data[:at] + data[at + 1:]).decode()
+            recount(root, data[:at] + data[at + 1:])
+            together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'a pair is left out')
+        root = json.loads(texts[which])
+        root['scene']['hash'] = 'f' * 16
+        together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'one is of another scene')
+
+    def distances(self, name, folder, objects, number):
+        """The proved checker proves distances of objects that farcull proves, and none that are wrong."""
+        scene, words, certificate, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/distances.json', random.Random(number)
+        write_words(words, objects)
+        within = draw.choice([[], [], ['--within', '0'], ['--within', '0.75'], ['--within', '1e9']])
+        if output([self.farcull, 'distance', scene, '--certificate', certificate, *within])[0]:
+            return  # as of a scene that has none
+        text = open(certificate, encoding='utf-8').read()
+
+        def told(root, why, wrong=True):
+            with open(certificate, 'w', encoding='utf-8') as out:
+                json.dump(root, out)
+            one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
+            self.seen[f'distances {two[1]}'] = self.seen.get(f'distances {two[1]}', 0) + 1
+            if (one[1] == 'proved') == wrong or (two[1] == 'proved') == wrong or two[0] > 1:
+                self.wrong.append(f'{name}, distances, {why} ({scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
+
+        told(json.loads(text), 'as they are', False)
+        if within == [] and number % 4 == 0:
+            said = output([self.farcull, 'check', certificate, scene, '--verified'])
+            if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
+                self.wrong.append(f'check --verified of distances: {said}')
+        root = json.loads(text)
+        if not root['distances']:
+            return
+        at = draw.randrange(len(root['distances']))
+        over, under = map(int, root['distances'][at]['squared'].split('/'))
+        for change in (1, -1) if over else (1,):
+            part = Fraction(over, under) + Fraction(change * max(over, 1), draw.choice([1, 2, 2 ** 60]) * under)
+            root['distances'][at]['squared'] = f'{part.numerator}/{part.denominator}'
+            told(root, f'the square is {part}')
+        root = json.loads(text)
+        told({**root, 'distances': root['distances'][:at] + root['distances'][at + 1:]}, 'one is left out')
+        told({**root, 'distances': root['distances'][:at + 1] + root['distances'][at:]}, 'one is there twice')
+        root['scene']['hash'] = 'f' * 16
+        told(root, 'of another scene')
+
+    def batch(self, number, size, folder):
+        """Random scenes, without and with a clearance, as the frames of one scene: farcull then checks all of them at once.
+        The first one is also divided into tiles, and its distances are compared."""
+        draw = random.Random(number)
+        count = draw.choice([1, 2, 2, 3])
+        inner = [count == 1 or draw.random() < 0.7 for _ in range(count)]
+        scale = draw.choice([1.0, 0.1, 3e-5, 1e10])
+        clearance = scale * draw.choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
+        most = 40 if number % 25 == 0 else 12  # the time grows with the square
+        frames = [list(zip(inner, random_triangles(random.Random(f'{number} {k}'), count, scale, most))) for k in range(size)]
+        scene, texts = f'{folder}/scene.json', []
+        for k, objects in enumerate(frames):
+            write_scene(folder, objects, f'_{k}')
+            write_words(f'{folder}/words_{k}', objects)
+        write_scene(folder, frames[0], '_%d', False)
+        for how in (['--method', 'exact'], ['--method', 'far-pairs', '--device', 'cpu', '--clearance', repr(clearance)]):
+            name = f'random scenes {number} {how[1]}'
+            status, text = output([self.farcull, 'run', scene, '--frames', f'0:{size - 1}', '--no-verify', *how, '--certificate', f'{folder}/c_%d.json'])
+            if status:
+                self.wrong.append(f'{name}: no certificates: {text[:300]}')
+                continue
+            texts = [open(f'{folder}/c_{k}.json', encoding='utf-8').read() for k in range(size)]
+            changed = [random.Random(number).sample(list(forged(text, f'{number} {k}')), 3) for k, text in enumerate(texts)]
+            self.frames(name, folder, size)
+            for n in range(3):
+                for k in range(size):
+                    with open(f'{folder}/c_{k}.json', 'w', encoding='utf-8') as out:
+                        out.write(changed[k][n])
+                self.frames(f'{name}, changed', folder, size)
+        write_scene(folder, frames[0])
+        self.distances(f'random scene {number}', folder, frames[0], number)
+        self.tiles(f'random scene {number}', folder, frames[0], number, clearance if number % 2 == 0 else 0)
+
+    def frames(self, name, folder, size):
+        """Both verdicts about the certificate of each frame."""
+        text = output([self.farcull, 'check', f'{folder}/c_%d.json', f'{folder}/scene.json', '--frames', f'0:{size - 1}', '--json', '-'])[1]
+        try:
+            said = [frame['verdict'] for frame in json.loads(text)['frames']]
+        except ValueError:
+            said = []
+        if len(said) != size:
+            self.wrong.append(f'{name}: not checked: {text[:300]}')
+            return
+        text = output([self.checker, *(f'{folder}/{name}' for k in range(size) for name in (f'c_{k}.json', f'words_{k}'))])[1]
+        proved = [found[1] for line in text.split('\n') if (found := VERDICT.match(line))]
+        if len(proved) != size:
+            self.wrong.append(f'{name}: not verified: {text[-300:]}')
+            return
+        for k, (one, two) in enumerate(zip(said, proved)):
+            self.seen[two] = self.seen.get(two, 0) + 1
+            if one != two:
+                kept = f'{folder}/c_{k}.json.{len(self.wrong)}'
+                shutil.copy(f'{folder}/c_{k}.json', kept)
+                self.wrong.append(f'{name}, frame {k} ({kept})\n  farcull: {one}\n  verified: {two}')
+
+    def both_text(self, text, file, scene, words, why):
+        with open(file, 'w', encoding='utf-8') as out:
+            out.write(text)
+        self.both(file, scene, words, why)
 
     def scene(self, name, folder, objects, number, spoil=False, clearance=None):
         scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
@@ -236,15 +380,16 @@ def compare(farcull, checker, folder, count):
         comparison.scene(name, place, objects, index, spoil=name in SPOILED)
         points = [point for _, triangles in objects for triangle in triangles for point in triangle]
         size = max(max(axis) - min(axis) for axis in zip(*points))
+        comparison.tiles(name, place, objects, index, 0)
+        if name in DISTANT:
+            comparison.distances(name, place, objects, index)
         comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
     place = f'{folder}/random'
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
-    for number in range(first, first + count):
-        objects, scale = random_scene(number, place)
-        comparison.scene(f'random scene {number}', place, objects, number)
-        clearance = scale * random.Random(number).choice([1, 1, 0.5, 2, 2 ** 0.5, 3 ** 0.5, 1e-3])
-        comparison.scene(f'random scene {number}, clearance {clearance!r}', place, objects, number, clearance=clearance)
+    size = 40 if count > 100 else 10
+    for number in range(first, first + count // size):
+        comparison.batch(number, size, place)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
           f'; the two checkers disagree about {len(comparison.wrong)}')
     print('\n'.join(comparison.wrong[:5]))
@@ -269,8 +414,18 @@ MUTANTS = [
     ('(x l <=? x h\')', '(x l <? x h\')'),
     ('(obj a <? obj b) ||', '(obj a <=? obj b) ||'),
     ('own a && (num a <? num b)', 'own a && (num a <=? num b)'),
-    ('((obj a <? last b) ||', '((last b <? obj a) ||')]
-FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs']
+    ('((obj a <? last b) ||', '((last b <? obj a) ||'),
+    ('scaled e d <? scaled e place', 'scaled e d <=? scaled e place'),
+    ('scaled e place <=? scaled e d + scaled e reach', 'scaled e place <? scaled e d + scaled e reach'),
+    ('(coordinate k (lo a) <? p)', '(coordinate k (lo a) <=? p)'),
+    ('negb (both_before e (tile_axis t) p a b)', 'both_before e (tile_axis t) p a b'),
+    ('n * dot d d <=? m * (gap * gap)', 'm * (gap * gap) <=? n * dot d d'),
+    ('m * dot w w <=? n * (r * r)', 'n * (r * r) <=? m * dot w w'),
+    ('numerator f (squared e) <=? denominator (squared e) * (d * d)', 'denominator (squared e) * (d * d) <=? numerator f (squared e)'),
+    ('negb (obj a <? obj b) || is_given es a b', 'negb (obj b <? obj a) || is_given es a b'),
+    ('(Z.max 0 n / m) + 1', '(Z.max 0 n / m)')]
+FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs', 'DistanceChecker', 'Distances']
+PROGRAMS = ['Checker', 'DistanceChecker']  # the files that are changed
 
 # Of the passes, and of the statements about one view. Each file, and the files that prove things of it.
 CULLING = {
@@ -307,7 +462,15 @@ def mutants(sources, folder):
     """Each change compiles as a program, and its proof does not. Of the view, whose files have their statements beside the proofs,
     only that the file is refused, and not for its syntax."""
     os.makedirs(folder, exist_ok=True)
-    tables = CULLING if os.path.exists(f'{sources}/Passes.v') else {'Checker': (FILES, MUTANTS)}
+    if os.path.exists(f'{sources}/Passes.v'):
+        tables = CULLING
+    else:
+        texts = {name: open(f'{sources}/{name}.v', encoding='utf-8').read() for name in PROGRAMS}
+        tables = {name: (FILES[FILES.index(name):], [change for change in MUTANTS if change[0] in text]) for name, text in texts.items()}
+        absent = [change for change in MUTANTS if sum(change[0] in text for text in texts.values()) != 1]
+        if absent:
+            print('\n'.join(f'{old!r} does not occur in one file' for old, _ in absent))
+            return True
     failed, number = [], 0
     for name, (files, table) in tables.items():
         failed += broken_proofs(sources, folder, name, files, table, number)

@@ -11,11 +11,56 @@ Definition lower (e : Z) (d : double) : Z := Z.min e (exponent d).
 Definition lower_vec (e : Z) (p : vec double) : Z := lower (lower (lower e (x p)) (y p)) (z p).
 Definition lower_triangle (e : Z) (t : triangle double) : Z :=
   lower_vec (lower_vec (lower_vec e (p1 t)) (p2 t)) (p3 t).
-Definition lowest (s : scene) (e : Z) : Z :=
-  fold_left (fun e ob => fold_left lower_triangle (triangles ob) e) s e.
+Definition lower_place (e : Z) (place : option double) : Z :=
+  match place with Some d => lower e d | None => e end.
 (** The integer that is the double divided by 2^e; e is at most its exponent. *)
 Definition scaled (e : Z) (d : double) : Z :=
   mantissa d * Z.of_N (N.shiftl 1 (Z.to_N (exponent d - e))).
+
+(** * The triangles that a tile needs: those that begin before its end, and of which a corner is not
+      before its beginning, or less than [reach] before it. The reader calls [keep] for each triangle
+      of a scene, so that it holds no others; [gathered] says what it has in the end. *)
+Record named := Named { of_object : Z; number : Z; inner : bool; corners : triangle double }.
+Definition is_below (d place : double) : bool :=
+  let e := Z.min (exponent d) (exponent place) in scaled e d <? scaled e place.
+Definition is_reached (reach place d : double) : bool :=
+  let e := lower (lower (exponent d) reach) place in scaled e place <=? scaled e d + scaled e reach.
+Definition some_corner (f : double -> bool) (k : axis) (t : triangle double) : bool :=
+  f (coordinate k (p1 t)) || f (coordinate k (p2 t)) || f (coordinate k (p3 t)).
+Definition is_needed (b : tile) (reach : double) (t : triangle double) : bool :=
+  match tile_end b with
+  | Some e => some_corner (fun d => is_below d e) (tile_axis b) t
+  | None => true
+  end &&
+  match tile_begin b with
+  | Some e => some_corner (is_reached reach e) (tile_axis b) t
+  | None => true
+  end.
+Definition keep (b : tile) (reach : double) (o i : Z) (inner : bool) (t : triangle double)
+  (done : list named) : list named :=
+  if is_needed b reach t then Named o i inner t :: done else done.
+
+(** The last one first. *)
+Fixpoint keep_triangles (b : tile) (reach : double) (o i : Z) (inner : bool)
+  (l : list (triangle double)) (done : list named) : list named :=
+  match l with
+  | [] => done
+  | t :: rest => keep_triangles b reach o (i + 1) inner rest (keep b reach o i inner t done)
+  end.
+Fixpoint keep_objects (b : tile) (reach : double) (o : Z) (s : scene) (done : list named)
+  : list named :=
+  match s with
+  | [] => done
+  | ob :: rest =>
+      keep_objects b reach (o + 1) rest
+        (keep_triangles b reach o 0 (self ob) (triangles ob) done)
+  end.
+Definition gathered (b : tile) (reach : double) (s : scene) : list named :=
+  keep_objects b reach 0 s [].
+Definition everything : tile := Tile Along_x None None.
+
+Definition lowest (l : list named) (e : Z) : Z :=
+  fold_left (fun e n => lower_triangle e (corners n)) l e.
 
 (** * Vectors *)
 Definition sub (p q : vec Z) : vec Z := Vec (x p - x q) (y p - y q) (z p - z q).
@@ -59,11 +104,13 @@ Definition each (f : index -> index -> direction) : list direction :=
 Definition directions : list direction :=
   each Between ++ Normal_a :: Normal_b :: each Edge_edge ++ each Foot_a ++ each Foot_b.
 
-(** The gap along d is longer than the clearance. *)
-Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
+Definition gap_along (a b : triangle Z) (d : vec Z) : Z :=
   let a1 := dot d (p1 a) in let a2 := dot d (p2 a) in let a3 := dot d (p3 a) in
   let b1 := dot d (p1 b) in let b2 := dot d (p2 b) in let b3 := dot d (p3 b) in
-  let gap := Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3) in
+  Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3).
+(** The gap along d is longer than the clearance. *)
+Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
+  let gap := gap_along a b d in
   (0 <? gap) && (clearance * clearance * dot d d <? gap * gap).
 Definition separated (clearance : Z) (a b : triangle Z) : bool :=
   existsb (fun d => separates clearance a b (vector a b d)) directions.
@@ -140,15 +187,18 @@ Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
   let n := normal a in let l := dot n n in
   map (fun i => on_edge i 1 0) indices ++ map on_side indices ++
   locate a (sub (scale l p) (scale (dot n (sub p (p1 a))) n)) l.
-Definition near_corner (clearance : Z) (a b : triangle Z) : bool :=
-  existsb (fun j =>
-    existsb (fun u => are_near clearance a b u (on_edge j 1 0)) (feet a b j)) indices.
-Definition near_edges (clearance : Z) (a b : triangle Z) : bool :=
+(** [good a b u v] judges the points of weights u and v. *)
+Definition near_corner (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
+  existsb (fun j => existsb (fun u => good a b u (on_edge j 1 0)) (feet a b j)) indices.
+Definition near_edges (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
   existsb (fun i => existsb (fun j =>
-    are_near clearance a b (probe_weights a b (Meeting_edges i j))
-                           (probe_weights b a (Meeting_edges j i))) indices) indices.
-Definition has_near (clearance : Z) (a b : triangle Z) : bool :=
-  near_corner clearance a b || near_corner clearance b a || near_edges clearance a b.
+    good a b (probe_weights a b (Meeting_edges i j))
+             (probe_weights b a (Meeting_edges j i))) indices) indices.
+Definition has_near (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
+  (a b : triangle Z) : bool :=
+  near_corner good a b || near_corner good b a || near_edges good a b.
 
 (** * Neighbours that have no more in common than their shared part *)
 Definition is_corner_of (t : triangle Z) (c : vec Z) : bool :=
@@ -258,7 +308,7 @@ Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : 
                | _ => if only_shared 7 a b shared indices indices then Some Only_shared else None
                end in
   let common (_ : unit) :=
-    match shared with [] => (0 <? clearance) && has_near clearance a b | _ => false end ||
+    match shared with [] => (0 <? clearance) && has_near (are_near clearance) a b | _ => false end ||
     has_common (off_shared shared) a b in
   if first then (if common tt then Some Meeting else apart)
   else match apart with
@@ -304,22 +354,12 @@ Definition least (t : triangle Z) : vec Z :=
 Definition greatest (t : triangle Z) : vec Z :=
   Vec (max3 (x (p1 t)) (x (p2 t)) (x (p3 t))) (max3 (y (p1 t)) (y (p2 t)) (y (p3 t)))
       (max3 (z (p1 t)) (z (p2 t)) (z (p3 t))).
-Definition make_item (e o i : Z) (inner : bool) (t : triangle double) : item :=
-  let s := map_triangle (scaled e) t in let l := least s in let h := greatest s in
-  Item o i inner s l h (add l h).
-
-(** All triangles, the last one first. *)
-Fixpoint add_triangles (e o i : Z) (inner : bool) (l : list (triangle double)) (done : list item) :=
-  match l with
-  | [] => done
-  | t :: rest => add_triangles e o (i + 1) inner rest (make_item e o i inner t :: done)
-  end.
-Fixpoint add_objects (e o : Z) (s : scene) (done : list item) :=
-  match s with
-  | [] => done
-  | ob :: rest => add_objects e (o + 1) rest (add_triangles e o 0 (self ob) (triangles ob) done)
-  end.
-Definition items_of (e : Z) (s : scene) : list item := add_objects (lowest s e) 0 s [].
+Definition make_item (e : Z) (n : named) : item :=
+  let s := map_triangle (scaled e) (corners n) in let l := least s in let h := greatest s in
+  Item (of_object n) (number n) (inner n) s l h (add l h).
+(** In the same order; twice in reverse, since that needs no stack. *)
+Definition items_of (e : Z) (l : list named) : list item :=
+  fold_left (fun done n => make_item e n :: done) (rev_append l []) [].
 
 Definition overlap (l h l' h' : vec Z) : bool :=
   (x l <=? x h') && (x l' <=? x h) && (y l <=? y h') && (y l' <=? y h) &&
@@ -408,23 +448,32 @@ Module Downwards <: TotalLeBool.
 End Downwards.
 Module Sorting := Sort Downwards.
 
-Fixpoint put (a : item) (partners : list item) (done : list (item * item)) :=
+(** Whether a pair belongs to the tile. *)
+Definition both_before (e : Z) (k : axis) (place : double) (a b : item) : bool :=
+  let p := scaled e place in (coordinate k (lo a) <? p) && (coordinate k (lo b) <? p).
+Definition is_of (e : Z) (t : tile) (a b : item) : bool :=
+  match tile_end t with Some p => both_before e (tile_axis t) p a b | None => true end &&
+  match tile_begin t with Some p => negb (both_before e (tile_axis t) p a b) | None => true end.
+
+Fixpoint put (mine : item -> item -> bool) (a : item) (partners : list item)
+  (done : list (item * item)) :=
   match partners with
   | [] => done
-  | b :: rest => put a rest ((a, b) :: done)
+  | b :: rest => put mine a rest (if mine a b then (a, b) :: done else done)
   end.
-Fixpoint collect (reach : Z) (t : tree) (l : list item) (done : list (item * item)) :=
+Fixpoint collect (mine : item -> item -> bool) (reach : item -> Z) (t : tree) (l : list item)
+  (done : list (item * item)) :=
   match l with
   | [] => done
-  | a :: rest => collect reach t rest (put a (Sorting.sort (query (grow reach a) t [])) done)
+  | a :: rest =>
+      collect mine reach t rest (put mine a (Sorting.sort (query (grow (reach a) a) t [])) done)
   end.
-Definition pairs (e reach : Z) (s : scene) : list (item * item) :=
-  let l := items_of e s in collect reach (build 64 l) l [].
+Definition pairs (mine : item -> item -> bool) (reach : item -> Z) (l : list item) : list (item * item) :=
+  collect mine reach (build 64 l) l [].
 
 (** * The check of a certificate *)
 Record claims := Claims {
-  box_pairs : Z; kept_pairs : Z; culled : Z; separated_pairs : Z; neighbour_pairs : Z; meeting : Z;
-  unasked_objects : Z; unasked_pairs : Z }.
+  box_pairs : Z; kept_pairs : Z; culled : Z; separated_pairs : Z; neighbour_pairs : Z; meeting : Z }.
 Record tally := Tally {
   rows : list row; refuting : option (row * finding); weak : option (row * finding);
   n_kept : Z; n_culled : Z; n_separated : Z; n_neighbours : Z; n_meeting : Z }.
@@ -471,40 +520,66 @@ Definition judge (clearance : Z) (a b : item) (e : evidence) : option (kind * fi
 Definition name_of (a b : item) : row :=
   row_of a b (match shared_of a b with [] => false | _ => true end).
 
-Definition unasked (s : scene) : Z * Z :=
-  fold_left (fun c ob => if self ob then c else
-                           let n := fold_left (fun n _ => n + 1) (triangles ob) 0 in
-                           (fst c + 1, snd c + n * (n - 1) / 2)) s (0, 0).
-Definition counts_are (c : claims) (s : scene) (t : tally) : bool :=
+Definition counts_are (c : claims) (t : tally) : bool :=
   (box_pairs c =? n_kept t + n_culled t) && (kept_pairs c =? n_kept t) && (culled c =? n_culled t) &&
   (separated_pairs c =? n_separated t) && (neighbour_pairs c =? n_neighbours t) &&
-  (meeting c =? n_meeting t) && (unasked_objects c =? fst (unasked s)) &&
-  (unasked_pairs c =? snd (unasked s)).
+  (meeting c =? n_meeting t).
 
-Fixpoint judge_all (clearance : Z) (s : scene) (c : claims) (l : list (item * item))
+Fixpoint judge_all (clearance : Z) (c : claims) (l : list (item * item))
   (es : list evidence) (t : tally) : verdict :=
   match l, es with
   | [], [] =>
       match refuting t, weak t with
       | Some (r, f), _ => Refuted r f
       | None, Some (r, f) => Unproved r f
-      | None, None => if counts_are c s t then Proved (rev_append (rows t) []) else Wrong_count
+      | None, None => if counts_are c t then Proved (rev_append (rows t) []) else Wrong_count
       end
   | [], _ :: _ => Too_long
   | _ :: _, [] => Too_short
   | (a, b) :: l', e :: es' =>
       match judge clearance a b e with
       | None => Undecided (name_of a b)
-      | Some (k, f) => judge_all clearance s c l' es' (enter t e (name_of a b) k f)
+      | Some (k, f) => judge_all clearance c l' es' (enter t e (name_of a b) k f)
       end
   end.
-(** [reach]: boxes that are at most so far apart along each axis are decided; with [less] those that
-    are less far apart. Any reach that is at least the clearance is right. *)
-Definition check (s : scene) (clearance reach : double) (less : bool) (c : claims)
+(** [l]: the triangles that the tile needs. [reach]: boxes that are at most so far apart along each
+    axis are decided; with [less] those that are less far apart. Any reach that is at least the
+    clearance is right. *)
+Definition check (l : list named) (b : tile) (clearance reach : double) (less : bool) (c : claims)
   (es : list evidence) : verdict :=
-  let e := lower (lower 0 clearance) reach in
-  let f := lowest s e in
+  let e := lower_place (lower_place (lower (lower 0 clearance) reach) (tile_begin b)) (tile_end b) in
+  let f := lowest l e in
   let d := scaled f clearance in let r := scaled f reach - (if less then 1 else 0) in
   if (0 <=? d) && (d <=? r)
-  then judge_all d s c (pairs e r s) es (Tally [] None None 0 0 0 0 0)
+  then judge_all d c (pairs (is_of f b) (fun _ => r) (items_of f l)) es (Tally [] None None 0 0 0 0 0)
   else Bad_reach.
+
+(** * The lists of tiles make a whole: each tile begins where the one before it ends *)
+Definition same_axis (k k' : axis) : bool :=
+  match k, k' with
+  | Along_x, Along_x | Along_y, Along_y | Along_z, Along_z => true
+  | _, _ => false
+  end.
+Definition same_place (p q : option double) : bool :=
+  match p, q with
+  | Some d, Some d' => (mantissa d =? mantissa d') && (exponent d =? exponent d')
+  | None, None => true
+  | _, _ => false
+  end.
+Fixpoint join (k : axis) (place : option double) (l : list (tile * list row)) (done : list row)
+  : option (list row) :=
+  match l with
+  | [] => None
+  | (b, rows) :: rest =>
+      let all := rev_append rows done in
+      if same_axis (tile_axis b) k && same_place (tile_begin b) place then
+        match tile_end b, rest with
+        | None, [] => Some all
+        | Some _, _ :: _ => join k (tile_end b) rest all
+        | _, _ => None
+        end
+      else None
+  end.
+(** The rows of all tiles, in no order; None if they leave something out. *)
+Definition merge_tiles (l : list (tile * list row)) : option (list row) :=
+  match l with [] => None | (b, _) :: _ => join (tile_axis b) None l [] end.

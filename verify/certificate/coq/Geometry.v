@@ -149,29 +149,38 @@ Proof.
 Qed.
 
 (** * A direction that separates *)
+Lemma gap_below d a b g p q :
+  g = (min3 (dot d (p1 b)) (dot d (p2 b)) (dot d (p3 b)) -
+       max3 (dot d (p1 a)) (dot d (p2 a)) (dot d (p3 a)))%Z ->
+  (0 < g)%Z -> inside (qtri a) p -> inside (qtri b) q ->
+  #g * #g <= #(dot d d) * squared_distance p q.
+Proof.
+  unfold max3, min3. intros G P A B.
+  set (l := Z.min _ _) in *. set (h := Z.max _ _) in *.
+  assert (qdot d p <= #h) by (apply (dot_at_most d a); auto; unfold h; lia).
+  assert (#l <= qdot d q) by (apply (dot_at_least d b); auto; unfold l; lia).
+  assert (E : #g == #l - #h) by (rewrite G; inject; reflexivity).
+  apply -> inject_lt in P. change #0 with 0 in P.
+  pose proof (cauchy d p q) as C. set (t := qdot d q - qdot d p) in *.
+  assert (T : #g <= t) by (unfold t; lra). clearbody t.
+  assert (S : #g * #g <= t * t) by nra. lra.
+Qed.
+Lemma dot_positive d : 0 <= #(dot d d).
+Proof. change 0 with #0. apply -> inject_le. unfold dot. nia. Qed.
 Lemma far_below D d a b g :
   g = (min3 (dot d (p1 b)) (dot d (p2 b)) (dot d (p3 b)) -
        max3 (dot d (p1 a)) (dot d (p2 a)) (dot d (p3 a)))%Z ->
   (0 < g)%Z -> (D * D * dot d d < g * g)%Z -> ~ near #D (qtri a) (qtri b).
 Proof.
-  unfold max3, min3. intros G P L (p & q & A & B & N).
-  set (l := Z.min _ _) in *. set (h := Z.max _ _) in *.
-  assert (qdot d p <= #h) by (apply (dot_at_most d a); auto; unfold h; lia).
-  assert (#l <= qdot d q) by (apply (dot_at_least d b); auto; unfold l; lia).
-  assert (E : #g == #l - #h) by (rewrite G; inject; reflexivity).
-  apply -> inject_lt in L. apply -> inject_lt in P. change #0 with 0 in P. inject.
-  pose proof (cauchy d p q) as C. set (t := qdot d q - qdot d p) in *.
-  assert (T : #g <= t) by (unfold t; lra). clearbody t.
-  assert (S : #g * #g <= t * t) by nra.
-  assert (DD : 0 <= #(dot d d)).
-  { change 0 with #0. apply -> inject_le. unfold dot. nia. }
+  intros G P L (p & q & A & B & N). pose proof (gap_below _ _ _ _ _ _ G P A B).
+  apply -> inject_lt in L. inject. pose proof (dot_positive d).
   assert (U : 0 <= #(dot d d) * (#D * #D - squared_distance p q)) by (apply Qmult_le_0_compat; lra).
   lra.
 Qed.
 Lemma separates_sound D a b d :
   separates D a b d = true -> ~ near #D (qtri a) (qtri b).
 Proof.
-  unfold separates. intros H. tests.
+  unfold separates, gap_along. intros H. tests.
   set (g1 := (min3 (dot d (p1 b)) _ _ - _)%Z) in *. set (g2 := (min3 (dot d (p1 a)) _ _ - _)%Z) in *.
   destruct (Z.max_spec g1 g2) as [[_ E] | [_ E]]; rewrite E in *.
   - intros N. apply near_sym in N. revert N. now apply (far_below D d b a g2).

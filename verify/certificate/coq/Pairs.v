@@ -117,30 +117,34 @@ Proof.
   pose proof (Sorting.Permuted_sort l) as P.
   split; apply Permutation_in; [now symmetry | assumption].
 Qed.
-Lemma put_all a l : forall done p, In p (put a l done) <-> In p done \/ exists b, In b l /\ p = (a, b).
+Lemma put_all mine a l : forall done p, In p (put mine a l done) <->
+  In p done \/ exists b, In b l /\ mine a b = true /\ p = (a, b).
 Proof.
   induction l as [|c l IH]; intros done p; cbn [put].
   - split; [auto | intros [D | (b & [] & _)]; assumption].
-  - rewrite IH. simpl. split.
-    + intros [[<- | D] | (b & B & ->)]; eauto.
-    + intros [D | (b & [<- | B] & ->)]; eauto.
+  - rewrite IH. simpl. destruct (mine a c) eqn:M; simpl; split.
+    + intros [[<- | D] | (b & B & P)]; eauto 6.
+    + intros [D | (b & [<- | B] & M' & ->)]; eauto 6.
+    + intros [D | (b & B & P)]; eauto 6.
+    + intros [D | (b & [<- | B] & M' & ->)]; [eauto | congruence | eauto 6].
 Qed.
-Lemma collect_all r t l : sound_tree t -> forall done a b,
-  In (a, b) (collect r t l done) <->
-  In (a, b) done \/ (In a l /\ In b (leaves t) /\ candidate (grow r a) b = true).
+Lemma collect_all mine r t l : sound_tree t -> forall done a b,
+  In (a, b) (collect mine r t l done) <->
+  In (a, b) done \/
+  (In a l /\ In b (leaves t) /\ candidate (grow (r a) a) b = true /\ mine a b = true).
 Proof.
   intros S. induction l as [|c l IH]; intros done a b; cbn [collect]; [simpl; tauto|].
   rewrite IH, put_all. split.
-  - intros [[D | (b' & B & E)] | H]; [auto | | simpl; tauto]. injection E as -> ->.
+  - intros [[D | (b' & B & M & E)] | H]; [auto | | simpl; tauto]. injection E as -> ->.
     apply sort_all, query_all in B; [|assumption]. destruct B as [[] | B]. simpl. tauto.
-  - intros [D | ([<- | A] & B)]; [auto | | tauto]. left. right. exists b. split; [|reflexivity].
-    apply sort_all, query_all; [assumption | now right].
+  - intros [D | ([<- | A] & L & C & M)]; [auto | | tauto]. left. right. exists b.
+    split; [|auto]. apply sort_all, query_all; [assumption | auto].
 Qed.
-Theorem pairs_all e r s a b : In (a, b) (pairs e r s) <->
-  In a (items_of e s) /\ In b (items_of e s) /\ candidate (grow r a) b = true.
+Theorem pairs_all mine r l a b : In (a, b) (pairs mine r l) <->
+  In a l /\ In b l /\ candidate (grow (r a) a) b = true /\ mine a b = true.
 Proof.
-  unfold pairs. destruct (build_sound 64 (items_of e s)) as [S L].
-  rewrite (collect_all _ _ _ S), L. simpl. tauto.
+  unfold pairs. destruct (build_sound 64 l) as [S L].
+  rewrite (collect_all _ _ _ _ S), L. simpl. tauto.
 Qed.
 Lemma grow_candidate r a b : candidate (grow r a) b = true <->
   comes_before a b = true /\
@@ -152,40 +156,60 @@ Proof.
 Qed.
 
 (** * The triangles *)
-Lemma add_triangles_all e o inner l : forall i done it,
-  In it (add_triangles e o i inner l done) <->
-  In it done \/ exists n t, nth_error l n = Some t /\ it = make_item e o (i + Z.of_nat n) inner t.
+Lemma keep_all b r o i inner t done n : In n (keep b r o i inner t done) <->
+  In n done \/ (is_needed b r t = true /\ n = Named o i inner t).
 Proof.
-  induction l as [|t l IH]; intros i done it; cbn [add_triangles].
-  - split; [auto|]. intros [D | (n & t & N & _)]; [assumption | destruct n; discriminate].
-  - rewrite IH. split.
-    + intros [[<- | D] | (n & u & N & ->)]; [right | auto | right].
-      * exists O, t. split; [reflexivity|]. f_equal. lia.
-      * exists (S n), u. split; [exact N|]. f_equal. lia.
-    + intros [D | (n & u & N & ->)]; [left; right; assumption|]. destruct n as [|n].
-      * left. left. injection N as ->. f_equal. lia.
-      * right. exists n, u. split; [exact N|]. f_equal. lia.
+  unfold keep. destruct (is_needed b r t); simpl; [intuition | intuition discriminate].
 Qed.
-Lemma add_objects_all e s : forall o done it,
-  In it (add_objects e o s done) <->
-  In it done \/ exists m ob n t, nth_error s m = Some ob /\ nth_error (triangles ob) n = Some t /\
-                it = make_item e (o + Z.of_nat m) (Z.of_nat n) (self ob) t.
+Lemma keep_triangles_all b r o inner l : forall i done n,
+  In n (keep_triangles b r o i inner l done) <->
+  In n done \/ exists k t, nth_error l k = Some t /\ is_needed b r t = true /\
+                n = Named o (i + Z.of_nat k) inner t.
 Proof.
-  induction s as [|ob s IH]; intros o done it; cbn [add_objects].
+  induction l as [|t l IH]; intros i done n; cbn [keep_triangles].
+  - split; [auto|]. intros [D | (k & t & N & _)]; [assumption | destruct k; discriminate].
+  - rewrite IH, keep_all. split.
+    + intros [[D | [M ->]] | (k & u & N & M & ->)]; [auto | right | right].
+      * exists O, t. split; [reflexivity|]. split; [assumption|]. f_equal. lia.
+      * exists (S k), u. split; [exact N|]. split; [assumption|]. f_equal. lia.
+    + intros [D | (k & u & N & M & ->)]; [left; left; assumption|]. destruct k as [|k].
+      * left. right. injection N as ->. split; [assumption|]. f_equal. lia.
+      * right. exists k, u. split; [exact N|]. split; [assumption|]. f_equal. lia.
+Qed.
+Lemma keep_objects_all b r s : forall o done n,
+  In n (keep_objects b r o s done) <->
+  In n done \/ exists m ob k t, nth_error s m = Some ob /\ nth_error (triangles ob) k = Some t /\
+                is_needed b r t = true /\ n = Named (o + Z.of_nat m) (Z.of_nat k) (self ob) t.
+Proof.
+  induction s as [|ob s IH]; intros o done n; cbn [keep_objects].
   - split; [auto|]. intros [D | (m & ? & ? & ? & N & _)]; [assumption | destruct m; discriminate].
-  - rewrite IH, add_triangles_all. split.
-    + intros [[D | (n & t & N & ->)] | (m & ob' & n & t & M & N & ->)]; [auto | right | right].
-      * exists O, ob, n, t. repeat split; auto. f_equal; lia.
-      * exists (S m), ob', n, t. repeat split; auto. f_equal; lia.
-    + intros [D | (m & ob' & n & t & M & N & ->)]; [auto|]. destruct m as [|m].
-      * left. right. injection M as ->. exists n, t. split; [assumption|]. f_equal; lia.
-      * right. exists m, ob', n, t. repeat split; auto. f_equal; lia.
+  - rewrite IH, keep_triangles_all. split.
+    + intros [[D | (k & t & N & M & ->)] | (m & ob' & k & t & O & N & M & ->)];
+        [auto | right | right].
+      * exists O, ob, k, t. repeat split; auto. f_equal; lia.
+      * exists (S m), ob', k, t. repeat split; auto. f_equal; lia.
+    + intros [D | (m & ob' & k & t & O & N & M & ->)]; [auto|]. destruct m as [|m].
+      * left. right. injection O as ->. exists k, t. repeat split; auto. f_equal; lia.
+      * right. exists m, ob', k, t. repeat split; auto. f_equal; lia.
 Qed.
-Theorem items_all e s it : In it (items_of e s) <->
-  exists m ob n t, nth_error s m = Some ob /\ nth_error (triangles ob) n = Some t /\
-                   it = make_item (lowest s e) (Z.of_nat m) (Z.of_nat n) (self ob) t.
+Theorem gathered_all b r s n : In n (gathered b r s) <->
+  exists m ob k t, nth_error s m = Some ob /\ nth_error (triangles ob) k = Some t /\
+                   is_needed b r t = true /\ n = Named (Z.of_nat m) (Z.of_nat k) (self ob) t.
 Proof.
-  unfold items_of. rewrite add_objects_all. simpl. split; [intros [[] | H] | intros H; right]; exact H.
+  unfold gathered. rewrite keep_objects_all. simpl. split; [intros [[] | H] | intros H; right]; exact H.
+Qed.
+Lemma items_all e l it : In it (items_of e l) <-> exists n, In n l /\ it = make_item e n.
+Proof.
+  assert (F : forall l done, In it (fold_left (fun done n => make_item e n :: done) l done) <->
+              In it done \/ exists n, In n l /\ it = make_item e n).
+  { clear l. induction l as [|n l IH]; intros done; cbn [fold_left].
+    - split; [auto | intros [D | (n & [] & _)]; assumption].
+    - rewrite IH. simpl. split.
+      + intros [[<- | D] | (m & M & ->)]; eauto.
+      + intros [D | (m & [<- | M] & ->)]; eauto. }
+  unfold items_of. rewrite F, rev_append_rev, app_nil_r. simpl. split.
+  - intros [[] | (n & N & ->)]. apply in_rev in N. eauto.
+  - intros (n & N & ->). right. exists n. rewrite <- in_rev. auto.
 Qed.
 
 (** * The common power of two *)
@@ -199,22 +223,11 @@ Proof.
 Qed.
 Lemma at_most_less e e' t : e' <= e -> at_most_triangle e t -> at_most_triangle e' t.
 Proof. unfold at_most_triangle, at_most_vec. lia. Qed.
-Lemma lower_list l : forall e, fold_left lower_triangle l e <= e /\
-  forall t, In t l -> at_most_triangle (fold_left lower_triangle l e) t.
+Lemma lowest_all l : forall e, lowest l e <= e /\
+  forall n, In n l -> at_most_triangle (lowest l e) (corners n).
 Proof.
-  induction l as [|t l IH]; intros e; cbn [fold_left]; [split; [lia | intros t []]|].
-  destruct (IH (lower_triangle e t)) as [L A], (lower_triangle_sound e t) as [L' A'].
-  split; [lia|]. intros u [<- | U]; [eapply at_most_less, A'; lia | auto].
-Qed.
-Lemma lowest_all s : forall e, lowest s e <= e /\
-  forall ob, In ob s -> forall t, In t (triangles ob) -> at_most_triangle (lowest s e) t.
-Proof.
-  unfold lowest. induction s as [|ob s IH]; intros e; cbn [fold_left]; [split; [lia | intros ? []]|].
-  destruct (lower_list (triangles ob) e) as [L A].
-  destruct (IH (fold_left lower_triangle (triangles ob) e)) as [L' A'].
-  split; [lia|]. intros ob' [<- | O] t T; [eapply at_most_less; [apply L' | now apply A] | eauto].
-Qed.
-Lemma lowest_sound s e o i t : is_triangle s o i t -> at_most_triangle (lowest s e) t.
-Proof.
-  intros (ob & O & I). apply nth_error_In in O, I. now apply (proj2 (lowest_all s e) ob).
+  unfold lowest. induction l as [|n l IH]; intros e; cbn [fold_left]; [split; [lia | intros ? []]|].
+  destruct (IH (lower_triangle e (corners n))) as [L A].
+  destruct (lower_triangle_sound e (corners n)) as [L' A'].
+  split; [lia|]. intros m [<- | M]; [eapply at_most_less, A'; lia | auto].
 Qed.

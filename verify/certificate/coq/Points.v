@@ -53,16 +53,19 @@ Proof.
     match type of N with ?k <= _ => setoid_replace l with k by (field; split; assumption) end end.
   lra.
 Qed.
-Lemma has_near_sound D a b : has_near D a b = true -> near #D (qtri a) (qtri b).
+Lemma has_near_sound (P : triangle Z -> triangle Z -> Prop) good a b :
+  (forall a b, P a b -> P b a) -> (forall a b u v, good a b u v = true -> P a b) ->
+  has_near good a b = true -> P a b.
 Proof.
-  assert (C : forall a b, near_corner D a b = true -> near #D (qtri a) (qtri b)).
-  { clear. unfold near_corner. intros a b H. apply existsb_exists in H. destruct H as (j & _ & H).
-    apply existsb_exists in H. destruct H as (u & _ & H). eapply are_near_sound, H. }
+  intros S G.
+  assert (C : forall a b, near_corner good a b = true -> P a b).
+  { clear a b. unfold near_corner. intros a b H. apply existsb_exists in H. destruct H as (j & _ & H).
+    apply existsb_exists in H. destruct H as (u & _ & H). eapply G, H. }
   unfold has_near. rewrite !orb_true_iff. intros [[H | H] | H].
   - auto.
-  - apply near_sym. auto.
+  - auto.
   - unfold near_edges in H. apply existsb_exists in H. destruct H as (i & _ & H).
-    apply existsb_exists in H. destruct H as (j & _ & H). eapply are_near_sound, H.
+    apply existsb_exists in H. destruct H as (j & _ & H). eapply G, H.
 Qed.
 
 (** * Points of a segment *)

@@ -13,12 +13,14 @@ Proof.
   assert (none : shared = [] -> ~ (one /\ exists c, is_shared (qtri a) (qtri b) c)).
   { intros E (Y & c & C). rewrite (S1 Y) in E. apply is_shared_corners in C.
     destruct C as (k' & C & _). rewrite E in C. destruct C. }
-  set (common := (match shared with [] => (0 <? D)%Z && has_near D a b | _ => false end ||
+  set (common := (match shared with [] => (0 <? D)%Z && has_near (are_near D) a b | _ => false end ||
                   has_common (off_shared shared) a b)%bool) in *.
   assert (M : common = true -> count #D one (qtri a) (qtri b)).
   { unfold common. intros C. apply orb_prop in C. destruct C as [C | C].
     - right. destruct shared; [|discriminate]. apply andb_prop in C. destruct C as [_ C].
-      split; [now apply has_near_sound | now apply none].
+      split; [|now apply none].
+      apply (has_near_sound (fun a b => near #D (qtri a) (qtri b)) (are_near D));
+        [intros; now apply near_sym | intros; eapply are_near_sound; eassumption | exact C].
     - left. apply has_common_sound in C. destruct C as (q & m & M & G & A & B).
       exists (over q m). repeat split; auto. intros O. rewrite (S1 O) in G.
       now apply off_shared_sound. }
@@ -75,14 +77,14 @@ Proof.
 Qed.
 
 (** * All pairs *)
-Lemma judge_all_proved D s c l : forall es t rs, judge_all D s c l es t = Proved rs ->
+Lemma judge_all_proved D c l : forall es t rs, judge_all D c l es t = Proved rs ->
   forall r, In r rs <->
     In r (rows t) \/ exists a b, In (a, b) l /\ r = name_of a b /\ items_count D a b.
 Proof.
   induction l as [|[a b] l IH]; intros es t rs H r; destruct es as [|e es]; cbn [judge_all] in H;
     try discriminate.
   - destruct (refuting t) as [[? ?]|]; [discriminate|]. destruct (weak t) as [[? ?]|]; [discriminate|].
-    destruct (counts_are c s t); [|discriminate]. injection H as <-.
+    destruct (counts_are c t); [|discriminate]. injection H as <-.
     rewrite rev_append_rev, app_nil_r, <- in_rev. split; [auto|].
     intros [R | (a & b & [] & _)]. assumption.
   - destruct (judge D a b e) as [[k f]|] eqn:J; [|discriminate].
@@ -99,7 +101,7 @@ Proof.
     + intros [R | (a' & b' & [E | P] & -> & M)]; [auto | | right; eauto].
       injection E as -> ->. apply K in M. discriminate.
 Qed.
-Lemma judge_all_refuted D s c l : forall es t r f, judge_all D s c l es t = Refuted r f ->
+Lemma judge_all_refuted D c l : forall es t r f, judge_all D c l es t = Refuted r f ->
   refuting t = Some (r, f) \/ exists a b, In (a, b) l /\ r = name_of a b /\
     (f = Said_to_meet /\ ~ items_count D a b \/
      (f = Culled_meets \/ f = Said_disjoint) /\ items_count D a b).
@@ -107,7 +109,7 @@ Proof.
   induction l as [|[a b] l IH]; intros es t r f H; destruct es as [|e es]; cbn [judge_all] in H;
     try discriminate.
   - destruct (refuting t) as [[? ?]|]; [left; congruence|]. destruct (weak t) as [[? ?]|]; [discriminate|].
-    destruct (counts_are c s t); discriminate.
+    destruct (counts_are c t); discriminate.
   - destruct (judge D a b e) as [[k g]|] eqn:J; [|discriminate].
     apply judge_sound in J. destruct J as (J & J1 & J2).
     destruct (IH _ _ _ _ H) as [R | (a' & b' & P & R)].
@@ -215,15 +217,91 @@ Proof.
   unfold sized, same, times, qtri, map_triangle, map_vec. cbn [x y z p1 p2 p3].
   repeat split; now apply value_scaled.
 Qed.
-Lemma count_value s e d o i o' i' t t' one : (lowest s e <= exponent d)%Z ->
-  is_triangle s o i t -> is_triangle s o' i' t' ->
+Lemma count_value e d t t' one : (e <= exponent d)%Z -> at_most_triangle e t -> at_most_triangle e t' ->
   count (value d) one (map_triangle value t) (map_triangle value t') <->
-  count #(scaled (lowest s e) d) one (qtri (map_triangle (scaled (lowest s e)) t))
-        (qtri (map_triangle (scaled (lowest s e)) t')).
+  count #(scaled e d) one (qtri (map_triangle (scaled e) t)) (qtri (map_triangle (scaled e) t')).
 Proof.
-  intros L T T'. apply (count_sized (2 ^ lowest s e)); auto using power_positive, value_scaled.
-  - apply sized_value. eapply lowest_sound, T.
-  - apply sized_value. eapply lowest_sound, T'.
+  intros L T T'. apply (count_sized (2 ^ e)); auto using power_positive, value_scaled, sized_value.
+Qed.
+
+(** * Places on an axis *)
+Lemma scaled_less e d d' : (e <= exponent d)%Z -> (e <= exponent d')%Z ->
+  ((scaled e d < scaled e d')%Z <-> value d < value d').
+Proof.
+  intros L L'. rewrite (value_scaled e d L), (value_scaled e d' L'), inject_lt.
+  symmetry. apply Qmult_lt_l, power_positive.
+Qed.
+Lemma scaled_at_most e d d' : (e <= exponent d)%Z -> (e <= exponent d')%Z ->
+  ((scaled e d <= scaled e d')%Z <-> value d <= value d').
+Proof. intros L L'. rewrite <- Z.nlt_ge, scaled_less by assumption.
+  split; [apply Qnot_lt_le | apply Qle_not_lt]. Qed.
+Lemma scaled_positive e e' d : (e <= exponent d)%Z -> (e' <= exponent d)%Z ->
+  (0 <= scaled e d)%Z -> (0 <= scaled e' d)%Z.
+Proof.
+  intros L L' P. apply -> inject_le in P. apply <- inject_le. change #0 with 0 in *.
+  assert (V : 0 <= value d).
+  { rewrite (value_scaled e d L). apply Qmult_le_0_compat; [apply Qlt_le_weak, power_positive | exact P]. }
+  rewrite (value_scaled e' d L') in V.
+  rewrite <- (Qmult_0_r (2 ^ e')) in V. now apply Qmult_le_l in V; [|apply power_positive].
+Qed.
+Lemma is_below_sound d p : is_below d p = true <-> value d < value p.
+Proof. unfold is_below. rewrite Z.ltb_lt. apply scaled_less; lia. Qed.
+Lemma is_reached_complete e r p d : (e <= exponent r)%Z -> (e <= exponent p)%Z -> (e <= exponent d)%Z ->
+  (scaled e p <= scaled e d + scaled e r)%Z -> is_reached r p d = true.
+Proof.
+  intros LR LP LD H. unfold is_reached, lower. set (e' := Z.min (Z.min _ _) _).
+  apply Z.leb_le. apply -> inject_le in H. apply <- inject_le. inject.
+  apply (Qmult_le_l _ _ (2 ^ e') (power_positive e')). 
+  apply (Qmult_le_l _ _ (2 ^ e) (power_positive e)) in H.
+  rewrite Qmult_plus_distr_r in *. rewrite <- !value_scaled in * by lia. assumption.
+Qed.
+Lemma coordinate_map {C D} (f : C -> D) k p : coordinate k (map_vec f p) = f (coordinate k p).
+Proof. destruct k; reflexivity. Qed.
+Lemma coordinate_exponent e k p : at_most_vec e p -> (e <= exponent (coordinate k p))%Z.
+Proof. intros (A & B & C). destruct k; assumption. Qed.
+Lemma coordinate_least k t : coordinate k (least t) =
+  min3 (coordinate k (p1 t)) (coordinate k (p2 t)) (coordinate k (p3 t)).
+Proof. destruct k; reflexivity. Qed.
+Lemma coordinate_greatest k t : coordinate k (greatest t) =
+  max3 (coordinate k (p1 t)) (coordinate k (p2 t)) (coordinate k (p3 t)).
+Proof. destruct k; reflexivity. Qed.
+Lemma before_corner k p t : before k p t <->
+  value (coordinate k (p1 t)) < value p \/ value (coordinate k (p2 t)) < value p \/
+  value (coordinate k (p3 t)) < value p.
+Proof.
+  unfold before. split.
+  - intros (q & [-> | [-> | ->]] & L); auto.
+  - intros [L | [L | L]]; eauto 6.
+Qed.
+Lemma before_box e k p t : (e <= exponent p)%Z -> at_most_triangle e t ->
+  ((coordinate k (least (map_triangle (scaled e) t)) < scaled e p)%Z <-> before k p t).
+Proof.
+  intros L (A & B & C). rewrite before_corner, coordinate_least. unfold map_triangle. cbn [p1 p2 p3].
+  rewrite !coordinate_map. apply (coordinate_exponent _ k) in A, B, C.
+  rewrite <- !(scaled_less e) by assumption. unfold min3. lia.
+Qed.
+Lemma before_needed k p t : some_corner (fun d => is_below d p) k t = true <-> before k p t.
+Proof. unfold some_corner. rewrite !orb_true_iff, !is_below_sound, before_corner. tauto. Qed.
+Lemma reached_needed e k p r t : (e <= exponent p)%Z -> (e <= exponent r)%Z -> at_most_triangle e t ->
+  (scaled e p <= coordinate k (greatest (map_triangle (scaled e) t)) + scaled e r)%Z ->
+  some_corner (is_reached r p) k t = true.
+Proof.
+  intros LP LR (A & B & C). rewrite coordinate_greatest. unfold map_triangle. cbn [p1 p2 p3].
+  rewrite !coordinate_map. apply (coordinate_exponent _ k) in A, B, C. intros H.
+  unfold some_corner. rewrite !orb_true_iff. unfold max3 in H.
+  assert (O : (scaled e p <= scaled e (coordinate k (p1 t)) + scaled e r \/
+               scaled e p <= scaled e (coordinate k (p2 t)) + scaled e r \/
+               scaled e p <= scaled e (coordinate k (p3 t)) + scaled e r)%Z) by lia.
+  destruct O as [O | [O | O]]; apply is_reached_complete in O; auto.
+Qed.
+Lemma least_at_most_greatest k t : (coordinate k (least t) <= coordinate k (greatest t))%Z.
+Proof. rewrite coordinate_least, coordinate_greatest. unfold min3, max3. lia. Qed.
+Lemma overlap_axis k r a b :
+  overlap (sub (least a) (Vec r r r)) (add (greatest a) (Vec r r r)) (least b) (greatest b) = true ->
+  (coordinate k (least a) <= coordinate k (greatest b) + r /\
+   coordinate k (least b) <= coordinate k (greatest a) + r)%Z.
+Proof.
+  rewrite overlap_true. unfold sub, add. cbn [x y z]. intros H. destruct k; cbn [coordinate]; lia.
 Qed.
 
 Lemma count_prop d P P' a b : (P <-> P') -> count d P a b -> count d P' a b.
@@ -233,56 +311,142 @@ Qed.
 
 (** * The answer in terms of what the checker enumerates *)
 Section Scene.
-Variables (s : scene) (clearance reach : double) (less : bool).
-Let e := lower (lower 0 clearance) reach.
-Let f := lowest s e.
+Variables (s : scene) (piece : tile) (clearance reach : double) (less : bool).
+Let l := gathered piece reach s.
+Let e := lower_place (lower_place (lower (lower 0 clearance) reach) (tile_begin piece)) (tile_end piece).
+Let f := lowest l e.
 Let D := scaled f clearance.
 Let r := (scaled f reach - (if less then 1 else 0))%Z.
+Let decided := pairs (is_of f piece) (fun _ => r) (items_of f l).
 Context (D_positive : (0 <= D)%Z).
 Context (D_reached : (D <= r)%Z).
 
-Lemma exponent_of_clearance : (f <= exponent clearance)%Z.
-Proof. pose proof (proj1 (lowest_all s e)) as L. fold f in L. unfold e, lower in L. lia. Qed.
-
-Lemma answer_pairs o i o' i' : answer s clearance o i o' i' <->
-  exists a b, In (a, b) (pairs e r s) /\ names (name_of a b) o i o' i' /\ items_count D a b.
+Lemma exponents : (f <= exponent clearance)%Z /\ (f <= exponent reach)%Z /\
+  (forall p, tile_begin piece = Some p -> (f <= exponent p)%Z) /\
+  (forall p, tile_end piece = Some p -> (f <= exponent p)%Z).
 Proof.
-  pose proof exponent_of_clearance as L. split.
-  - intros (Q & t & t' & T & T' & M). pose proof T as (ob & O & I). pose proof T' as (ob' & O' & I').
-    exists (make_item f (Z.of_nat o) (Z.of_nat i) (self ob) t),
-           (make_item f (Z.of_nat o') (Z.of_nat i') (self ob') t').
-    assert (IM : items_count D (make_item f (Z.of_nat o) (Z.of_nat i) (self ob) t)
-                               (make_item f (Z.of_nat o') (Z.of_nat i') (self ob') t')).
-    { unfold items_count. cbn [obj shape make_item].
-      apply (proj1 (count_value s e clearance o i o' i' t t' _ L T T')) in M.
+  pose proof (proj1 (lowest_all l e)) as L. fold f in L. unfold e, lower in L.
+  repeat split; [| | intros p P | intros p P]; try rewrite P in L;
+    destruct (tile_begin piece), (tile_end piece); cbn [lower_place] in L; unfold lower in L; try congruence;
+    try (injection P as <-); lia.
+Qed.
+Lemma gathered_triangle n : In n l -> at_most_triangle f (corners n).
+Proof. apply (proj2 (lowest_all l e)). Qed.
+Lemma item_of o i t : is_triangle s o i t -> is_needed piece reach t = true -> exists ob,
+  nth_error s o = Some ob /\ at_most_triangle f t /\
+  In (make_item f (Named (Z.of_nat o) (Z.of_nat i) (self ob) t)) (items_of f l).
+Proof.
+  intros (ob & O & I) N. exists ob. split; [assumption|].
+  assert (G : In (Named (Z.of_nat o) (Z.of_nat i) (self ob) t) l) by (apply gathered_all; eauto 8).
+  split; [apply (gathered_triangle _ G)|]. apply items_all. eauto.
+Qed.
+Lemma of_item it : In it (items_of f l) -> exists o ob i t,
+  nth_error s o = Some ob /\ is_triangle s o i t /\ at_most_triangle f t /\
+  it = make_item f (Named (Z.of_nat o) (Z.of_nat i) (self ob) t).
+Proof.
+  intros I. apply items_all in I. destruct I as (n & N & ->). pose proof (gathered_triangle _ N) as A.
+  apply gathered_all in N. destruct N as (o & ob & i & t & O & I & _ & ->).
+  exists o, ob, i, t. split; [assumption|]. split; [exists ob; auto | auto].
+Qed.
+(** The checker knows which pairs belong to the tile. *)
+Lemma is_of_belongs o i inner o' i' inner' t t' : at_most_triangle f t -> at_most_triangle f t' ->
+  is_of f piece (make_item f (Named o i inner t)) (make_item f (Named o' i' inner' t')) = true <->
+  belongs piece t t'.
+Proof.
+  intros A A'. destruct exponents as (_ & _ & B & E). unfold is_of, belongs, both_before.
+  cbn [lo make_item corners]. rewrite andb_true_iff.
+  destruct (tile_end piece) as [p|]; destruct (tile_begin piece) as [q|];
+    rewrite ?negb_true_iff, ?andb_false_iff, ?andb_true_iff, ?Z.ltb_lt, ?Z.ltb_ge;
+    try specialize (E p eq_refl); try specialize (B q eq_refl).
+  - rewrite !before_box by assumption. rewrite <- !Z.nlt_ge, !before_box by assumption.
+    split.
+    + intros [H G]. split; intros p' P; injection P as <-; [assumption|]. tauto.
+    + intros [H G]. specialize (H p eq_refl). specialize (G q eq_refl). split; [assumption|].
+      destruct (Z_lt_dec (coordinate (tile_axis piece) (least (map_triangle (scaled f) t))) (scaled f q))
+        as [Y | Y]; rewrite before_box in Y by assumption; tauto.
+  - rewrite !before_box by assumption. split.
+    + intros [H _]. split; intros p' P; [injection P as <-; assumption | discriminate].
+    + intros [H _]. specialize (H p eq_refl). tauto.
+  - rewrite <- !Z.nlt_ge, !before_box by assumption. split.
+    + intros [_ G]. split; intros p' P; [discriminate | injection P as <-]. tauto.
+    + intros [_ G]. specialize (G q eq_refl). split; [reflexivity|].
+      destruct (Z_lt_dec (coordinate (tile_axis piece) (least (map_triangle (scaled f) t))) (scaled f q))
+        as [Y | Y]; rewrite before_box in Y by assumption; tauto.
+  - split; [intros _; split; discriminate | auto].
+Qed.
+(** The triangles of a pair that belongs to the tile, and counts, are among those that are kept. *)
+Lemma belongs_needed one t t' : belongs piece t t' ->
+  count (value clearance) one (map_triangle value t) (map_triangle value t') ->
+  is_needed piece reach t = true /\ is_needed piece reach t' = true.
+Proof.
+  intros W M. destruct exponents as (LC & LR & LB & LE).
+  set (g := lower_triangle (lower_triangle f t) t').
+  destruct (lower_triangle_sound f t) as [G1 A], (lower_triangle_sound (lower_triangle f t) t') as [G2 A'].
+  fold g in G2, A'. apply (at_most_less _ g) in A; [|assumption].
+  assert (LC' : (g <= exponent clearance)%Z) by lia. assert (LR' : (g <= exponent reach)%Z) by lia.
+  assert (P : (0 <= scaled g clearance)%Z) by (apply (scaled_positive f); auto).
+  assert (R : (scaled g clearance <= scaled g reach)%Z).
+  { apply scaled_at_most; [assumption|assumption|]. apply (scaled_at_most f); auto.
+    fold D. unfold r in D_reached. destruct less; lia. }
+  assert (V : (coordinate (tile_axis piece) (least (map_triangle (scaled g) t)) <=
+               coordinate (tile_axis piece) (greatest (map_triangle (scaled g) t')) + scaled g reach /\
+               coordinate (tile_axis piece) (least (map_triangle (scaled g) t')) <=
+               coordinate (tile_axis piece) (greatest (map_triangle (scaled g) t)) + scaled g reach)%Z).
+  { apply overlap_axis. destruct (overlap _ _ _ _) eqn:V; [reflexivity|]. exfalso.
+    apply (far_boxes _ _ _ _ P R V). apply (proj1 (count_value g clearance t t' one LC' A A')) in M.
+    destruct M as [(p & B & B' & _) | [N2 _]]; [eapply near_of_common; eauto | exact N2]. }
+  pose proof (least_at_most_greatest (tile_axis piece) (map_triangle (scaled g) t)).
+  pose proof (least_at_most_greatest (tile_axis piece) (map_triangle (scaled g) t')).
+  destruct W as [WE WB]. unfold is_needed. rewrite !andb_true_iff.
+  destruct (tile_end piece) as [p|]; destruct (tile_begin piece) as [q|];
+    try specialize (LE p eq_refl); try specialize (LB q eq_refl);
+    try specialize (WE p eq_refl); try specialize (WB q eq_refl);
+    rewrite ?before_needed; (split; split; try tauto);
+    apply (reached_needed g); auto; try lia;
+    rewrite <- !(before_box g) in WB by (assumption || lia); lia.
+Qed.
+
+Lemma answer_pairs o i o' i' : answer s clearance o i o' i' /\ in_tile piece s o i o' i' <->
+  exists a b, In (a, b) decided /\ names (name_of a b) o i o' i' /\ items_count D a b.
+Proof.
+  destruct exponents as (LC & _). split.
+  - intros [(Q & t & t' & T & T' & M) (u & u' & U & U' & W)].
+    assert (u = t) by (destruct T as (? & ? & ?), U as (? & ? & ?); congruence). subst u.
+    assert (u' = t') by (destruct T' as (? & ? & ?), U' as (? & ? & ?); congruence). subst u'.
+    destruct (belongs_needed _ _ _ W M) as [N N'].
+    destruct (item_of o i t T N) as (ob & O & A & I), (item_of o' i' t' T' N') as (ob' & O' & A' & I').
+    eexists _, _.
+    assert (IM : items_count D (make_item f (Named (Z.of_nat o) (Z.of_nat i) (self ob) t))
+                               (make_item f (Named (Z.of_nat o') (Z.of_nat i') (self ob') t'))).
+    { unfold items_count. cbn [obj shape make_item of_object corners].
+      apply (proj1 (count_value f clearance t t' _ LC A A')) in M.
       apply (count_prop _ (o = o')); [now rewrite Nat2Z.inj_iff | exact M]. }
-    split; [|split; [repeat split | exact IM]].
-    apply pairs_all. split; [apply items_all; eauto 8|]. split; [apply items_all; eauto 8|].
+    split; [|split; [|exact IM]]; [|repeat split].
+    apply pairs_all. split; [exact I|]. split; [exact I'|]. split; [|now apply is_of_belongs].
     apply grow_candidate. split.
-    + unfold comes_before. cbn [obj num own make_item]. apply orb_true_intro.
+    + unfold comes_before. cbn [obj num own make_item of_object number inner]. apply orb_true_intro.
       destruct Q as [Q | (<- & Q & ob2 & O2 & S)]; [left; apply Z.ltb_lt; lia | right].
       rewrite Z.eqb_refl. assert (ob2 = ob) by congruence. subst ob2. rewrite S. apply Z.ltb_lt. lia.
-    + cbn [lo hi make_item].
+    + cbn [lo hi make_item corners].
       destruct (overlap _ _ _ _) eqn:V; [reflexivity|]. exfalso.
       apply (far_boxes D r _ _ D_positive D_reached V).
-      destruct IM as [(p & A & B & _) | [N _]]; [eapply near_of_common; eauto | exact N].
-  - intros (a & b & P & N & M). apply pairs_all in P. destruct P as (A & B & C).
+      destruct IM as [(p & B & B' & _) | [N2 _]]; [eapply near_of_common; eauto | exact N2].
+  - intros (a & b & P & N & M). apply pairs_all in P. destruct P as (A & B & C & W).
     apply grow_candidate in C. destruct C as [C _].
-    apply items_all in A, B. destruct A as (m & ob & n & t & O & I & ->).
-    destruct B as (m' & ob' & n' & t' & O' & I' & ->).
-    unfold items_count in M. cbn [obj shape make_item] in M.
+    apply of_item in A, B. destruct A as (m & ob & n & t & O & T & A & ->).
+    destruct B as (m' & ob' & n' & t' & O' & T' & A' & ->).
+    unfold items_count in M. cbn [obj shape make_item of_object corners] in M.
     destruct N as (N1 & N2 & N3 & N4). cbn in N1, N2, N3, N4.
     apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'.
-    assert (T : is_triangle s o i t) by (exists ob; auto).
-    assert (T' : is_triangle s o' i' t') by (exists ob'; auto).
-    split.
-    + unfold comes_before in C. cbn [obj num own make_item] in C.
+    apply is_of_belongs in W; [|assumption|assumption]. split; [split|].
+    + unfold comes_before in C. cbn [obj num own make_item of_object number inner] in C.
       apply orb_prop in C. destruct C as [C | C]; tests.
       * left. lia.
       * right. split; [lia|]. split; [lia|]. exists ob. auto.
     + exists t, t'. split; [assumption|]. split; [assumption|].
-      apply (proj2 (count_value s e clearance o i o' i' t t' _ L T T')).
+      apply (proj2 (count_value f clearance t t' _ LC A A')).
       apply (count_prop _ (Z.of_nat o = Z.of_nat o')); [now rewrite Nat2Z.inj_iff | exact M].
+    + exists t, t'. auto.
 Qed.
 
 (** * The column of neighbours *)
@@ -291,7 +455,7 @@ Lemma name_flag a b : neighbours (name_of a b) = true <->
 Proof.
   unfold name_of, row_of. cbn [neighbours]. destruct (shared_of_cases a b) as [S1 S0].
   destruct (Z.eq_dec (obj a) (obj b)) as [E | E].
-  - rewrite (S1 E). destruct (shared_corners (shape a) (shape b)) as [|k l] eqn:C.
+  - rewrite (S1 E). destruct (shared_corners (shape a) (shape b)) as [|k m] eqn:C.
     + split; [discriminate|]. intros (_ & c & H). apply is_shared_corners in H.
       rewrite C in H. destruct H as (k & [] & _).
     + split; [|reflexivity]. intros _. split; [assumption|]. exists (qvec k).
@@ -300,40 +464,97 @@ Proof.
 Qed.
 Lemma is_triangle_unique o i t u : is_triangle s o i t -> is_triangle s o i u -> t = u.
 Proof. intros (ob & O & T) (ob' & O' & U). congruence. Qed.
-Lemma neighbours_pairs a b o i o' i' : In (a, b) (pairs e r s) -> names (name_of a b) o i o' i' ->
+Lemma neighbours_pairs a b o i o' i' : In (a, b) decided -> names (name_of a b) o i o' i' ->
   (neighbours (name_of a b) = true <-> are_neighbours s o i o' i').
 Proof.
-  intros P (N1 & N2 & N3 & N4). rewrite name_flag. apply pairs_all in P. destruct P as (A & B & _).
-  apply items_all in A, B. destruct A as (m & ob & n & t & O & I & ->).
-  destruct B as (m' & ob' & n' & t' & O' & I' & ->). cbn in N1, N2, N3, N4.
-  apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'. cbn [obj shape make_item].
-  assert (T : is_triangle s o i t) by (exists ob; auto).
-  assert (T' : is_triangle s o' i' t') by (exists ob'; auto).
-  pose proof (shared_sized _ _ _ _ _ (power_positive (lowest s e))
-                (sized_value _ _ (lowest_sound _ _ _ _ _ T))
-                (sized_value _ _ (lowest_sound _ _ _ _ _ T'))) as S.
+  intros P (N1 & N2 & N3 & N4). rewrite name_flag. apply pairs_all in P. destruct P as (I & I' & _).
+  apply of_item in I, I'. destruct I as (m & ob & n & t & O & T & A & ->).
+  destruct I' as (m' & ob' & n' & t' & O' & T' & A' & ->). cbn in N1, N2, N3, N4.
+  apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'. cbn [obj shape make_item of_object corners].
+  pose proof (shared_sized _ _ _ _ _ (power_positive f) (sized_value _ _ A) (sized_value _ _ A')) as S.
   rewrite Nat2Z.inj_iff, <- S. unfold are_neighbours.
   split; intros (E & H); (split; [exact E|]).
   - destruct H as (c & H). exists t, t', c. auto.
   - destruct H as (u & u' & c & U & U' & H). exists c.
     rewrite (is_triangle_unique _ _ _ _ T U), (is_triangle_unique _ _ _ _ T' U'). exact H.
 Qed.
-Lemma one_item u v : In u (items_of e s) -> In v (items_of e s) -> obj u = obj v -> num u = num v -> u = v.
+Lemma one_item u v : In u (items_of f l) -> In v (items_of f l) -> obj u = obj v -> num u = num v -> u = v.
 Proof.
-  intros U V E F. apply items_all in U, V.
-  destruct U as (m & ob & n & t & O & I & ->), V as (m' & ob' & n' & t' & O' & I' & ->).
+  intros U V E F. apply of_item in U, V.
+  destruct U as (m & ob & n & t & O & T & _ & ->), V as (m' & ob' & n' & t' & O' & T' & _ & ->).
   cbn in E, F. apply Nat2Z.inj in E, F. subst m' n'.
-  assert (ob' = ob) by congruence. subst ob'. assert (t' = t) by congruence. now subst t'.
+  assert (ob' = ob) by congruence. subst ob'. now rewrite (is_triangle_unique _ _ _ _ T T').
+Qed.
+Lemma decided_in_tile a b o i o' i' : In (a, b) decided -> names (name_of a b) o i o' i' ->
+  in_tile piece s o i o' i'.
+Proof.
+  intros P (N1 & N2 & N3 & N4). apply pairs_all in P. destruct P as (I & I' & _ & W).
+  apply of_item in I, I'. destruct I as (m & ob & n & t & O & T & A & ->).
+  destruct I' as (m' & ob' & n' & t' & O' & T' & A' & ->). cbn in N1, N2, N3, N4.
+  apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'.
+  apply is_of_belongs in W; [|assumption|assumption]. exists t, t'. auto.
 Qed.
 End Scene.
 
+(** * Tiles that make a whole *)
+Lemma before_dec k p t : before k p t \/ ~ before k p t.
+Proof.
+  rewrite before_corner.
+  destruct (Qlt_le_dec (value (coordinate k (p1 t))) (value p)) as [A | A]; [tauto|].
+  destruct (Qlt_le_dec (value (coordinate k (p2 t))) (value p)) as [B | B]; [tauto|].
+  destruct (Qlt_le_dec (value (coordinate k (p3 t))) (value p)) as [C | C]; [tauto|].
+  right. intros [D | [D | D]]; lra.
+Qed.
+Lemma join_all k rest : forall place done all, join k place rest done = Some all -> forall r,
+  In r all <-> In r done \/ exists b rows, In (b, rows) rest /\ In r rows.
+Proof.
+  induction rest as [|[b rows] rest IH]; intros place done all J r; cbn [join] in J; [discriminate|].
+  destruct (_ && _)%bool in J; [|discriminate].
+  assert (R : In r (rev_append rows done) <-> In r rows \/ In r done).
+  { rewrite rev_append_rev, in_app_iff, <- in_rev. tauto. }
+  destruct (tile_end b) as [p|], rest as [|c rest]; try discriminate.
+  - rewrite (IH _ _ _ J), R. split.
+    + intros [[H | H] | (b' & rows' & I & H)]; [right; exists b, rows; simpl; auto | auto | right].
+      exists b', rows'. simpl in *. tauto.
+    + intros [H | (b' & rows' & [I | I] & H)]; [auto | injection I as -> ->; auto | eauto].
+  - injection J as <-. rewrite R. split.
+    + intros [H | H]; [right; exists b, rows; simpl; auto | auto].
+    + intros [H | (b' & rows' & [I | []] & H)]; [auto | injection I as -> ->; auto].
+Qed.
+(** Each pair that does not begin before the first place belongs to one of the tiles. *)
+Lemma join_covers k t t' rest : forall place done all, join k place rest done = Some all ->
+  (forall p, place = Some p -> ~ (before k p t /\ before k p t')) ->
+  exists b rows, In (b, rows) rest /\ belongs b t t'.
+Proof.
+  induction rest as [|[b rows] rest IH]; intros place done all J N; cbn [join] in J; [discriminate|].
+  destruct (_ && _)%bool eqn:S in J; [|discriminate]. apply andb_prop in S. destruct S as [K P].
+  assert (tile_axis b = k) as AK by (destruct (tile_axis b), k; congruence || discriminate). clear K.
+  assert (tile_begin b = place) as AP.
+  { destruct (tile_begin b) as [[m x]|], place as [[m' x']|]; try discriminate; [|reflexivity].
+    unfold same_place in P. cbn [mantissa exponent] in P. tests. congruence. }
+  assert (B : (forall e, tile_end b = Some e -> before k e t /\ before k e t') ->
+              exists b' rows', In (b', rows') ((b, rows) :: rest) /\ belongs b' t t').
+  { intros E. exists b, rows. split; [now left|]. unfold belongs. rewrite AK, AP. auto. }
+  destruct (tile_end b) as [p|]; [|apply B; discriminate].
+  destruct (before_dec k p t) as [T | T], (before_dec k p t') as [T' | T'];
+    [apply B; intros e E; injection E as <-; auto | | |];
+    (destruct rest as [|c rest]; [discriminate|];
+     destruct (IH _ _ _ J) as (b' & rows' & I & W);
+     [intros p' E; injection E as <-; tauto | exists b', rows'; simpl in *; tauto]).
+Qed.
+Lemma triangles_of_answer s clearance o i o' i' : answer s clearance o i o' i' ->
+  exists t t', is_triangle s o i t /\ is_triangle s o' i' t'.
+Proof. intros (_ & t & t' & T & T' & _). eauto. Qed.
+
 (** * The theorems *)
-Theorem accepted_list_is_right_and_complete s clearance reach less c es l :
-  check s clearance reach less c es = Proved l -> right_and_complete s clearance l.
+(** Of the pairs that belong to a tile: the triangles that the reader keeps suffice. *)
+Theorem accepted_tile_is_right_and_complete s piece clearance reach less c es l :
+  check (gathered piece reach s) piece clearance reach less c es = Proved l ->
+  right_and_complete_in piece s clearance l.
 Proof.
   unfold check. intros H o i o' i'. destruct (_ && _)%bool eqn:R in H; [|discriminate]. tests.
-  pose proof (judge_all_proved _ _ _ _ _ _ _ H) as L. cbn [rows] in L.
-  rewrite (answer_pairs s clearance reach less) by assumption. split; [split|].
+  pose proof (judge_all_proved _ _ _ _ _ _ H) as L. cbn [rows] in L.
+  rewrite (answer_pairs s piece clearance reach less) by assumption. split; [split|].
   - intros (a & b & P & N & M). exists (name_of a b). split; [|exact N].
     apply L. right. exists a, b. auto.
   - intros (r & In_l & N). apply L in In_l. destruct In_l as [[] | (a & b & P & -> & M)]. eauto.
@@ -341,16 +562,52 @@ Proof.
     eapply neighbours_pairs; eauto.
 Qed.
 
+(** The lists of tiles that leave nothing out together are the list of the whole scene. *)
+Theorem merged_list_is_right_and_complete s clearance tiles l :
+  merge_tiles tiles = Some l ->
+  (forall piece rows, In (piece, rows) tiles -> right_and_complete_in piece s clearance rows) ->
+  right_and_complete s clearance l.
+Proof.
+  unfold merge_tiles. destruct tiles as [|[b0 rows0] tiles]; [discriminate|]. intros J T o i o' i'.
+  pose proof (join_all _ _ _ _ _ J) as A. simpl (In _ []) in A.
+  split; [split|].
+  - intros W. destruct (triangles_of_answer _ _ _ _ _ _ W) as (t & t' & U & U').
+    destruct (join_covers _ t t' _ _ _ _ J) as (b & rows & I & B); [discriminate|].
+    destruct (proj1 (proj1 (T b rows I o i o' i'))) as (r & R & N).
+    { split; [assumption|]. exists t, t'. auto. }
+    exists r. split; [|assumption]. apply A. right. eauto.
+  - intros (r & R & N). apply A in R. destruct R as [[] | (b & rows & I & R)].
+    apply (proj1 (T b rows I o i o' i')). eauto.
+  - intros r R N. apply A in R. destruct R as [[] | (b & rows & I & R)].
+    now apply (proj2 (T b rows I o i o' i')).
+Qed.
+
+(** A scene in one piece. *)
+Theorem accepted_list_is_right_and_complete s clearance reach less c es l :
+  check (gathered everything reach s) everything clearance reach less c es = Proved l ->
+  right_and_complete s clearance l.
+Proof.
+  intros H. apply accepted_tile_is_right_and_complete in H.
+  assert (R : right_and_complete s clearance (rev_append l [])).
+  { apply (merged_list_is_right_and_complete s clearance [(everything, l)]); [reflexivity|].
+    intros piece rows [E | []]. injection E as <- <-. exact H. }
+  intros o i o' i'. specialize (R o i o' i'). rewrite rev_append_rev, app_nil_r in R.
+  destruct R as [R F]. split; [|intros r I; apply F; now apply -> in_rev].
+  rewrite R. split; intros (r & I & N); exists r; (split; [|exact N]); [now apply in_rev | now apply -> in_rev].
+Qed.
+
 (** A refuted certificate says something false of the pair that is named. *)
-Theorem refuted_pair_is_claimed_wrongly s clearance reach less c es r f o i o' i' :
-  check s clearance reach less c es = Refuted r f -> names r o i o' i' ->
+Theorem refuted_pair_is_claimed_wrongly s piece clearance reach less c es r f o i o' i' :
+  check (gathered piece reach s) piece clearance reach less c es = Refuted r f -> names r o i o' i' ->
   f = Said_to_meet /\ ~ answer s clearance o i o' i' \/
   (f = Culled_meets \/ f = Said_disjoint) /\ answer s clearance o i o' i'.
 Proof.
   unfold check. intros H N. destruct (_ && _)%bool eqn:R in H; [|discriminate]. tests.
   apply judge_all_refuted in H. cbn [refuting] in H.
   destruct H as [H | (a & b & P & -> & H)]; [discriminate|].
-  rewrite (answer_pairs s clearance reach less) by assumption.
+  assert (W : answer s clearance o i o' i' <-> answer s clearance o i o' i' /\ in_tile piece s o i o' i').
+  { split; [|tauto]. split; [assumption|]. eapply decided_in_tile; eauto. }
+  rewrite W, (answer_pairs s piece clearance reach less) by assumption.
   destruct H as [[F M] | [F M]]; [left | right]; split; auto; [|eauto].
   intros (a' & b' & P' & N' & M'). apply M.
   enough (a' = a /\ b' = b) as [-> ->] by assumption.
@@ -362,5 +619,9 @@ Qed.
 Set Printing Width 90.
 Check accepted_list_is_right_and_complete.
 Print Assumptions accepted_list_is_right_and_complete.
+Check accepted_tile_is_right_and_complete.
+Print Assumptions accepted_tile_is_right_and_complete.
+Check merged_list_is_right_and_complete.
+Print Assumptions merged_list_is_right_and_complete.
 Check refuted_pair_is_claimed_wrongly.
 Print Assumptions refuted_pair_is_claimed_wrongly.

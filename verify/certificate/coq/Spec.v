@@ -91,3 +91,52 @@ Definition right_and_complete (s : scene) (clearance : double) (l : list row) : 
     (answer s clearance o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
     (forall r, In r l -> names r o i o' i' ->
                (neighbours r = true <-> are_neighbours s o i o' i')).
+
+(** A large scene is proved in pieces. A tile is the part of space between two places on an axis; None:
+    no end. A triangle begins before a place if one of its corners is before it. A pair belongs to the
+    tile before whose end both of its triangles begin, and before whose beginning not both do. *)
+Inductive axis := Along_x | Along_y | Along_z.
+Definition coordinate {C} (k : axis) (p : vec C) : C :=
+  match k with Along_x => x p | Along_y => y p | Along_z => z p end.
+Record tile := Tile { tile_axis : axis; tile_begin : option double; tile_end : option double }.
+Definition before (k : axis) (place : double) (t : triangle double) : Prop :=
+  exists p, (p = p1 t \/ p = p2 t \/ p = p3 t) /\ value (coordinate k p) < value place.
+Definition belongs (b : tile) (t t' : triangle double) : Prop :=
+  (forall e, tile_end b = Some e -> before (tile_axis b) e t /\ before (tile_axis b) e t') /\
+  (forall e, tile_begin b = Some e -> ~ (before (tile_axis b) e t /\ before (tile_axis b) e t')).
+
+(** The list is right and complete for the pairs that belong to the tile. *)
+Definition in_tile (b : tile) (s : scene) (o i o' i' : nat) : Prop :=
+  exists t t', is_triangle s o i t /\ is_triangle s o' i' t' /\ belongs b t t'.
+Definition right_and_complete_in (b : tile) (s : scene) (clearance : double) (l : list row) : Prop :=
+  forall o i o' i',
+    (answer s clearance o i o' i' /\ in_tile b s o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
+    (forall r, In r l -> names r o i o' i' ->
+               (neighbours r = true <-> are_neighbours s o i o' i')).
+
+(** Distances. No two points of the triangles are nearer than the root of q; two are as near. *)
+Definition no_nearer (q : Q) (a b : triangle Q) : Prop :=
+  forall p r, inside a p -> inside b r -> q <= squared_distance p r.
+Definition squared_is (q : Q) (a b : triangle Q) : Prop :=
+  no_nearer q a b /\ exists p r, inside a p /\ inside b r /\ squared_distance p r == q.
+
+(** The pairs that have a distance: all that are asked for, but not neighbours. *)
+Definition measured (s : scene) (o i o' i' : nat) (t t' : triangle double) : Prop :=
+  asked s o i o' i' /\ is_triangle s o i t /\ is_triangle s o' i' t' /\ ~ are_neighbours s o i o' i'.
+
+(** The answer: two triangles of two objects (or of one that is [self]), and the square of their
+    distance, which is that of the objects. Each two objects that are so near are there; [within]
+    None: each two that have a distance. *)
+Record entry := Entry { nearest : row; squared : Q }.
+Definition right_entry (s : scene) (e : entry) (o i o' i' : nat) : Prop :=
+  names (nearest e) o i o' i' /\
+  (exists t t', measured s o i o' i' t t' /\
+                squared_is (squared e) (map_triangle value t) (map_triangle value t')) /\
+  (forall j j' t t', measured s o j o' j' t t' ->
+                     no_nearer (squared e) (map_triangle value t) (map_triangle value t')).
+Definition right_distances (s : scene) (within : option double) (l : list entry) : Prop :=
+  (forall e, In e l -> exists o i o' i', right_entry s e o i o' i' /\
+     forall d, within = Some d -> squared e <= value d * value d) /\
+  (forall o i o' i' t t', measured s o i o' i' t t' ->
+     (forall d, within = Some d -> near (value d) (map_triangle value t) (map_triangle value t')) ->
+     exists e j j', In e l /\ names (nearest e) o j o' j').

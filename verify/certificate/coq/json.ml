@@ -4,9 +4,9 @@ let bad format = Printf.ksprintf (fun text -> raise (Bad text)) format
 
 type t = Object of (string * t) list | Array of t list | String of string | Number of string | Null | Truth
 
-let most_values = 10_000 and deepest = 8
+let deepest = 8
 
-let parse text =
+let parse most_values text =
   let at = ref 0 and values = ref 0 in
   let stop what = bad "not JSON at byte %d: %s" (!at + 1) what in
   let peek () = if !at < String.length text then text.[!at] else '\000' in
@@ -179,19 +179,35 @@ let base64 v =
   done;
   Bytes.sub_string out 0 size
 
-let clearance root = match member "version" root with
-  | Number "4" -> (match member "clearance" root with Number s -> float_of_string s | _ -> 0.)
-  | _ -> 0.
+let version root = match member "version" root with
+  | Number (("3" | "4" | "5") as v) -> int_of_string v
+  | _ -> bad "version is not 3, 4 or 5"
+let clearance root =
+  if version root = 3 then 0.
+  else match member "clearance" root with Number s -> float_of_string s | _ -> 0.
+
+(* Of version 5: the axis of the tile, and where it begins and ends. *)
+let is_place = function
+  | Null -> ()
+  | Number s when Float.abs (float_of_string s) < infinity -> ()
+  | _ -> bad "no finite number and not null"
+let tile root =
+  if version root < 5 then None
+  else
+    let tile = member "tile" root in
+    let place key = match member key tile with Number s -> Some (float_of_string s) | _ -> None in
+    Some (text (member "axis" tile), place "from", place "to")
+let is_axis v = if not (List.mem (text v) [ "x"; "y"; "z" ]) then bad "axis is not x, y or z"
 
 let certificate text_of_file =
-  let root = parse text_of_file in
+  let root = parse 10_000 text_of_file in
   if text (member "format" root) <> "farcull-certificate" then bad "format is not farcull-certificate";
-  let near = member "version" root = Number "4" in
-  if not near && member "version" root <> Number "3" then bad "version is not 3 or 4";
-  let is_clearance v = is_length v; if clearance root = 0. then bad "clearance is 0" in
+  let version = version root in
+  let is_clearance v = is_length v; if version = 4 && clearance root = 0. then bad "clearance is 0" in
   let counts keys = has (List.map (fun key -> (key, is_count)) keys) in
   let texts keys = has (List.map (fun key -> (key, is_text)) keys) in
-  has ((if near then [ "clearance", is_clearance ] else []) @ [
+  has ((if version > 3 then [ "clearance", is_clearance ] else [])
+       @ (if version = 5 then [ "tile", has [ "axis", is_axis; "from", is_place; "to", is_place ] ] else []) @ [
         "format", is_text; "version", is_count;
         "scene", has [ "name", is_text; "objects", is_count; "triangles", is_count; "hash", is_hex 16 ];
         "not_asked", counts [ "objects"; "pairs" ];
@@ -204,4 +220,44 @@ let certificate text_of_file =
           "device", (function Null -> () | v -> texts [ "vendor"; "renderer"; "version"; "glsl" ] v);
           "assumptions", every is_text ];
         "evidence", (fun v -> ignore (base64 v)) ]) root;
+  root
+
+(* ---- certificates of distances ---- *)
+
+let distances_format = "farcull-distances"
+(* The key `format` comes first. *)
+let is_of_distances text_of_file =
+  let start = String.sub text_of_file 0 (min 200 (String.length text_of_file)) in
+  List.exists (fun part -> part = distances_format) (String.split_on_char '"' start)
+
+(* "5/4" as two numbers, in lowest terms. *)
+let fraction v =
+  let digits s = s <> "" && String.length s <= 4000 && (s = "0" || s.[0] <> '0')
+                 && String.for_all (fun c -> c >= '0' && c <= '9') s in
+  match String.split_on_char '/' (text v) with
+  | [ n; d ] when digits n && digits d && d <> "0" ->
+    let n = Z.of_string n and d = Z.of_string d in
+    if not (Z.equal (Z.gcd n d) Z.one) then bad "squared is not in lowest terms";
+    (n, d)
+  | _ -> bad "squared is no fraction"
+
+let two test = function Array [ a; b ] -> test a; test b | _ -> bad "two values are missing"
+let distances text_of_file =
+  let root = parse (max 10_000 (String.length text_of_file)) text_of_file in
+  if text (member "format" root) <> distances_format then bad "format is not farcull-distances";
+  if member "version" root <> Number "2" then bad "version is not 2";
+  let or_null test = function Null -> () | v -> test v in
+  let one_of words v = if not (List.mem (text v) words) then bad "an unknown word" in
+  let features = [ "vertex 0"; "vertex 1"; "vertex 2"; "edge 0"; "edge 1"; "edge 2"; "face" ] in
+  has [ "format", is_text; "version", is_count;
+        "scene", has [ "name", is_text; "objects", is_count; "triangles", is_count; "hash", is_hex 16 ];
+        "query", has [ "pairs", one_of [ "objects"; "nearest"; "all" ]; "k", or_null is_count;
+                       "within", or_null is_length ];
+        "distances", every (has [
+            "objects", two is_count; "triangles", two is_count;
+            "squared", (fun v -> ignore (fraction v)); "features", two (one_of features);
+            "inside", or_null (one_of [ "a"; "b"; "none"; "not closed" ]) ]) ] root;
+  let query = member "query" root in
+  if member "pairs" query <> String "objects" || member "k" query <> Null
+  then bad "only distances of all objects (--pairs objects) are checked here";
   root

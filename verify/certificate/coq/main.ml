@@ -1,9 +1,10 @@
 (* farcull-check-verified CERTIFICATE SCENE: reads both files, calls the checker that Checker.v
-   defines and Proofs.v proves, and prints its verdict. This file is trusted: it turns bytes into
-   the values of Spec.v, and a verdict into a line. SCENE holds the words that `farcull check
-   --verified` writes: 64 bits each, lowest byte first. docs/certificate.md describes the
-   certificate. Exit status as of `farcull check`: 0 proved; 1 refuted or not proved; 2 a file that
-   cannot be read; 3 the checker could not decide a pair. *)
+   defines and Proofs.v proves, and prints its verdict; so for more pairs of files. This file is
+   trusted: it turns bytes into the values of Spec.v, and a verdict into a line. SCENE holds the
+   words that `farcull check --verified` writes: 64 bits each, lowest byte first.
+   docs/certificate.md describes the certificate. With --tiles CERTIFICATE... SCENE the certificates
+   are those of all tiles of the scene, in their order. Exit status as of `farcull check`: 0 proved;
+   1 refuted or not proved; 2 a file that cannot be read; 3 the checker could not decide a pair. *)
 module Integer = Z
 open Checker
 module Z = Integer  (* zarith's; the checker has a Z of its own *)
@@ -31,19 +32,14 @@ let fraction power n =
 let constants = Array.of_list (List.map (fraction 3) primes)
 let start = Array.sub (Array.of_list (List.map (fraction 2) primes)) 0 8
 
-let sha256 text =
-  let length = String.length text in
-  let zeros = (119 - length mod 64) mod 64 in
-  let tail = Bytes.make (1 + zeros + 8) '\000' in
-  Bytes.set tail 0 '\x80';
-  Bytes.set_int64_be tail (1 + zeros) (Int64.of_int (8 * length));
-  let padded = text ^ Bytes.unsafe_to_string tail in
-  let mask = 0xffffffff in
+let mask = 0xffffffff
+(* Adds the blocks of 64 bytes among the first bytes to the state. *)
+let sha_blocks state bytes size =
   let right x n = ((x lsr n) lor (x lsl (32 - n))) land mask in
-  let state = Array.copy start and w = Array.make 64 0 in
-  for block = 0 to String.length padded / 64 - 1 do
+  let w = Array.make 64 0 in
+  for block = 0 to size / 64 - 1 do
     for i = 0 to 15 do
-      w.(i) <- Int32.to_int (String.get_int32_be padded (64 * block + 4 * i)) land mask
+      w.(i) <- Int32.to_int (Bytes.get_int32_be bytes (64 * block + 4 * i)) land mask
     done;
     for i = 16 to 63 do
       let a = w.(i - 15) and b = w.(i - 2) in
@@ -62,35 +58,51 @@ let sha256 text =
       s.(0) <- (t + u) land mask
     done;
     Array.iteri (fun i x -> state.(i) <- (state.(i) + x) land mask) s
-  done;
+  done
+(* Adds the last bytes; [total] have been added in all. *)
+let sha_end state bytes size total =
+  sha_blocks state bytes size;
+  let rest = size mod 64 in
+  let tail = Bytes.make (if rest < 56 then 64 else 128) '\000' in
+  Bytes.blit bytes (size - rest) tail 0 rest;
+  Bytes.set tail rest '\x80';
+  Bytes.set_int64_be tail (Bytes.length tail - 8) (Int64.of_int (8 * total));
+  sha_blocks state tail (Bytes.length tail);
   String.concat "" (List.map (Printf.sprintf "%08x") (Array.to_list state))
+let sha256 text =
+  let size = String.length text in
+  sha_end (Array.copy start) (Bytes.unsafe_of_string text) size size
 
-let fnv1a text =
-  let hash = ref 0xcbf29ce484222325L in
-  String.iter (fun c ->
-      hash := Int64.mul (Int64.logxor !hash (Int64.of_int (Char.code c))) 0x100000001b3L) text;
-  Printf.sprintf "%016Lx" !hash
+let fnv1a hash bytes size =
+  let hash = ref hash in
+  for i = 0 to size - 1 do
+    let c = Int64.of_int (Char.code (Bytes.unsafe_get bytes i)) in
+    hash := Int64.mul (Int64.logxor !hash c) 0x100000001b3L
+  done;
+  !hash
 
 (* ---- the scene ---- *)
 
 (* The double as an odd integer times a power of two; zero as 0. *)
+let zero = { mantissa = Z.zero; exponent = Z.zero }
 let double_of word =
-  let x = Int64.float_of_bits word in
-  match classify_float x with
-  | FP_nan | FP_infinite -> bad "the scene has a coordinate that is not finite"
-  | FP_zero -> { mantissa = Z.zero; exponent = Z.zero }
-  | FP_normal | FP_subnormal ->
-    let fraction, exponent = Float.frexp x in
-    let whole = Z.of_float (Float.ldexp fraction 53) in
-    let zeros = Z.trailing_zeros whole in
-    { mantissa = Z.shift_right whole zeros; exponent = Z.of_int (exponent - 53 + zeros) }
+  let exponent = Int64.to_int (Int64.shift_right_logical word 52) land 0x7ff in
+  let fraction = Int64.to_int (Int64.logand word 0xfffffffffffffL) in
+  if exponent = 0x7ff then bad "the scene has a coordinate that is not finite";
+  let whole = if exponent = 0 then fraction else fraction lor (1 lsl 52) in
+  if whole = 0 then zero
+  else
+    let zeros = Z.trailing_zeros (Z.of_int whole) in
+    let odd = whole lsr zeros in
+    { mantissa = Z.of_int (if Int64.compare word 0L < 0 then - odd else odd);
+      exponent = Z.of_int (max exponent 1 - 1075 + zeros) }
 
 (* Up to which difference boxes count as near. farcull rounds the difference of two doubles, and
    compares it with the clearance. The rounded one is at most the clearance if the exact one is at
    most half way to the next double; if the last bit of the clearance is 1, half way rounds up. Any
    reach that is not below the clearance is right; this one gives the pairs that the bytes are for. *)
 let reach_of clearance =
-  if clearance = 0. then ({ mantissa = Z.zero; exponent = Z.zero }, false)
+  if clearance = 0. then (zero, false)
   else
     let bits = Int64.bits_of_float clearance in
     let exponent = max 1 (Int64.to_int (Int64.shift_right_logical bits 52)) - 1075 in
@@ -98,34 +110,68 @@ let reach_of clearance =
     ({ mantissa = Z.succ (Z.mul (Z.of_int 2) whole); exponent = Z.of_int (exponent - 1) },
      Z.is_odd whole)
 
-let scene_of bytes =
-  let at = ref 0 in
+(* What is kept of a scene while it is read, and what is found of the whole. *)
+type found = {
+  kept : named list; objects : int; triangles : int; has_self : bool;
+  unasked_objects : Z.t; unasked_pairs : Z.t;  (* inside objects that are not self *)
+  fnv : string; sha : string }
+
+(* Reads the scene from its beginning to its end. Of the triangles it holds those that [keep] keeps,
+   which it calls for each of them in order: this is [gathered] of Checker.v. *)
+let read_scene path piece reach =
+  let file = open_in_bin path in
+  Fun.protect ~finally:(fun () -> close_in file) @@ fun () ->
+  let block = Bytes.create (1 lsl 20) in
+  let size = ref 0 and at = ref 0 and total = ref 0 in
+  let hash = ref 0xcbf29ce484222325L and state = Array.copy start and sha = ref "" in
+  let refill () =
+    let rec fill from =
+      match input file block from (Bytes.length block - from) with
+      | 0 -> from
+      | n -> if from + n = Bytes.length block then from + n else fill (from + n) in
+    size := if !sha = "" then fill 0 else 0;
+    at := 0;
+    total := !total + !size;
+    hash := fnv1a !hash block !size;
+    if !size = Bytes.length block then sha_blocks state block !size
+    else if !sha = "" then sha := sha_end state block !size !total in
   let word () =
-    if !at + 8 > String.length bytes then bad "the scene is too short";
+    if !at = !size then refill ();
+    if !at + 8 > !size then bad "the scene is too short";
     at := !at + 8;
-    String.get_int64_le bytes (!at - 8) in
-  let many f n =  (* f () n times, in a list in this order *)
-    let rec more n done_ = if n = 0 then List.rev done_ else more (n - 1) (f () :: done_) in
-    more n [] in
+    Bytes.get_int64_le block (!at - 8) in
   let number limit =
     let n = word () in
     if Int64.compare n 0L < 0 || Int64.compare n limit >= 0 then bad "the scene has a wrong size";
     Int64.to_int n in
-  let sizes = many (fun () -> number 0x200000000L) (number 0x100000000L) in
   let point () =
     let x = double_of (word ()) in
     let y = double_of (word ()) in
-    let z = double_of (word ()) in
-    { x; y; z0 = z } in
+    let z0 = double_of (word ()) in
+    { x; y; z0 } in
   let triangle () =
     let p1 = point () in
     let p2 = point () in
     let p3 = point () in
     { p1; p2; p3 } in
-  let scene = List.rev (List.rev_map (fun size ->
-      { self = size land 0x100000000 <> 0; triangles = many triangle (size land 0xffffffff) }) sizes) in
-  if !at <> String.length bytes then bad "the scene is too long";
-  scene
+  let rec sizes_of n done_ =
+    if n = 0 then List.rev done_ else sizes_of (n - 1) (number 0x200000000L :: done_) in
+  let objects = number 0x100000000L in
+  let sizes = sizes_of objects [] in
+  let count size = size land 0xffffffff and inner size = size land 0x100000000 <> 0 in
+  let kept = ref [] in
+  List.iteri (fun o size ->
+      let keep = keep piece reach (Z.of_int o) in
+      for i = 0 to count size - 1 do
+        kept := keep (Z.of_int i) (inner size) (triangle ()) !kept
+      done) sizes;
+  if !at < !size || (refill (); !size > 0) then bad "the scene is too long";
+  let unasked = List.filter (fun size -> not (inner size)) sizes in
+  let inside n = Z.div (Z.mul (Z.of_int n) (Z.of_int (n - 1))) (Z.of_int 2) in
+  { kept = !kept; objects; triangles = List.fold_left (fun n size -> n + count size) 0 sizes;
+    has_self = List.exists inner sizes; unasked_objects = Z.of_int (List.length unasked);
+    unasked_pairs = List.fold_left (fun n size -> Z.add n (inside (count size))) Z.zero unasked;
+    fnv = Printf.sprintf "%016Lx" !hash; sha = !sha }
 
 (* ---- the certificate ---- *)
 
@@ -148,11 +194,24 @@ let evidence_of byte =
   { kept = byte land 0x40 <> 0; claimed }
 
 let claims_of root =
-  let claims = Json.member "claims" root and unasked = Json.member "not_asked" root in
+  let claims = Json.member "claims" root in
   { box_pairs = number_of claims "box_pairs"; kept_pairs = number_of claims "kept";
     culled = number_of claims "culled"; separated_pairs = number_of claims "separated";
-    neighbour_pairs = number_of claims "neighbours"; meeting = number_of claims "meeting";
-    unasked_objects = number_of unasked "objects"; unasked_pairs = number_of unasked "pairs" }
+    neighbour_pairs = number_of claims "neighbours"; meeting = number_of claims "meeting" }
+
+let tile_of root =
+  match Json.tile root with
+  | None -> everything
+  | Some (axis, from, to_) ->
+    let place = Option.map (fun x -> double_of (Int64.bits_of_float x)) in
+    { tile_axis = (match axis with "x" -> Along_x | "y" -> Along_y | _ -> Along_z);
+      tile_begin = place from; tile_end = place to_ }
+let tile_text root =
+  match Json.tile root with
+  | None -> ""
+  | Some (axis, from, to_) ->
+    let place end_ = function None -> end_ | Some x -> Printf.sprintf "%.17g" x in
+    Printf.sprintf " for the tile of %s from %s to %s" axis (place "-inf" from) (place "+inf" to_)
 
 (* ---- the verdict ---- *)
 
@@ -179,45 +238,126 @@ let reason = function
   | Said_disjoint -> "the pair is called disjoint, and it counts"
   | Said_to_meet -> "the pair is said to count, and it does not"
 
-let check_files certificate scene =
-  let text = read_file certificate and words = read_file scene in
+let say format = Printf.ksprintf (fun text -> Printf.printf "verified   %s\n%!" text) format
+let not_proved text = say "not proved: %s" text; Error "not proved"
+let status_of = function Ok _ -> 0 | Error "undecided" -> 3 | Error _ -> 1
+let hash_of has_self rows = sha256 (list_text has_self rows)
+
+let other_scene root found =
+  let key = Json.member "scene" root in
+  not (Z.equal (number_of key "objects") (Z.of_int found.objects))
+  || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
+  || Json.text (Json.member "hash" key) <> found.fnv
+let say_hashes text found =
+  say "certificate sha256 %s" (sha256 text);
+  say "scene       sha256 %s" found.sha
+
+(* Of one certificate: the tile, the rows, the clearance and whether the scene has objects that are
+   self, if it is proved; else what it is. *)
+let check_file scene certificate =
+  let text = read_file certificate in
   let root = Json.certificate text in
   let bytes = Json.base64 (Json.member "evidence" root) in
-  let s = scene_of words in
-  Printf.printf "verified   certificate sha256 %s\n" (sha256 text);
-  Printf.printf "verified   scene       sha256 %s\n" (sha256 words);
-  let key = Json.member "scene" root in
-  let triangles = List.fold_left (fun n ob -> n + List.length ob.triangles) 0 s in
-  let not_proved text = Printf.printf "verified   not proved: %s\n" text; 1 in
-  if not (Z.equal (number_of key "objects") (Z.of_int (List.length s)))
-  || not (Z.equal (number_of key "triangles") (Z.of_int triangles))
-  || Json.text (Json.member "hash" key) <> fnv1a words
+  let clearance = Json.clearance root and piece = tile_of root in
+  let reach, less = reach_of clearance in
+  let found = read_scene scene piece reach in
+  say_hashes text found;
+  let unasked = Json.member "not_asked" root in
+  let has_self = found.has_self in
+  if other_scene root found
   then not_proved "the certificate is of another scene"
   else
+    let right_unasked = Z.equal (number_of unasked "objects") found.unasked_objects
+                        && Z.equal (number_of unasked "pairs") found.unasked_pairs in
     let evidence =
       let rec from i found = if i < 0 then found else from (i - 1) (evidence_of (Char.code bytes.[i]) :: found) in
       from (String.length bytes - 1) [] in
-    let clearance = Json.clearance root in
-    let reach, less = reach_of clearance in
-    match check s (double_of (Int64.bits_of_float clearance)) reach less (claims_of root) evidence with
-    | Refuted (r, f) -> Printf.printf "verified   refuted: %s: %s\n" (reason f) (pair r); 1
+    match check found.kept piece (double_of (Int64.bits_of_float clearance)) reach less (claims_of root) evidence with
+    | Refuted (r, f) -> say "refuted: %s: %s" (reason f) (pair r); Error "refuted"
     | Unproved (r, f) -> not_proved (reason f ^ ": " ^ pair r)
     | Wrong_count -> not_proved "a count is wrong"
     | Too_short -> not_proved "the evidence is too short"
     | Bad_reach -> bad "the clearance is negative or not finite"
     | Too_long -> not_proved "the evidence is too long"
-    | Undecided r -> Printf.printf "verified   undecided: %s\n" (pair r); 3
+    | Undecided r -> say "undecided: %s" (pair r); Error "undecided"
+    | Proved _ when not right_unasked -> not_proved "a count is wrong"
     | Proved rows ->
-      let hash = sha256 (list_text (List.exists (fun ob -> ob.self) s) rows) in
+      let hash = hash_of has_self rows in
       if hash <> Json.text (Json.member "list_sha256" root)
       then not_proved ("the certificate is of another list of pairs; that of the scene is " ^ hash)
-      else (Printf.printf "verified   proved: the list with the hash %s is right and complete, %d pairs\n" hash
-              (List.length rows); 0)
+      else begin
+        say "proved: the list with the hash %s is right and complete%s, %d pairs" hash (tile_text root)
+          (List.length rows);
+        Ok (piece, rows, clearance, has_self)
+      end
 
+(* Of a certificate of distances. *)
+let check_distance_file scene text =
+  let root = Json.distances text in
+  let found = read_scene scene everything zero in
+  say_hashes text found;
+  let within = match Json.member "within" (Json.member "query" root) with
+    | Json.Number s -> Some (double_of (Int64.bits_of_float (float_of_string s)))
+    | _ -> None in
+  let entry_of v =
+    let two key = match Json.member key v with
+      | Json.Array [ a; b ] -> (Json.whole a, Json.whole b) | _ -> bad "two numbers are missing" in
+    let object_a, object_b = two "objects" and triangle_a, triangle_b = two "triangles" in
+    let qnum, qden = Json.fraction (Json.member "squared" v) in
+    { nearest = { object_a; triangle_a; object_b; triangle_b; neighbours = false };
+      squared = { qnum; qden } } in
+  let entries = match Json.member "distances" root with
+    | Json.Array l -> List.rev (List.rev_map entry_of l) | _ -> [] in
+  if other_scene root found then not_proved "the certificate is of another scene"
+  else match check_distances found.kept within entries with
+    | Bad_limit -> bad "the limit is negative"
+    | Bad_entries -> not_proved "two answers are about the same objects, or one is beyond the limit"
+    | Bad_entry e -> not_proved ("this is not the distance of the triangles: " ^ pair e.nearest)
+    | Bad_pair r -> not_proved ("a pair is nearer than its objects are said to be: " ^ pair r)
+    | Missing_objects -> not_proved "two objects are not there"
+    | Distances_proved ->
+      say "proved: these %d squares of distances are right, and no two objects are left out" (List.length entries);
+      say "features, the order of the answers and what is inside are not looked at";
+      Ok ()
+
+(* The certificates of all tiles of a scene, in the order of the tiles. *)
+let check_tiles scene certificates =
+  let results = List.map (check_file scene) certificates in
+  let proved = List.filter_map Result.to_option results in
+  let is word = List.exists (function Error other -> other = word | Ok _ -> false) results in
+  let has_self = List.exists (fun (_, _, _, has_self) -> has_self) proved in
+  let clearances = List.map (fun (_, _, clearance, _) -> clearance) proved in
+  match List.find_opt is [ "undecided"; "refuted"; "not proved" ] with
+  | Some word -> say "%s: a tile is" word; Error word
+  | None when List.exists ((<>) (List.hd clearances)) clearances ->
+    not_proved "the tiles have different clearances"
+  | None ->
+    match merge_tiles (List.map (fun (piece, rows, _, _) -> (piece, rows)) proved) with
+    | None -> not_proved "the tiles do not follow each other from one end of an axis to the other"
+    | Some rows ->
+      let key r = [ r.object_a; r.triangle_a; r.object_b; r.triangle_b ] in
+      let rows = List.sort (fun r s -> List.compare Z.compare (key r) (key s)) rows in
+      say "proved: the list with the hash %s is right and complete, %d pairs of %d tiles"
+        (hash_of has_self rows) (List.length rows) (List.length proved);
+      Ok ()
+
+let usage = "usage: farcull-check-verified CERTIFICATE SCENE [CERTIFICATE SCENE]...\n\
+             or: farcull-check-verified --tiles CERTIFICATE... SCENE"
 let () =
-  match Sys.argv with
-  | [| _; certificate; scene |] ->
-    (try exit (check_files certificate scene) with
-     | Bad text | Json.Bad text -> Printf.eprintf "farcull-check-verified: %s\n" text; exit 2
-     | Sys_error text -> Printf.eprintf "farcull-check-verified: %s\n" text; exit 2)
-  | _ -> prerr_endline "usage: farcull-check-verified CERTIFICATE SCENE"; exit 2
+  let run check =
+    let failed text = Printf.eprintf "farcull-check-verified: %s\n%!" text; 2 in
+    try status_of (check ()) with Bad text | Json.Bad text | Sys_error text -> failed text in
+  let one certificate scene =
+    run (fun () ->
+        let text = read_file certificate in
+        if Json.is_of_distances text then check_distance_file scene text
+        else Result.map ignore (check_file scene certificate)) in
+  let rec each worst = function
+    | certificate :: scene :: rest -> each (max worst (one certificate scene)) rest
+    | _ -> worst in
+  match List.tl (Array.to_list Sys.argv) with
+  | "--tiles" :: (_ :: _ :: _ as files) ->
+    let scene, certificates = List.hd (List.rev files), List.rev (List.tl (List.rev files)) in
+    exit (run (fun () -> check_tiles scene certificates))
+  | _ :: _ as files when List.length files mod 2 = 0 -> exit (each 0 files)
+  | _ -> prerr_endline usage; exit 2

@@ -1,0 +1,199 @@
+// Checks certificates of tiles one after the other, and whether they are those of a whole scene.
+// The rows of all tiles, sorted, are the list that is proved.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "core/base/bytes.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/command/check.h"
+#include "experiments/record/check.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
+#include "experiments/tiles/run_tile.h"
+#include "verify/certificate/pair_list.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A row of a list: the objects and triangles of its pair, and the line.
+using ListRow = std::pair<std::array<std::uint64_t, 4>, std::string>;
+
+ListRow row_of(const PairListRows& rows, const TrianglePair& pair) {
+  ListRow out;
+  rows.append(pair, out.second);
+  std::string_view rest = out.second;
+  for (std::uint64_t& number : out.first) {
+    number = take_number<std::uint64_t>(rest).value_or(0);
+    rest.remove_prefix(1);
+  }
+  return out;
+}
+
+struct CheckedTile {
+  std::string file;
+  Slab slab;
+  double clearance = 0;
+  CheckResult result;  // without the pairs that meet
+  std::string pair;    // the one that refutes, by the numbers in the whole scene
+};
+
+// Why the tiles are not a whole; empty if each begins where the one before it ends, the first has
+// no beginning and the last no end. docs/tiles.md: then each pair belongs to one of them.
+std::string not_whole(const std::vector<CheckedTile>& tiles) {
+  double place = -HUGE_VAL;
+  for (const CheckedTile& tile : tiles) {
+    if (tile.slab.axis != tiles.front().slab.axis)
+      return fmt::format("{} is of a tile along another axis than the first", tile.file);
+    if (tile.clearance != tiles.front().clearance)
+      return fmt::format("{} is of another clearance than the first", tile.file);
+    if (tile.slab.from != place) {
+      return fmt::format("{} is of the tile {}, which does not begin where the tile before it ends",
+                         tile.file, interval_text(tile.slab));
+    }
+    place = tile.slab.to;
+  }
+  return place == HUGE_VAL ? ""
+                           : fmt::format("a tile is missing: {}, the last one, has an end",
+                                         interval_text(tiles.back().slab));
+}
+
+// How the file differs from the list; empty if it is the list, byte for byte.
+std::string other_list(const std::string& path, std::string_view list) {
+  const std::string text = read_file(path, kMaxCheckedBytes);
+  if (text == list) return "";
+  std::string_view given = text;
+  for (std::uint64_t line = 1;; ++line) {
+    const auto next = [](std::string_view& from) {
+      const std::size_t end = std::min(from.find('\n'), from.size());
+      const std::string_view out = from.substr(0, end);
+      from.remove_prefix(std::min(end + 1, from.size()));
+      return std::string(out);
+    };
+    const std::string is = next(given), should = next(list);
+    if (is == should && !(given.empty() && list.empty())) continue;
+    return fmt::format("{} is another list: line {} is '{}' and should be '{}'", clean_name(path),
+                       line, clean_name(is), should);
+  }
+}
+
+}  // namespace
+
+int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files,
+                bool whole) {
+  const SceneSource source = [&](const TakePart& take) {
+    return stream_scene(arguments.scene, [&](Scene& part) {
+      if (arguments.self) make_self(part);
+      take(part);
+    });
+  };
+  Census census = take_census(source, 0);
+  Scene ignoring;
+  ignoring.name = census.name;
+  ignoring.ignored = census.ignored;
+  require_nothing_ignored(ignoring, "a check");
+  std::vector<CheckedTile> tiles;
+  std::vector<ListRow> rows;
+  for (const std::string& file : files) {
+    const Certificate certificate = read_certificate(file);
+    if (!certificate.tile) {
+      throw Error(clean_name(file), "is about a whole scene, and not about a tile",
+                  "check it without --tiles");
+    }
+    census.clearance = certificate.clearance;
+    const TileScene part = gather_tile(source, census, *certificate.tile);
+    const WholeScene scene = whole_scene(census, *certificate.tile, part);
+    tiles.push_back({clean_name(file), *certificate.tile, certificate.clearance,
+                     check_certificate(certificate, part.scene, &scene), ""});
+    CheckedTile& tile = tiles.back();
+    const PairListRows numbered_rows(part.scene, &part.numbers);
+    for (const TrianglePair& pair : tile.result.meeting)
+      rows.push_back(row_of(numbered_rows, pair));
+    tile.result.meeting = {};
+    if (tile.result.pair) {
+      const auto [a, i, b, j] = row_of(numbered_rows, *tile.result.pair).first;
+      tile.pair = fmt::format("object {} triangle {} and object {} triangle {}", a, i, b, j);
+    }
+  }
+  std::ranges::sort(rows, {}, &ListRow::first);
+  std::string list = pair_list_header(census.self_objects > 0);
+  for (const ListRow& row : rows) list += row.second;
+  Verdict verdict = Verdict::proved;
+  std::string reason, table;
+  Json each = Json::array();
+  Certificate::Claims sum;
+  double ms = 0;
+  for (const CheckedTile& tile : tiles) {
+    const CheckResult& result = tile.result;
+    const std::string why =
+        result.reason + (tile.pair.empty() ? "" : fmt::format(": {}", tile.pair));
+    table += fmt::format("tile       {}, {}: {}\n", tile.file, interval_text(tile.slab),
+                         result.verdict == Verdict::proved
+                             ? counted(result.found.meeting, "pair", "pairs")
+                             : to_string(result.verdict) + ": " + why);
+    each.push_back({{"certificate", tile.file},
+                    {"tile", interval_text(tile.slab)},
+                    {"verdict", to_string(result.verdict)},
+                    {"reason", text_json(why)},
+                    {"box_pairs", result.found.box_pairs},
+                    {"meeting", result.found.meeting},
+                    {"list_sha256", text_json(result.list_sha256)}});
+    sum.box_pairs += result.found.box_pairs;
+    ms += result.ms;
+    if (result.verdict == Verdict::proved || verdict == Verdict::refuted) continue;
+    if (verdict == Verdict::not_proved && result.verdict != Verdict::refuted) continue;
+    verdict = result.verdict;
+    reason = tile.file + ": " + why;
+  }
+  if (reason.empty() && whole) reason = not_whole(tiles);
+  const int certified = reason.empty() ? kExitDone : kExitBroken;  // whatever list is given
+  if (reason.empty() && !arguments.pairs.empty()) reason = other_list(arguments.pairs, list);
+  if (!reason.empty() && verdict == Verdict::proved) verdict = Verdict::not_proved;
+  const std::string proves =
+      (whole ? "" : "of the pairs that belong to the tile, ") +
+      proved_text(rows.size(), tiles.front().clearance, census.self_objects > 0);
+  Sha256 hash;
+  hash.add(list);
+  const std::string sha256 = hash.digest();
+  const int status = verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (!arguments.json.empty()) {
+    write_json({{"verdict", to_string(verdict)},
+                {"proves", json_if(status == kExitDone, proves)},
+                {"reason", text_json(reason)},
+                {"list_sha256", sha256},
+                {"tiles", each},
+                {"ms", ms}},
+               arguments.json);
+  }
+  if (arguments.json != "-") {
+    SceneCheck last;
+    last.result.unattested = tiles.back().result.unattested;
+    write_output("-", clean_lines(fmt::format(
+                          "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}"
+                          "time       {:.1f} ms without reading the scene\n",
+                          to_string(verdict), status == kExitDone ? proves : reason, table, sha256,
+                          counted(sum.box_pairs, "pair", "pairs"), unattested_text(last), ms)));
+  }
+  if (!arguments.verified) return status;
+  const auto words = [&](const TakeWord& take) {
+    take(census.objects);
+    for (const auto& [word, times] : census.sizes) {
+      for (std::uint64_t k = 0; k < times; ++k) take(word);
+    }
+    source([&](Scene& part) { give_coordinates(part, take); });
+  };
+  check_again(arguments, files, words, certified);
+  return status;
+}
+
+}  // namespace farcull
