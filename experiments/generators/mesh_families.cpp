@@ -374,7 +374,7 @@ Objects cogs(RandomDraws&, double now, int) {
   const Vec3 turn = on_circle(static_cast<int>(now), 32);
   SuiteObject cog;
   for (const double z : {-0.25, 0.25}) {
-    cog.vertices.emplace_back(0, 0, z);
+    cog.vertices.emplace_back(0.0, 0.0, z);
     for (int i = 0; i < 32; ++i) {
       const Vec3 p = on_circle(i, 8) * (i % 4 < 2 ? 1 : 0.75);
       cog.vertices.emplace_back(p.x() * turn.x() + p.y() * turn.y(),
@@ -418,7 +418,7 @@ Objects hub(RandomDraws& draws, double, int n) {
   for (int i = 0; i < n * n; ++i) {
     const Vec3 at(4.0 * (i % n) / n - 2, 4.0 * (i / n) / n - 6, -0.5 / n);
     for (int k = 0; k < 3; ++k)
-      out[1].vertices.emplace_back(at + Vec3(k == 1, k == 2, k > 0 ? 1 : draws.unit()) / n);
+      out[1].vertices.emplace_back(at + Vec3(k == 1, k == 2, k > 0 ? 1 : -draws.unit()) / n);
     out[1].add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
   }
   return out;
@@ -427,7 +427,11 @@ Objects hub(RandomDraws& draws, double, int n) {
 /// A frame for each value of what moves.
 MeshFamily motion(const char* name, const char* description, const char* parameter,
                   decltype(MeshFamily::make) make, const std::vector<double>& values) {
-  MeshFamily out{.name = name, .description = description, .parameter = parameter, .make = make};
+  MeshFamily out{.name = name,
+                 .description = description,
+                 .parameter = parameter,
+                 .make = make,
+                 .members = {}};
   for (const double value : values)
     out.members.push_back({value, static_cast<int>(out.members.size())});
   out.small = out.members.size();

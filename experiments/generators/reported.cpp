@@ -86,9 +86,9 @@ SuiteObject grid(const Numbers& numbers) {
 /// Vertices, '/', and three vertices for each triangle.
 std::optional<SuiteObject> mesh(const Words& words) {
   const auto slash = std::find(words.begin(), words.end(), "/");
-  const std::optional<Numbers> vertices = numbers_of({words.begin(), slash});
+  const std::optional<Numbers> vertices = numbers_of(Words(words.begin(), slash));
   if (slash == words.end() || !vertices || vertices->size() % 3 != 0) return std::nullopt;
-  const std::optional<Numbers> corners = numbers_of({slash + 1, words.end()});
+  const std::optional<Numbers> corners = numbers_of(Words(slash + 1, words.end()));
   if (!corners || corners->size() % 3 != 0) return std::nullopt;
   SuiteObject out;
   out.vertices = points_of(*vertices);
@@ -150,7 +150,8 @@ bool apply(std::string_view key, std::string_view rest, ReportedCase& to) {
   if (!n || to.objects.empty()) return false;
   Placement placement;
   if (key == "turn" && n->size() == 4)
-    placement.rotate = {.quaternion = {{(*n)[1], (*n)[2], (*n)[3], (*n)[0]}}};
+    placement.rotate = Placement::Rotation{
+        .quaternion = std::array<double, 4>{(*n)[1], (*n)[2], (*n)[3], (*n)[0]}};
   else if (key == "move" && n->size() == 3)
     placement.translate = points_of(*n)[0];
   else
@@ -182,14 +183,18 @@ const ReportedCase& case_at(std::size_t i) {
 }
 
 template <Sort sort>
+std::vector<SuiteObject> objects_at(RandomDraws&, double, int i) {
+  return case_at<sort>(static_cast<std::size_t>(i)).objects;
+}
+
+template <Sort sort>
 MeshFamily mesh_family(const char* name, const char* description) {
   MeshFamily out{.name = name,
                  .description = description,
                  .parameter = "number of the case",
                  .self = sort == Sort::self,
-                 .make = [](RandomDraws&, double, int i) {
-                   return case_at<sort>(static_cast<std::size_t>(i)).objects;
-                 }};
+                 .make = objects_at<sort>,
+                 .members = {}};
   for (const ReportedCase* one : cases_of(sort)) {
     const int i = static_cast<int>(out.members.size());
     out.members.push_back({i + 1.0, i, note_of(*one)});
