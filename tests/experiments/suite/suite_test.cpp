@@ -15,7 +15,7 @@ namespace {
 // The small suite of seed 1, as it was published. Where this changes, so do the answers of everyone
 // who measures with it.
 constexpr const char* kSmallSuite =
-    "87a146da64ae0cd87e515eeae708caeed5617169260c606bc0cb350281b1aa36";
+    "c1a0248d5a305a4ebdc6f851d8c5ba4e09bc89197f1be62ce1039b1a5f7f7047";
 
 TEST(Suite, TheSmallOneHasItsChecksumAndEveryLabelIsRight) {
   const ScratchFolder folder;
