@@ -111,7 +111,9 @@ bool one_is_inside(const Scene& scene) {
 
 std::string decided(const ReportedCase& one) {
   if (one.objects.empty()) {
-    SuitePair pair{.a = one.pair.a, .b = one.pair.b};
+    SuitePair pair;
+    pair.a = one.pair.a;
+    pair.b = one.pair.b;
     if (one.pair.neighbours) pair.shared = equal_corners(pair.a, pair.b);
     return to_string(decide(pair, one.source));
   }
@@ -178,7 +180,7 @@ TEST(Reported, AMalformedTableNamesItsLine) {
     try {
       parse_reported("# a comment\n\ncase a/b#1\nobject box 0 0 0 1 1 1\n" + line + "\n");
     } catch (const std::logic_error& error) {
-      return has_text(error.what(), "line 5");
+      return std::string(error.what()).find("line 5") != std::string::npos;
     }
     return false;
   };
@@ -239,20 +241,29 @@ std::vector<SuiteMesh> meshes_of(const std::set<std::string>& families) {
   return out;
 }
 
-TEST(Reported, OurMethodsAreRightAboutEveryMesh) {
-  Session session("native", 1, {});
-  for (const SuiteMesh& mesh : meshes_of({"reported", "reported-self", "bars", "hub"})) {
-    for (const Method method : {Method::far, Method::far_pairs, Method::exact}) {
-      EXPECT_EQ(pairs_by(method, session, mesh.scene), listed(mesh))
-          << to_string(method) << ", " << mesh.name << "\n"
-          << mesh.note;
-    }
+void expect_right(Session& session, const SuiteMesh& mesh) {
+  for (const Method method : {Method::far, Method::far_pairs, Method::exact}) {
+    EXPECT_EQ(pairs_by(method, session, mesh.scene), listed(mesh))
+        << to_string(method) << ", " << mesh.name << "\n"
+        << mesh.note;
   }
 }
 
-TEST(Loads, HaveAsManyContactsAsTheySay) {
-  for (const SuiteMesh& mesh : meshes_of({"bars", "hub"}))
+TEST(Reported, OurMethodsAreRightAboutEveryMesh) {
+  Session session("native", 1, {});
+  for (const SuiteMesh& mesh : meshes_of({"reported", "reported-self"}))
+    expect_right(session, mesh);
+}
+
+TEST(Loads, AreFoundWithAllTheContactsThatTheyPromise) {
+  Session session("native", 1, {});
+  std::size_t most = 0;
+  for (const SuiteMesh& mesh : meshes_of({"bars", "hub"})) {
     EXPECT_EQ(static_cast<double>(mesh.pairs.size()), mesh.parameter) << mesh.name;
+    expect_right(session, mesh);
+    most = std::max(most, mesh.pairs.size());
+  }
+  EXPECT_GT(most, 65535u);  // what 16 bits can count
 }
 
 /// The frames of each motion.
@@ -278,13 +289,13 @@ TEST(Motions, KeepTheirTrianglesAndChangeTheirContacts) {
   }
 }
 
-TEST(Motions, AreAnsweredRightlyByWhatKeepsItsState) {
+TEST(Motions, AreAnsweredRightlyByWhatKeepsItsState) {  // forwards and backwards
   for (const std::vector<SuiteMesh>& frames : motions()) {
     Session session("native", 1, {});
     Collider collider({.threads = 1});
     std::vector<const SuiteMesh*> asked;
     for (const SuiteMesh& mesh : frames) asked.push_back(&mesh);
-    for (const SuiteMesh& mesh : frames) asked.insert(asked.begin() + 12, &mesh);  // and backwards
+    for (const SuiteMesh& mesh : frames) asked.insert(asked.begin() + 12, &mesh);
     for (const SuiteMesh* mesh : asked) {
       EXPECT_EQ(pairs_by(collider, mesh->scene), listed(*mesh)) << mesh->name;
       for (const Method method : {Method::far, Method::far_pairs, Method::exact, Method::i_collide})

@@ -15,7 +15,7 @@ namespace {
 // The small suite of seed 1, as it was published. Where this changes, so do the answers of everyone
 // who measures with it.
 constexpr const char* kSmallSuite =
-    "c1a0248d5a305a4ebdc6f851d8c5ba4e09bc89197f1be62ce1039b1a5f7f7047";
+    "b96437d8f0abd091397712f75e21b585cb714ebbf5d7a69ec3d785077cddab8c";
 
 TEST(Suite, TheSmallOneHasItsChecksumAndEveryLabelIsRight) {
   const ScratchFolder folder;
@@ -69,7 +69,7 @@ TEST(Suite, MeshesOfTheSmallOneAreThoseOfTheFullOne) {
   const std::vector<std::string> small = mesh_names(SuiteSize::small);
   const std::vector<std::string> full = mesh_names(SuiteSize::full);
   EXPECT_EQ(small.size(), 121u);
-  EXPECT_EQ(full.size(), 156u);
+  EXPECT_EQ(full.size(), 155u);
   EXPECT_TRUE(std::includes(full.begin(), full.end(), small.begin(), small.end()));
   EXPECT_EQ(std::set<std::string>(full.begin(), full.end()).size(), full.size());
 }
