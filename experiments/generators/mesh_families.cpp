@@ -1,6 +1,7 @@
 // Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
 // small triangles at a ground. Others have one object that is tested against itself: cloth, ropes,
-// soup, fans and folds.
+// soup, fans and folds. Motions have a member for each frame, and loads have more contacts than
+// fixed buffers hold.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -324,11 +325,125 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
+// Motions. All frames are made with the same draws; `now` is what moves. The scene leans, so that
+// no face is parallel to an axis of the coordinates. Coordinates keep few bits, so that contacts
+// stay exact.
+
+Objects leaning(RandomDraws& draws, Objects objects) {
+  const Frame frame = leaning_frame(draws);
+  for (SuiteObject& object : objects)
+    each_vertex(object, [&](const Vec3& p) { return frame.at(p); });
+  return objects;
+}
+
+/// A plate of 2^-10 at x = `now`, and a wall of 1/8 around x = 0. Inside the wall the plate meets
+/// no triangle of it.
+Objects tunnel(RandomDraws& draws, double now, int) {
+  return leaning(draws, {box_object(Vec3(-0x1p-4, -4, -4), Vec3(0x1p-4, 4, 4)),
+                         box_object(Vec3(now, -1, -1), Vec3(now + 0x1p-10, 1, 1))});
+}
+
+/// Six boxes that rest on each other and on a floor; the upper three are lifted by `now`.
+Objects stack(RandomDraws& draws, double now, int) {
+  Objects out = {box_object(Vec3(-4, -4, -1), Vec3(4, 4, 0))};
+  for (int i = 0; i < 6; ++i) {
+    const double lift = i < 3 ? 0 : now;
+    const Vec3 lo(draws.coarse(-0.25, 0.25), draws.coarse(-0.25, 0.25), i + lift);
+    out.push_back(box_object(lo, lo + Vec3::Ones()));
+  }
+  return leaning(draws, std::move(out));
+}
+
+/// A thread through a ring: it goes on by 1.5 with each frame, and is `now` beside the axis. At
+/// 7/8 its side touches an edge of the ring.
+Objects thread(RandomDraws& draws, double now, int frame) {
+  Mesh ring = shapes::surface(16, 4, true, [](std::uint32_t i, std::uint32_t j) -> Vec3 {
+    const double radius = j == 0 || j == 3 ? 1 : 1.5;
+    return radius * on_circle(static_cast<int>(i), 4) + Vec3(0, 0, j < 2 ? -0.25 : 0.25);
+  });
+  SuiteObject rod = sheet(24, 4, [&](int i, int j) {
+    const Vec3 across = 0.125 * Vec3(j % 4 < 2 ? 1 : -1, j % 4 == 0 || j % 4 == 3 ? 1 : -1, 0);
+    return Vec3(across + Vec3(now, 0, 0.5 * i - 14 + 1.5 * frame));
+  });
+  return leaning(draws, {{std::move(ring.vertices), std::move(ring.triangles)}, std::move(rod)});
+}
+
+/// Two cogs, mirror images of each other: both turn by `now` 32ths of a quarter turn, and their
+/// teeth meet at x = 1 tip to tip or not at all. Rounding decides by how much.
+Objects cogs(RandomDraws&, double now, int) {
+  const Vec3 turn = on_circle(static_cast<int>(now), 32);
+  SuiteObject cog;
+  for (const double z : {-0.25, 0.25}) {
+    cog.vertices.emplace_back(0.0, 0.0, z);
+    for (int i = 0; i < 32; ++i) {
+      const Vec3 p = on_circle(i, 8) * (i % 4 < 2 ? 1 : 0.75);
+      cog.vertices.emplace_back(p.x() * turn.x() + p.y() * turn.y(),
+                                p.y() * turn.x() - p.x() * turn.y(), z);
+    }
+  }
+  for (std::uint32_t i = 0; i < 32; ++i) {
+    const std::uint32_t a = 1 + i, b = 1 + (i + 1) % 32, above = 33;
+    cog.add(0, b, a);
+    cog.add(above, above + a, above + b);
+    cog.add(a, b, above + b);
+    cog.add(a, above + b, above + a);
+  }
+  SuiteObject other = cog;
+  each_vertex(other, [](const Vec3& p) { return Vec3(2 - p.x(), p.y(), p.z()); });
+  return {std::move(cog), std::move(other)};
+}
+
+// Loads.
+
+/// n long thin triangles along x that n along y cross, each each.
+Objects bars(RandomDraws&, double, int n) {
+  Objects out(2);
+  const double width = 0.25 / n;
+  for (int i = 0; i < n; ++i) {
+    const double at = (2.0 * i + 1) / n - 1;
+    out[0].vertices.insert(out[0].vertices.end(),
+                           {Vec3(-1, at - width, 0), Vec3(1, at, 0), Vec3(-1, at + width, 0)});
+    out[1].vertices.insert(out[1].vertices.end(),
+                           {Vec3(at, -1, -width), Vec3(at, 1, 0), Vec3(at, -1, width)});
+    for (SuiteObject& object : out) object.add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
+  }
+  return out;
+}
+
+/// One triangle, and n times n small ones that cross it.
+Objects hub(RandomDraws& draws, double, int n) {
+  Objects out(2);
+  out[0].vertices = {Vec3(-8, -8, 0), Vec3(8, -8, 0), Vec3(0, 8, 0)};
+  out[0].add(0, 1, 2);
+  for (int i = 0; i < n * n; ++i) {
+    const Vec3 at(4.0 * (i % n) / n - 2, 4.0 * (i / n) / n - 6, -0.5 / n);
+    for (int k = 0; k < 3; ++k)
+      out[1].vertices.emplace_back(at + Vec3(k == 1, k == 2, k > 0 ? 1 : -draws.unit()) / n);
+    out[1].add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
+  }
+  return out;
+}
+
+/// A frame for each value of what moves.
+MeshFamily motion(const char* name, const char* description, const char* parameter,
+                  decltype(MeshFamily::make) make, const std::vector<double>& values) {
+  MeshFamily out{.name = name,
+                 .description = description,
+                 .parameter = parameter,
+                 .make = make,
+                 .members = {}};
+  for (const double value : values)
+    out.members.push_back({value, static_cast<int>(out.members.size())});
+  out.small = out.members.size();
+  out.motion = true;
+  return out;
+}
+
 /// A row of the table of families. small: the first member is in a small suite too.
 MeshFamily family(const char* name, const char* description, const char* parameter,
                   decltype(MeshFamily::make) make, bool self, bool small,
                   std::vector<MeshFamily::Member> members) {
-  return {name, description, parameter, self, make, std::move(members), small};
+  return {name, description, parameter, self, make, std::move(members), small ? 1u : 0u};
 }
 
 constexpr bool kSelf = true, kSmall = true;
@@ -336,50 +451,70 @@ constexpr bool kSelf = true, kSmall = true;
 }  // namespace
 
 const std::vector<MeshFamily>& mesh_families() {
-  static const std::vector<MeshFamily> families = {
-      family("accordion", "a sheet folded flat", "its layers", accordion, kSelf, kSmall,
-             {{4, 4}, {16, 6}}),
-      family("book", "triangles with one edge in common", "their number", book, kSelf, !kSmall,
-             {{40, 2}, {200, 3}}),
-      family("cloth", "a cloth in four layers", "the gap between layers, in cells", cloth, kSelf,
-             kSmall, {{1e-1, 12}, {1e-3, 48}, {1e-6, 48}, {1e-12, 32}}),
-      family("copies", "a surface and its copy", "units of 2^-52 by which the copy is moved",
-             copies, !kSelf, kSmall, {{0, 2}, {1, 3}, {1024, 3}}),
-      family("crumpled", "a sheet whose vertices are moved", "by how much at most, in cells",
-             crumpled, kSelf, kSmall, {{1, 20}, {2, 60}, {4, 30}}),
-      family("degenerate", "a sheet with segments and points among its triangles",
-             "one triangle in so many", degenerate, kSelf, kSmall, {{4, 20}, {2, 40}}),
-      family("fan", "triangles with one corner in common", "their heights above a plane", fan,
-             kSelf, kSmall, {{0.125, 200}, {1e-3, 500}, {1e-9, 500}}),
-      family("far-scans", "two scans far from the origin", "the distance, in their radii",
-             far_scans, !kSelf, kSmall, {{1e6, 3}, {1e10, 4}, {1e14, 4}}),
-      family("ground", "two large triangles and small ones on them", "the ratio of their sizes",
-             ground, !kSelf, !kSmall, {{1e6, 1000}, {1e12, 1000}}),
-      family("plates",
-             "plates of long thin triangles that lie on each other, and a bar through both",
-             "length over width of the triangles, about", plates, !kSelf, kSmall,
-             {{64, 0}, {0x1p16, 10}, {0x1p36, 30}}),
-      family("rope", "a rope in three windings", "from one winding to the next, in diameters", rope,
-             kSelf, kSmall, {{0.9375, 12}, {1 + 0x1p-10, 40}, {1.0625, 40}}),
-      family("scaled-scans", "tiny and huge scans", "the radius", scaled_scans, !kSelf, !kSmall,
-             {{1e-100, 3}, {1e100, 3}}),
-      family("scans", "two bumpy surfaces with noise", "depth to which they go into each other",
-             scans, !kSelf, kSmall, {{0.25, 3}, {0.25, 5}, {1e-3, 5}, {1e-9, 5}}),
-      family("sheets", "a sheet above another one, touching it here and there", "the gap, in cells",
-             sheets, !kSelf, !kSmall, {{0x1p-20, 40}, {0x1p-50, 40}}),
-      family("shells", "nested shells, of which the outermost crosses the one below it",
-             "the gap between two, in radii", shells, !kSelf, kSmall,
-             {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}}),
-      family("soup", "triangles that share no vertices",
-             "their size, in halves of the box around them", soup, kSelf, kSmall,
-             {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}}),
-  };
+  static const std::vector<MeshFamily> families = [] {
+    std::vector<MeshFamily> out = {
+        family("accordion", "a sheet folded flat", "its layers", accordion, kSelf, kSmall,
+               {{4, 4}, {16, 6}}),
+        family("book", "triangles with one edge in common", "their number", book, kSelf, !kSmall,
+               {{40, 2}, {200, 3}}),
+        family("cloth", "a cloth in four layers", "the gap between layers, in cells", cloth, kSelf,
+               kSmall, {{1e-1, 12}, {1e-3, 48}, {1e-6, 48}, {1e-12, 32}}),
+        family("copies", "a surface and its copy", "units of 2^-52 by which the copy is moved",
+               copies, !kSelf, kSmall, {{0, 2}, {1, 3}, {1024, 3}}),
+        family("crumpled", "a sheet whose vertices are moved", "by how much at most, in cells",
+               crumpled, kSelf, kSmall, {{1, 20}, {2, 60}, {4, 30}}),
+        family("degenerate", "a sheet with segments and points among its triangles",
+               "one triangle in so many", degenerate, kSelf, kSmall, {{4, 20}, {2, 40}}),
+        family("fan", "triangles with one corner in common", "their heights above a plane", fan,
+               kSelf, kSmall, {{0.125, 200}, {1e-3, 500}, {1e-9, 500}}),
+        family("far-scans", "two scans far from the origin", "the distance, in their radii",
+               far_scans, !kSelf, kSmall, {{1e6, 3}, {1e10, 4}, {1e14, 4}}),
+        family("ground", "two large triangles and small ones on them", "the ratio of their sizes",
+               ground, !kSelf, !kSmall, {{1e6, 1000}, {1e12, 1000}}),
+        family("plates",
+               "plates of long thin triangles that lie on each other, and a bar through both",
+               "length over width of the triangles, about", plates, !kSelf, kSmall,
+               {{64, 0}, {0x1p16, 10}, {0x1p36, 30}}),
+        family("rope", "a rope in three windings", "from one winding to the next, in diameters",
+               rope, kSelf, kSmall, {{0.9375, 12}, {1 + 0x1p-10, 40}, {1.0625, 40}}),
+        family("scaled-scans", "tiny and huge scans", "the radius", scaled_scans, !kSelf, !kSmall,
+               {{1e-100, 3}, {1e100, 3}}),
+        family("scans", "two bumpy surfaces with noise", "depth to which they go into each other",
+               scans, !kSelf, kSmall, {{0.25, 3}, {0.25, 5}, {1e-3, 5}, {1e-9, 5}}),
+        family("sheets", "a sheet above another one, touching it here and there",
+               "the gap, in cells", sheets, !kSelf, !kSmall, {{0x1p-20, 40}, {0x1p-50, 40}}),
+        family("shells", "nested shells, of which the outermost crosses the one below it",
+               "the gap between two, in radii", shells, !kSelf, kSmall,
+               {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}}),
+        family("soup", "triangles that share no vertices",
+               "their size, in halves of the box around them", soup, kSelf, kSmall,
+               {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}}),
+        motion("cogs", "two cogs whose teeth graze each other",
+               "32ths of a quarter turn by which both have turned", cogs,
+               {0, 1, 2, 3, 4, 5, 8, 12, 15, 16, 17, 20}),
+        motion("stack", "boxes that rest on each other", "by which the upper three are lifted",
+               stack, {0, 0, 0x1p-40, 0, 0, -0x1p-40, 0, 0x1p-10, 0, 0, 0, 0}),
+        motion("thread", "a thread that goes through a ring", "by which it is beside the axis",
+               thread, {0, 0.875, 0, 0.875, 0.5, 0.875 + 0x1p-30, 0, -0.875, 0, 0.875, 0.875, 0}),
+        motion("tunnel", "a thin plate that goes through a wall", "where the plate is", tunnel,
+               {-2, -1.5, -1, -0.5, -0x1p-4 - 0x1p-10, -0x1p-4 - 0x1p-10 + 0x1p-30, 0,
+                0x1p-4 - 0x1p-10, 0x1p-4, 0.5, 1, 2}),
+        family("bars", "long thin triangles that all cross each other", "the contacts", bars,
+               !kSelf, kSmall, {{66049, 257}, {1048576, 1024}}),
+        family("hub", "one triangle that many small ones cross", "the contacts", hub, !kSelf,
+               kSmall, {{4900, 70}, {70225, 265}}),
+    };
+    for (MeshFamily& reported : reported_meshes()) out.push_back(std::move(reported));
+    std::sort(out.begin(), out.end(),
+              [](const MeshFamily& x, const MeshFamily& y) { return x.name < y.name; });
+    return out;
+  }();
   return families;
 }
 
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index) {
-  RandomDraws draws(seed_of_item(seed, "mesh " + family.name, index));
+  RandomDraws draws(seed_of_item(seed, "mesh " + family.name, family.motion ? 0 : index));
   const MeshFamily::Member& member = family.members.at(index);
   std::vector<SuiteObject> out = family.make(draws, member.parameter, member.detail);
   if (family.self) {

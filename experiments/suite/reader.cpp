@@ -178,8 +178,12 @@ void read_properties(const std::string& path, SuiteMesh& mesh) {
   if (!number) lines.fail(quote_token(parameter) + " is no number", kFormat);
   mesh.parameter = *number;
   mesh.family = lines.word_after("family", kFormat);
-  std::string_view line;
-  if (lines.next(line)) lines.fail("there are more lines than three", kFormat);
+  for (std::string_view line; lines.next(line);) {
+    if (!line.starts_with("# "))
+      lines.fail("after three lines there is one that is no comment", kFormat);
+    if (!mesh.note.empty()) mesh.note += '\n';
+    mesh.note += line.substr(2);
+  }
 }
 
 /// 0.obj, 1.obj and so on.

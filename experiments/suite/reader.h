@@ -79,9 +79,10 @@ struct SuiteMesh {
   std::string name;  // of the folder
   std::string family;
   double parameter = 0;
-  bool self = false;     // every object is tested against itself too
-  Scene scene;           // objects "0", "1", ... in order; each is `self` where the mesh is
-  bool labelled = true;  // false: there is no pairs.csv, and `pairs` is empty
+  bool self = false;      // every object is tested against itself too
+  std::string note = {};  // the comments of mesh.txt, without "# ", with newlines between them
+  Scene scene;            // objects "0", "1", ... in order; each is `self` where the mesh is
+  bool labelled = true;   // false: there is no pairs.csv, and `pairs` is empty
   std::vector<SuiteMeshPair> pairs;  // all that collide, ascending, each once
 };
 

@@ -123,6 +123,7 @@ def calls_table(rows):
 
 
 def families_table(rows):
+    rows = rows.assign(family=rows.family.str.replace(r"^(meshes/.*)-\d+$", r"\1", regex=True))
     families = list(rows.family.unique())
 
     def cell(of):
