@@ -19,7 +19,7 @@ case ${1-} in
   --built) build=$2 scenes=20 mutants=no ;;
   --long) scenes=10000 gappa=yes ;;
 esac
-if [[ $build == build ]]; then
+if [[ ${1-} != --built ]]; then
   farcull_packages+=(coq ocaml-nox ocaml-findlib libzarith-ocaml-dev python3)
   if [[ $gappa == yes ]]; then farcull_packages+=(gappa libcoq-gappa); fi
   farcull_setup

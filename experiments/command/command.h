@@ -357,8 +357,8 @@ class PictureCommand {
   RunOptions usual_options() const;
 
   std::vector<std::string> scene_;
-  Text ignore_, method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
-      up_, size_, output_, html_, resolutions_;
+  Text ignore_, method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_,
+      view_, up_, size_, output_, html_, resolutions_;
   BareOption depth_view_;
   bool self_ = false, zoom_ = false;
 };

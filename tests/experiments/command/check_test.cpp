@@ -327,8 +327,7 @@ TEST_F(Check, SaysWhatWasNotAsked) {
   EXPECT_EQ(unasked["objects"], scene.objects.size());
   EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
   EXPECT_GT(certificate.not_asked.pairs, 0u);
-  EXPECT_TRUE(
-      has_text(check({written(), {"random-soup"}}).text, "\nuntested   "));
+  EXPECT_TRUE(has_text(check({written(), {"random-soup"}}).text, "\nuntested   "));
 }
 
 TEST_F(Check, AnotherSceneIsStatus1) {

@@ -109,7 +109,7 @@ TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
     const auto forecast = [&](double sharpness) {
       const Plan planned = plan(drawn, options);
       return predict_misses(drawn, std::get<DrawPlan>(planned.work), options, lab.truth().pairs,
-                             sharpness)
+                            sharpness)
           ->missed;
     };
     EXPECT_GT(factor_between(forecast(1), mean), 1.25) << describe(point);

@@ -218,13 +218,13 @@ Lists pairs_by(Collider& collider, const Scene& scene) {
   std::vector<std::uint32_t> triangles, starts;
   for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const ColliderResult result =
+  const Result result =
       collider.find({.vertices = {scene.vertices.front().data(), 3 * scene.vertices.size()},
                      .triangles = triangles,
                      .object_starts = starts});
   Lists out;
   for (const auto* some : {&result.pairs, &result.neighbour_pairs}) {
-    for (const ColliderPair& pair : *some) out.push_back({pair.a, pair.b});
+    for (const Pair& pair : *some) out.push_back({pair.a, pair.b});
   }
   std::ranges::sort(out);
   return out;
