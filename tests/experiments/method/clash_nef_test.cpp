@@ -6,6 +6,7 @@
 #include <CGAL/Polyhedron_3.h>
 #include <CGAL/boost/graph/graph_traits_Polyhedron_3.h>
 
+#include <Eigen/Geometry>
 #include <numeric>
 
 #include "tests/lab/assembly.h"
