@@ -340,7 +340,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
        {"--pairs", &pairs_, "FILE",
         "a list of pairs as farcull run --pairs writes it:\n"
         "is it right and complete? Columns are found by their\n"
-        "names; rows may be in any order"},
+        "names; rows may be in any order. With --tiles: the\n"
+        "merged list, which must be equal byte for byte"},
        {"--clearance", &clearance_, "D",
         "the list is of pairs at this distance or less, in\n"
         "world units; default 0, or that of the certificate"},
@@ -405,7 +406,9 @@ int CheckCommand::run() {
   }
   require_number(to.certificate, to.frames || to.tiles);
   if (to.verified && (to.certificate.empty() || to.frames || (pairs_ && !tiles_) || clearance_)) {
-    throw Error("--verified", "is for one certificate, without --frames, --pairs and --clearance",
+    throw Error("--verified",
+                "is for certificates of one scene, without --frames and --clearance, and with "
+                "--pairs only beside --tiles",
                 "leave it out, or check each frame by its own certificate");
   }
   std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/command/command.h"
+#include "experiments/method/asked.h"
 #include "experiments/method/clash.h"
 #include "experiments/picture/clash_page.h"
 #include "experiments/record/clash.h"
@@ -33,7 +34,8 @@ constexpr const char* kExamples =
     "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
     "             proved that they touch only\n"
     "  contained  one part, or a piece of it, is inside the other\n"
-    "  unknown    would be contained, but the outer part is not closed\n"
+    "  unknown    would be contained, but the outer part is not closed, or its faces do not "
+    "all\nface outward\n"
     "  touch      they meet, and it is proved that they do not overlap\n"
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
@@ -148,14 +150,14 @@ int ClashCommand::run() const {
   options.ignored = ignored_objects(scene, ignored());
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
   options.ignored = in_order(std::move(options.ignored));
-  require_asked(scene, options.ignored);
+  require_asked(scene, options.ignored, "SCENE", "");
   scene.ignored.clear();
   if (outputs.page) require_clash_page(scene);
   const ClashRecord record = clashes(scene, options, progress);
   terminal.clear();
   const std::string unit = unit_.value_or("");
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));
-  if (outputs.json) write_json(clash_json(scene, record, unit), *outputs.json);
+  if (outputs.json) write_json(clash_json(scene, record, unit, touches), *outputs.json);
   if (outputs.page) write_output(*outputs.page, clash_page(scene, record, unit));
   if (!outputs.to_stdout())
     write_output("-", clash_text(scene, record, {.touches = touches, .unit = unit}));

@@ -22,6 +22,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/method/asked.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
@@ -281,13 +282,7 @@ void require_pairs(const NothingToTest& nothing, const std::string& command) {
 }
 
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored) {
-  std::vector<ObjectPair> all = ignored;
-  all.insert(all.end(), scene.ignored.begin(), scene.ignored.end());
-  const std::uint64_t count = scene.objects.size(), pairs = count * (count - 1) / 2;
-  if (count < 2 || has_self(scene) || in_order(std::move(all)).size() < pairs) return;
-  throw Error("SCENE",
-              "nothing to test: all " + counted(pairs, "pair", "pairs") + " of objects are ignored",
-              "ignore fewer pairs, or test objects against themselves with --self");
+  require_asked(scene, ignored, "SCENE", "test objects against themselves with --self");
 }
 
 Progress TerminalProgress::callback() {

@@ -25,6 +25,7 @@ class EigenInput {
   EigenInput(const Eigen::MatrixBase<Vertices>& V, const Eigen::MatrixBase<Triangles>& F,
              std::vector<std::uint32_t> object_starts = {}, std::vector<Pose> poses = {})
       : starts_(std::move(object_starts)), poses_(std::move(poses)) {
+    static_assert(std::is_integral_v<typename Triangles::Scalar>, "triangles are whole numbers");
     if (V.cols() != 3 || F.cols() != 3) {
       throw Error(V.cols() != 3 ? "vertices" : "triangles",
                   "have " + std::to_string(V.cols() != 3 ? V.cols() : F.cols()) + " columns",

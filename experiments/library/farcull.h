@@ -246,7 +246,8 @@ struct StreamedPair {
 class Stream {
  public:
   /// Copies the input. Throws Error as Collider::find(), and for device gl, which a stream does not
-  /// use. Ignores the options may_go_on and advanced.
+  /// use. Ignores the options of `advanced`; may_go_on is an error, since a loop
+  /// can be left.
   explicit Stream(const Input& input, const Options& options = {});
   ~Stream();
   Stream(Stream&&) noexcept;

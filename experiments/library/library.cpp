@@ -14,6 +14,7 @@
 #include "core/view/view.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
+#include "experiments/method/asked.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 
@@ -121,6 +122,7 @@ Result Collider::State::find(const Stopwatch& start, const FloatingPoint& caller
                              const Progress& progress) {
   device();
   run.ignored = ignored_of(options, taken.scene.objects.size());
+  require_asked(taken.scene, run.ignored, "ignore", "test objects against themselves (self)");
   const Record record = farcull::run(
       taken.scene, run, session, progress,
       {.answer_only = true, .change = &change, .decide_neighbours = options.neighbours});
@@ -198,11 +200,14 @@ struct Stream::State {
     check(options);
     if (options.device == Device::gl)
       throw Error("device", "gl is not used by a stream", "give cpu or best");
+    if (options.may_go_on)
+      throw Error("may_go_on", "is not asked by a stream", "leave the loop to end it");
     TakenInput taken;
     take(input, options.self, options.self_objects, taken);
     scene = std::move(taken.scene);
-    candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()), true,
-                       threads);
+    const std::vector<ObjectPair> ignored = ignored_of(options, scene.objects.size());
+    require_asked(scene, ignored, "ignore", "test objects against themselves (self)");
+    candidates.emplace(scene, options.clearance, ignored, true, threads);
   }
 
   bool next(std::vector<StreamedPair>& pairs);

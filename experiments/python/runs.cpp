@@ -16,6 +16,7 @@
 #include "core/scene/scene.h"
 #include "experiments/library/input.h"
 #include "experiments/measure/harness.h"
+#include "experiments/method/asked.h"
 #include "experiments/method/clash.h"
 #include "experiments/picture/clash_page.h"
 #include "experiments/picture/picture.h"
@@ -212,6 +213,7 @@ KeptRecord run_of(const KeptScene& kept, const GivenOptions& given, bool verify,
   return answer_beside([&] {
     const RunOptions options = options_of(given, ignore, limit, verify, kinds);
     require_pairs(*kept.scene);
+    require_asked(*kept.scene, options.ignored, "ignore", "make the scene with self=True");
     Session session(options.device, threads, Say());
     return KeptRecord{kept.scene, run(*kept.scene, options, session, stopping_progress())};
   });
@@ -249,6 +251,7 @@ py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned thr
   const auto [json, table] = answer_beside([&] {
     const RunOptions options = options_of(given, ignore, limit);
     require_pairs(*kept.scene);
+    require_asked(*kept.scene, options.ignored, "ignore", "make the scene with self=True");
     const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
     const MissesOfPlan misses = misses_of(*kept.scene, planned);
     return std::pair(plan_json(*kept.scene, planned, misses.predicted).dump(),
@@ -351,6 +354,7 @@ KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignor
     ClashOptions options{.clearance = clearance, .ignored = scene->ignored, .threads = threads};
     for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
     options.ignored = in_order(std::move(options.ignored));
+    require_asked(*scene, options.ignored, "ignore", "");
     scene->ignored.clear();
     ClashRecord record = clashes(*scene, options, stopping_progress());
     return KeptClash{std::move(scene), std::move(record)};

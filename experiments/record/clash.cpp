@@ -125,9 +125,10 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
   }
 }
 
-bool is_clean(const ClashRecord& record) {
+bool is_clean(const ClashRecord& record, bool touches) {
   return record.examined == record.asked && record.count(ClashVerdict::clash) == 0 &&
-         record.count(ClashVerdict::contained) == 0 && record.count(ClashVerdict::unknown) == 0;
+         record.count(ClashVerdict::contained) == 0 && record.count(ClashVerdict::unknown) == 0 &&
+         !(touches && record.count(ClashVerdict::touch) > 0);
 }
 
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
@@ -136,9 +137,7 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
                   counted(scene.triangles.size(), "triangle", "triangles"));
   out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
                      counted(record.asked, "pair", "pairs"),
-                     is_clean(record) && !(table.touches && record.count(ClashVerdict::touch) > 0)
-                         ? ": clean"
-                         : "");
+                     is_clean(record, table.touches) ? ": clean" : "");
   out += "verdicts   " + counts_text(record) + "\n";
   if (record.ignored > 0) {
     out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),
@@ -173,7 +172,8 @@ std::string clash_csv(const Scene& scene, const ClashRecord& record) {
   return out;
 }
 
-Json clash_json(const Scene& scene, const ClashRecord& record, const std::string& unit) {
+Json clash_json(const Scene& scene, const ClashRecord& record, const std::string& unit,
+                bool touches) {
   Json verdicts = Json::object();
   for (const ClashVerdict verdict : kClashVerdicts)
     verdicts[to_string(verdict)] = record.count(verdict);
@@ -184,7 +184,7 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const std::string
           {"clearance", record.options.clearance},
           {"asked", record.asked},
           {"examined", record.examined},
-          {"clean", is_clean(record)},
+          {"clean", is_clean(record, touches)},
           {"verdicts", verdicts},
           {"ignored", record.ignored},
           {"ignored_meet", record.ignored_meet},

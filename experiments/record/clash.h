@@ -21,13 +21,13 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
 /// Whether no pair is a clash, contained or unknown, and every pair that was asked for was
-/// examined.
-bool is_clean(const ClashRecord& record);
+/// examined; with `touches` no pair touches either.
+bool is_clean(const ClashRecord& record, bool touches = false);
 
 /// A row for each pair that is not clear; numbers with all digits.
 std::string clash_csv(const Scene& scene, const ClashRecord& record);
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
-                                  const std::string& unit);
+                                  const std::string& unit, bool touches = false);
 
 }  // namespace farcull

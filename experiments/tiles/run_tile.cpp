@@ -63,7 +63,7 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The number of cuts at or before the place, or less than `reach` after it, as meets() rounds. With
+// The number of cuts at or before the place, or at most `reach` after it, as meets() rounds. With
 // no reach this is the tile in which the place lies.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =

@@ -30,7 +30,7 @@ class Clash:
 
     @property
     def rows(self) -> List[Dict[str, Any]]:
-        """The pairs of objects that are not clear, the most serious first: ``a``, ``b``, ``name_a``,
+        """The pairs of objects that are not clear, the most serious first: ``object_a``, ``object_b``, ``name_a``,
         ``name_b``, ``verdict`` and the other keys of docs/clash.md."""
         return self._json["pairs"]
 
@@ -44,7 +44,7 @@ class Clash:
         return self._json
 
     def to_pandas(self) -> Any:
-        """A DataFrame of ``rows``, with a column such as ``depth.at_least`` for each key of an entry."""
+        """A DataFrame of ``rows``, with a column such as ``depth.least`` for each key of an entry."""
         return pandas().json_normalize(self.rows)
 
     def __str__(self) -> str:

@@ -418,7 +418,12 @@ TEST(LibraryStream, RefusesWhatTheColliderRefuses) {
   EXPECT_EQ(refused({.clearance = -1}, {}), "clearance");
   const std::vector<std::uint32_t> two = {0, 0, 0, 0, 0, 0}, starts = {0, 1};
   EXPECT_EQ(refused({.ignore = {{0, 2}}}, {points, two, starts}), "ignore");
-  EXPECT_EQ(refused({.ignore = {{0, 1}}}, {points, two, starts}), "nothing was thrown");
+  // All pairs of objects are ignored, so 0 pairs would say nothing; with `self` there is a
+  // question.
+  EXPECT_EQ(refused({.ignore = {{0, 1}}}, {points, two, starts}), "ignore");
+  EXPECT_EQ(refused({.self = true, .ignore = {{0, 1}}}, {points, two, starts}),
+            "nothing was thrown");
+  EXPECT_EQ(refusal([&] { collide({points, two, starts}, {.ignore = {{1, 0}}}); })[0], "ignore");
 }
 
 // ---- Distances as users of the library see them, held against those of the method.

@@ -291,7 +291,7 @@ def test_arrays_come_through_dlpack():
     starts, labels, ignore = np.array([0, 1]), np.array([1, 0]), np.array([[0, 1]])
     assert farcull.collide(Tensor(V), Tensor(F), Tensor(starts)).pairs.tolist() == [[0, 1]]
     assert farcull.collide(Tensor(V), Tensor(F), labels=Tensor(labels)).pairs.tolist() == [[0, 1]]
-    assert not len(farcull.collide(Tensor(V), Tensor(F), starts, ignore=Tensor(ignore)).pairs)
+    assert error_of(farcull.collide, Tensor(V), Tensor(F), starts, ignore=Tensor(ignore)).where == "ignore"
     error = error_of(farcull.collide, Tensor(V, 2), F, starts)
     assert isinstance(error, farcull.InputError) and error.where == "V" and "device" in error.reason
     assert refused(farcull.collide, V, Tensor(F, 2), starts) == "F"
