@@ -415,13 +415,15 @@ std::string accounting_sum(const Accounting& v) {
 
 std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict) {
   const bool self = has_self(scene);
+  const std::uint64_t missed = record.verification ? record.verification->false_negatives : 0;
   std::string out = fmt::format(
-      "colliding  {}{}\n",
+      "colliding  {}{}{}\n",
       colliding_text(record.collisions.pairs.size(), record.collisions.neighbour_pairs.size(),
                      self),
       self ? "; " + counted(record.collisions.neighbours, "candidate is", "candidates are") +
                  " of neighbours"
-           : "");
+           : "",
+      missed > 0 ? " found; " + grouped(missed) + " missed" : "");
   out += contacts_line(record) + limit_line(record) + ignored_line(record);
   const std::string time = fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}{}\n", record.ms.total,
