@@ -125,6 +125,7 @@ int write_check(const CheckArguments& arguments, const Scene& scene, const Check
 Scene checked_scene(const CheckArguments& arguments) {
   Scene scene = read_scene(arguments.scene);
   if (arguments.self) make_self(scene);
+  require_asked(scene, {});
   return scene;
 }
 
@@ -272,6 +273,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       rows = {found.begin(), found.end()};
     }
     const Scene& scene = source.at(frame);
+    if (frame == range.first) require_asked(scene, {});
     if (!clearance) clearance = clearance_of(arguments, certificate);
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);

@@ -14,6 +14,7 @@
 #include "experiments/command/command.h"
 #include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
+#include "experiments/method/asked.h"
 #include "experiments/method/misses.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -24,6 +25,11 @@
 
 namespace farcull {
 namespace {
+
+void require_asked(const Census& census, const std::vector<ObjectPair>& ignored) {
+  farcull::require_asked(census.objects, census.self_objects > 0, ignored.size(), "SCENE",
+                         "test objects against themselves with --self");
+}
 
 std::vector<ContactKind> parse_kinds(const std::string& list) {
   std::vector<ContactKind> out;
@@ -371,8 +377,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   if (leaves_out()) {
     question.ignored = [this, lacking = Lacking::refused](const Scene& scene) mutable {
       std::vector<ObjectPair> out = left_out(scene, lacking);
-      if (std::exchange(lacking, Lacking::passed_over) == Lacking::refused)
-        require_asked(scene, out);
+      lacking = Lacking::passed_over;
       return out;
     };
   }
@@ -450,6 +455,7 @@ int RunCommand::run_tile(const RunOptions& options) const {
   const TileRun tile = farcull::run_tile(source(), question, session, progress);
   terminal.clear();
   require_pairs(nothing_to_test(tile.census), with_self());
+  require_asked(tile.census, tile.ignored);
   if (outputs.certificate) {
     Scene ignoring;
     ignoring.name = tile.census.name;
@@ -483,7 +489,12 @@ int RunCommand::plan_tiles(const RunOptions& options) const {
   TerminalProgress terminal;
   if (const Progress progress = terminal.callback()) progress("reading the scene");
   const Census census = take_census(source(), options.clearance, leaves_out());
-  if (leaves_out()) left_out(names_of(census));  // throws if a name matches no object
+  std::vector<ObjectPair> ignored = census.ignored;
+  if (leaves_out()) {
+    const std::vector<ObjectPair> more = left_out(names_of(census));
+    ignored.insert(ignored.end(), more.begin(), more.end());
+  }
+  require_asked(census, in_order(std::move(ignored)));
   const Cuts cuts = choose_cuts(census, tiles);
   const std::vector<TileCount> counts = count_tiles(source(), census, cuts);
   terminal.clear();

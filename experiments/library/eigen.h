@@ -1,12 +1,15 @@
 // Matrices of Eigen as input of the library: vertices in the rows of V (n x 3), triangles in those
-// of F (m x 3), of any type of numbers and in any storage order. Needs Eigen 3; link Eigen3::Eigen.
+// of F (m x 3), V of numbers that a double holds, F of whole numbers, in any storage order. Needs
+// Eigen 3; link Eigen3::Eigen.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,6 +29,8 @@ class EigenInput {
              std::vector<std::uint32_t> object_starts = {}, std::vector<Pose> poses = {})
       : starts_(std::move(object_starts)), poses_(std::move(poses)) {
     static_assert(std::is_integral_v<typename Triangles::Scalar>, "triangles are whole numbers");
+    static_assert(std::numeric_limits<typename Vertices::Scalar>::digits <= 53,
+                  "vertices are numbers that a double holds");
     if (V.cols() != 3 || F.cols() != 3) {
       throw Error(V.cols() != 3 ? "vertices" : "triangles",
                   "have " + std::to_string(V.cols() != 3 ? V.cols() : F.cols()) + " columns",

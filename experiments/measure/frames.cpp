@@ -11,6 +11,7 @@
 
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
+#include "experiments/method/asked.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -301,6 +302,8 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     const double read_ms = reading.ms();
     RunOptions options = question.options;
     if (question.ignored) options.ignored = question.ignored(scene);
+    if (frame == question.range.first)
+      require_asked(scene, options.ignored, "SCENE", "test objects against themselves with --self");
     const Record record = run(scene, options, session, named);
     totals.add(record, source.topology_changed());
     if (record.verification) {

@@ -2,6 +2,7 @@
 // pairs would be taken for a scene without collisions.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,13 @@
 
 namespace farcull {
 
-/// Throws Error about the argument `where` if every pair of objects is ignored, by `ignored` or by
-/// the scene itself, and no object is tested against itself. The remedy is to ignore fewer pairs,
-/// or what `otherwise` says.
+/// Throws Error about the argument `where` if so many different pairs of objects are ignored that
+/// none is left, and no object is tested against itself. The remedy is to ignore fewer pairs, or
+/// what `otherwise` says.
+void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
+                   const std::string& where, const std::string& otherwise);
+
+/// The same of a scene: the pairs that it ignores itself count as well.
 void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
                    const std::string& otherwise);
 

@@ -210,6 +210,8 @@ Slab read_tile(const Reader& reader, const Json& value) {
   };
   place("from", tile.from);
   place("to", tile.to);
+  // Tiles that run backwards could follow each other and cover places twice.
+  if (!(tile.from <= tile.to)) reader.fail("tile.to is less than tile.from");
   return tile;
 }
 

@@ -104,7 +104,9 @@ class Grouped:
         if self.labels is None or given is None or np.size(given) == 0:
             return given
         rows = np.asarray(given)
-        if rows.ndim != 2 or rows.shape[1] != 2 or not np.isin(rows, self.labels).all():
+        # numpy would compare numbers with text as text, and then search in another order.
+        same = (rows.dtype.kind == "U") == (self.labels.dtype.kind == "U")
+        if rows.ndim != 2 or rows.shape[1] != 2 or not same or not np.isin(rows, self.labels).all():
             raise InputError(
                 "ignore", "are no rows of two labels that triangles have", "give labels, as in [(3, 7)]"
             )

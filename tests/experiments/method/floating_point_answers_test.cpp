@@ -147,9 +147,10 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
       EXPECT_EQ(json["used"]["rounding"], "to nearest");
       EXPECT_EQ(json["used"]["flushes_results"], false);
       EXPECT_EQ(json["used"]["flushes_operands"], false);
-      EXPECT_TRUE(has_text(run_table(sample.scene, record),
-                           "arithmetic rounds to nearest, keeps subnormals; the caller " +
-                               to_string(environment.found)));
+      const std::string table =  // a line that is too long goes on in the next one
+          std::regex_replace(run_table(sample.scene, record), std::regex("\n {11}"), " ");
+      EXPECT_TRUE(has_text(table, "arithmetic rounds to nearest, keeps subnormals; the caller " +
+                                      to_string(environment.found)));
     }
   });
 }

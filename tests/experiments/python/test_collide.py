@@ -214,7 +214,9 @@ def test_labels_group_triangles_in_any_order():
         assert error_of(farcull.collide, V, F, labels=wrong).where in ("labels", "object_starts")
     assert error_of(farcull.collide, V, F, starts, labels=labels).where == "labels"
     assert error_of(farcull.collide, V, F, labels=labels, limit=3).where == "limit"
-    assert error_of(farcull.collide, V, F, labels=labels, ignore=[(3, 8)]).where == "ignore"
+    for wrong in ([(3, 8)], [("3", "7")], [(3.0, "7")]):
+        assert error_of(farcull.collide, V, F, labels=labels, ignore=wrong).where == "ignore"
+    assert error_of(farcull.collide, V, F, labels=labels.astype(str), ignore=[(3, 7)]).where == "ignore"
 
 
 def test_a_vertex_that_no_triangle_uses_may_be_no_number():

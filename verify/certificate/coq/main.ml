@@ -316,7 +316,8 @@ let check_distance_file scene text =
     | Bad_pair r -> not_proved ("a pair is nearer than its objects are said to be: " ^ pair r)
     | Missing_objects -> not_proved "two objects are not there"
     | Distances_proved ->
-      say "proved: these %d squares of distances are right, and no two objects are left out" (List.length entries);
+      say "proved: these %d squares of distances are right, and no two objects%s are left out" (List.length entries)
+        (if within = None then "" else " within the limit");
       say "features, the order of the answers and what is inside are not looked at";
       Ok ()
 
@@ -337,9 +338,13 @@ let check_tiles scene certificates =
     | Some rows ->
       let key r = [ r.object_a; r.triangle_a; r.object_b; r.triangle_b ] in
       let rows = List.sort (fun r s -> List.compare Z.compare (key r) (key s)) rows in
-      say "proved: the list with the hash %s is right and complete, %d pairs of %d tiles"
-        (hash_of has_self rows) (List.length rows) (List.length proved);
-      Ok ()
+      let rec twice = function r :: (s :: _ as rest) -> key r = key s || twice rest | _ -> false in
+      if twice rows then not_proved "two tiles have the same pair"
+      else begin
+        say "proved: the list with the hash %s is right and complete, %d pairs of %d tiles"
+          (hash_of has_self rows) (List.length rows) (List.length proved);
+        Ok ()
+      end
 
 let usage = "usage: farcull-check-verified CERTIFICATE SCENE [CERTIFICATE SCENE]...\n\
              or: farcull-check-verified --tiles CERTIFICATE... SCENE"
