@@ -101,7 +101,8 @@ ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 
 /// The corners of the common polygon in turn, each coordinate rounded once to the nearest double;
 /// empty unless the points in common have dimension 2. The lexicographically lowest corner comes
-/// first, and its lower neighbour second. Symmetric; the order of corners does not matter.
+/// first, and its lower neighbour second; that is the order of the exact corners, of which some may
+/// be rounded to the same doubles. Symmetric; the order of corners does not matter.
 std::vector<Vec3> contact_polygon(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.

@@ -262,7 +262,7 @@ Triangle on_grid(RandomDraws& random, int planes, double step) {
 TEST(ContactKind, BySignsAsByClipping) {
   RandomDraws random(604);
   std::array<int, kContactKinds.size()> of_kind{};
-  int wrong = 0, noticed = 0;
+  int wrong = 0, noticed = 0, by_signs = 0;
   for (int n = 0; n < 6000; ++n) {
     const double step = n % 2 == 0 ? 0.1 : 0.125;
     Triangle a = on_grid(random, 1 + n % 3, step), b = on_grid(random, 1 + n % 3, step);
@@ -273,12 +273,14 @@ TEST(ContactKind, BySignsAsByClipping) {
     const ContactKind kind = contact_shape(a, b).kind;
     ++of_kind[static_cast<std::size_t>(kind)];
     wrong += contact_kind(a, b) != kind;
+    by_signs += kind_by_signs(a, b).has_value();
     // The twin: a corner that is moved by one unit in the last place is noticed.
     b[0].y() = std::nextafter(b[0].y(), 1);
     noticed += contact_kind(a, b) != kind;
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(noticed, 100);
+  EXPECT_GT(by_signs, 3000);  // the others go to contact_shape(), as degenerate triangles do
   for (const int count : of_kind) EXPECT_GT(count, 20);
 }
 

@@ -12,6 +12,8 @@ from ._errors import InputError
 
 def read(name: str, given: Any, remedy: str) -> np.ndarray:
     """The argument as numpy reads it; through DLPack where it offers nothing else."""
+    if isinstance(given, np.ma.MaskedArray):
+        raise InputError(name, "are a masked array", "give an array without a mask")
     if isinstance(given, np.ndarray):
         return np.asarray(given)
     try:
@@ -29,8 +31,6 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
 
 def array(name: str, given: Any) -> np.ndarray:
     """The argument as an array, without a copy if it is one. An empty list becomes (0, 3)."""
-    if isinstance(given, np.ma.MaskedArray):
-        raise InputError(name, "are a masked array", "give an array without a mask")
     out = read(name, given, "give rows of three numbers")
     if not out.dtype.isnative:
         out = out.astype(out.dtype.newbyteorder("="))

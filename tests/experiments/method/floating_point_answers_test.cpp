@@ -1,6 +1,7 @@
 // Answers in every floating-point environment that a caller may have, from all that decides,
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "core/pairs/backend.h"
 #include "experiments/lemma/lemma.h"

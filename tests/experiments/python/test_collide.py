@@ -210,7 +210,7 @@ def test_labels_group_triangles_in_any_order():
         assert error_of(farcull.collide, V, F[order], labels=names[order], ignore=ignore).where == "ignore"
     # The same labels as starts were 12 pairs before, without an error.
     assert error_of(farcull.collide, V, F, np.repeat([0, 1], count // 2)).where == "object_starts"
-    for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None):
+    for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None, np.ma.array(labels)):
         assert error_of(farcull.collide, V, F, labels=wrong).where in ("labels", "object_starts")
     assert error_of(farcull.collide, V, F, starts, labels=labels).where == "labels"
     assert error_of(farcull.collide, V, F, labels=labels, limit=3).where == "limit"
