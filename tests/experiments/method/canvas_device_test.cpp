@@ -9,6 +9,7 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/store.h"
 #include "tests/lab/test.h"
+#include "tests/lab/unwrapped.h"
 
 namespace farcull {
 namespace {
@@ -79,7 +80,7 @@ TEST(CanvasDevice, QueryModesAndDepthFormatsWorkOnTheNativeCanvasAndAreSaid) {
                                                       {"depth_bits", bits24 ? 24 : 32}}));
     EXPECT_EQ(json["query"], nullptr);
     EXPECT_EQ(json["depth_format"], bits24 ? "24" : "32f");
-    const std::string table = run_table(scene, record);
+    const std::string table = lab::unwrapped(run_table(scene, record));
     EXPECT_TRUE(has_text(table, "lanes of " + lane_target()));
     EXPECT_FALSE(has_text(table, "occlusion queries"));
   }

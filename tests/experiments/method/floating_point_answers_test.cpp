@@ -1,7 +1,6 @@
 // Answers in every floating-point environment that a caller may have, from all that decides,
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "core/pairs/backend.h"
 #include "experiments/lemma/lemma.h"
@@ -10,6 +9,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "tests/lab/floating_point.h"
+#include "tests/lab/unwrapped.h"
 #include "verify/certificate/certificate.h"
 #include "verify/exact.h"
 
@@ -148,8 +148,7 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
       EXPECT_EQ(json["used"]["rounding"], "to nearest");
       EXPECT_EQ(json["used"]["flushes_results"], false);
       EXPECT_EQ(json["used"]["flushes_operands"], false);
-      const std::string table =  // a line that is too long goes on in the next one
-          std::regex_replace(run_table(sample.scene, record), std::regex("\n {11}"), " ");
+      const std::string table = lab::unwrapped(run_table(sample.scene, record));
       EXPECT_TRUE(has_text(table, "arithmetic rounds to nearest, keeps subnormals; the caller " +
                                       to_string(environment.found)));
     }

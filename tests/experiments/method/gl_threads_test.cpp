@@ -10,6 +10,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"
+#include "tests/lab/unwrapped.h"
 
 namespace farcull {
 namespace {
@@ -63,7 +64,7 @@ TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
     EXPECT_EQ(record.promise.holds, asked == 0) << record.promise.reason;
     EXPECT_EQ(record.promise.reason.find("A10 threads") == std::string::npos, asked == 0);
     EXPECT_EQ(to_json(scene, record)["device"]["threads"], asked);
-    const std::string table = run_table(scene, record);
+    const std::string table = lab::unwrapped(run_table(scene, record));
     EXPECT_EQ(table.find(words) == std::string::npos, asked == 0) << table;
     const std::string line = certificate_of(scene, record).run.assumptions.back();
     EXPECT_TRUE(line.starts_with("A10") &&
