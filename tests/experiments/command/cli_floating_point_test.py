@@ -26,11 +26,11 @@ for environment in environments:
     callers = {'none': 'rounds to nearest, keeps subnormals',
                'flush': 'rounds to nearest, flushes subnormal results and operands to zero'
                }.get(environment, f'rounds {environment}, keeps subnormals')
-    usual = environment == 'none'
+    usual, unspaced = environment == 'none', callers.replace(' ', '')  # an answer is wrapped at 80 columns
     values = {
         'env': f"LD_PRELOAD={others[0]} 'FARCULL_DISTURB={environment}'", 'environment': environment, 'callers': callers,
-        'says': '! arithmetic' if usual else f'^arithmetic rounds to nearest, keeps subnormals; the caller {callers}$',
-        'frames': '! ^arithmetic' if usual else f'^arithmetic .*; the caller {callers}$',
+        'says': '! arithmetic' if usual else f'~ arithmeticroundstonearest,keepssubnormals;thecaller{unspaced}',
+        'frames': '! ^arithmetic' if usual else f'~ arithmetic.*;thecaller{unspaced}',
         'host': 'the same' if usual else callers + r' \(set aside\)'}
     for scene, pairs in ('tiny', 1), ('huge', 1), ('subnormal', 0):
         # A certificate that is right, and one that says the contrary of it (Zg==: kept, meets).
