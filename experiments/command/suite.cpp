@@ -95,7 +95,7 @@ int SuiteCommand::run() const {
   }
   if (ask_ && check_) throw Error("--ask", "--check is another question", "give one of them");
   if (ask_) {
-    become_python({"-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
+    become_python({"-I", "-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
                   "install Python 3.8 or later");
   }
   const SuiteSettings settings = settings_of(size_, seed_);

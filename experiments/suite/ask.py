@@ -23,7 +23,10 @@ import time
 from fractions import Fraction
 
 KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
-AHEAD = 32  # questions that are sent before their answers; so few fit into a pipe, and writing never waits
+QUICK = ('pair', 'distance')  # kinds without a path
+AHEAD = 32  # quick questions that are sent before their answers; so few fit into a pipe, and writing never waits
+LONGEST = 1 << 16  # bytes of a line
+MOST = 1 << 28  # bytes of an answer; one without an end would take all memory
 AGAIN = 16  # every so many questions one is asked again
 OFF = 1e-6  # relative errors of distances and of points above this are counted
 
@@ -46,12 +49,15 @@ class Child:
         posix = os.name == 'posix'
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
                                         start_new_session=posix, preexec_fn=limit if posix else None)
-        self.lines = queue.Queue()
+        self.lines = queue.Queue(1 << 18)
         threading.Thread(target=self.read, daemon=True).start()
 
     def read(self):
-        for line in self.process.stdout:
-            self.lines.put(line.decode('utf-8', 'replace'))
+        with self.process.stdout as file:
+            for line in iter(lambda: file.readline(LONGEST), b''):
+                self.lines.put(line.decode('utf-8', 'replace'))
+                if self.errors.closed:
+                    return
         self.lines.put('')
 
     def send(self, text):
@@ -59,7 +65,7 @@ class Child:
             self.process.stdin.write(text.encode())
             self.process.stdin.flush()
 
-    def close(self):
+    def end_input(self):
         with contextlib.suppress(OSError):
             self.process.stdin.close()
 
@@ -68,133 +74,131 @@ class Child:
         try:
             status = self.process.wait(seconds)
         except subprocess.TimeoutExpired:
-            self.kill()
-            return 'hung', 'no answer within the limit'
-        self.kill()
+            return HUNG
         size = self.errors.seek(0, os.SEEK_END)
         self.errors.seek(max(0, size - 16384))
         words = ' '.join(self.errors.read().decode('utf-8', 'replace').split())
         if status == 0:
-            return 'unanswered', ''
+            return ENDED
         reason = (signal.Signals(-status).name if status < 0 else f'exit status {status}') + f' {words[-300:]}'.rstrip()
         memory = re.search('bad_alloc|out of memory|failed to allocate|heap limit|MemoryError', words, re.IGNORECASE)
         return 'no memory' if memory or status == -9 else 'crashed', reason
 
-    def kill(self):
+    def close(self):
         """Ends it and the processes that it started."""
         with contextlib.suppress(OSError):
             os.killpg(self.process.pid, signal.SIGKILL) if os.name == 'posix' else self.process.kill()
         self.process.wait()
-        self.close()
+        self.end_input()
+        self.errors.close()
+        while not self.lines.empty():  # the thread may wait for room
+            self.lines.get()
 
 
 Answer = collections.namedtuple('Answer', 'outcome value ns reason')
-NOT_ASKED = Answer('not asked', None, 0, '')
+NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
+HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
 # kind: one of KINDS or card; fields: of the question, after its kind.
 Question = collections.namedtuple('Question', 'kind fields')
 
 
-def real(text):
-    value = float(text)
-    if not math.isfinite(value):
+def number(text, kind=float):
+    """Reads what the grammar has; Python's own readers take blanks, underscores and more."""
+    pattern = '[0-9]{1,18}' if kind is int else '-?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)?'
+    if not re.fullmatch(pattern, text) or not math.isfinite(kind(text)):
         raise ValueError(text)
-    return value
+    return kind(text)
 
 
 def parse(kind, fields, so_far):
-    """Reads the fields of one line of an answer. True: the answer is whole, and `so_far` holds its value and perhaps a
-    time. Raises ValueError for a line that the grammar does not have."""
-    word, rest = fields[0], fields[1:]
+    """Reads the fields of one line of an answer. The last line gives the Answer, with no ns if it has no time; others are
+    added to `so_far`. Raises ValueError for a line that the grammar does not have."""
+    word, *rest = fields
+    if word == 'refused' and rest:
+        return Answer('refused', None, 0, ' '.join(rest)[:160])
     if kind == 'card' and word == 'card' and len(rest) == 2:
+        key, words = rest[0], rest[1].split() or [''] if rest[0] == 'answers' else rest[1:]
+        if key not in CARD or not {*words} <= {*VALUES.get(key, words)} or (key == 'margin' and number(rest[1]) < 0):
+            raise ValueError(rest)
         so_far.append(rest)
-        return False
+        return None
     if kind == 'mesh' and word == 'pair' and len(rest) == 4:
-        so_far.append(tuple(map(int, rest)))
-        return False
+        so_far.append(tuple(number(field, int) for field in rest))
+        return None
     if kind == 'distance' and len(fields) in (1, 7):
-        so_far.append([real(field) for field in fields])
-        return True
-    last = {'mesh': ['done'], 'card': ['done']}.get(kind, ['0', '1'])
-    if kind == 'distance' or word not in last or len(rest) > 1 or (rest and real(rest[0]) < 0):
+        return Answer('answered', [number(field) for field in fields], None, '')
+    last = {'mesh': ['done'], 'card': ['done'], 'distance': []}.get(kind, ['0', '1'])
+    if word not in last or len(rest) > (kind != 'card') or (rest and number(rest[0]) < 0):
         raise ValueError(word)
-    so_far.append((word, real(rest[0]) if rest else None))
-    return True
+    return Answer('answered', so_far if word == 'done' else word == '1', number(rest[0]) if rest else None, '')
 
 
-def ask_from(command, questions, first, answers, options, start):
+def ask_from(child, questions, first, answers, limit, start):
     """Asks one process from question `first` on; fills `answers` and gives the next question that has none, and how the
     process ended."""
-    child = Child(command, options)
-    following, sent, so_far = first, first, []
-    allowed, since = start, time.monotonic()
+    following, sent, so_far, size, since = first, first, [], 0, time.monotonic()
     while True:
-        while sent < len(questions) and sent < following + AHEAD:
+        while sent < len(questions) and sent < following + (AHEAD if questions[sent].kind in QUICK else 2):
             child.send('\t'.join([str(sent), questions[sent].kind, *questions[sent].fields]) + '\n')
             sent += 1
             if sent == len(questions):
-                child.close()
-        if following < len(questions):
-            allowed = max(allowed, options.limit * (1 if questions[following].kind in ('pair', 'distance') else 10))
+                child.end_input()
+        slow = following < len(questions) and questions[following].kind not in QUICK
+        left = since + max(start, limit * (10 if slow else 1)) - time.monotonic()
         try:
-            line = child.lines.get(timeout=allowed)
+            line = child.lines.get(timeout=max(0, left))
         except queue.Empty:
-            child.kill()
-            return following, ('hung', 'no answer within the limit')
+            return following, HUNG
         if not line:
-            return following, child.end(options.limit)
-        allowed = 0
-        number, *fields = line.rstrip('\r\n').split('\t')
+            return following, child.end(limit)
+        at, *fields = re.sub('\r?\n$', '', line).split('\t')
+        size += len(line)
         try:
-            at = int(number)
-            if not fields or not following <= at < sent or (at > following and so_far):
-                raise ValueError(number)
-            refused = fields[0] == 'refused' and len(fields) > 1
-            whole = refused or parse(questions[at].kind, fields, so_far)
+            if line[-1] != '\n' or not fields or size > MOST:
+                raise ValueError(at)
+            at = number(at, int)
+            if not following <= at < sent or (at > following and so_far):
+                raise ValueError(at)
+            answer = parse(questions[at].kind, fields, so_far)
         except ValueError:
-            child.kill()
-            return following, ('crashed', f'wrote what is no answer: {line.rstrip()[:80]}')
-        for skipped in range(following, at):
-            answers[skipped] = Answer('unanswered', None, 0, '')
-        following = at
-        if not whole:
-            continue
-        now = time.monotonic()
-        if refused:
-            answers[at] = Answer('refused', None, 0, ' '.join(fields[1:])[:160])
-        else:
-            last = so_far.pop()
-            timed = isinstance(last, tuple) and last[1] is not None
-            value = so_far if questions[at].kind in ('mesh', 'card') else last[0] == '1' if isinstance(last, tuple) else last
-            answers[at] = Answer('answered', value, last[1] if timed else (now - since) * 1e9, '')
-        following, so_far, since = at + 1, [], now
+            what = 'too long an answer' if size > MOST else 'what docs/ask.md does not have'
+            return following, ('crashed', f'wrote {what}: {line.rstrip()[:80]}')
+        answers[following:at] = [UNANSWERED] * (at - following)
+        following, now = at, time.monotonic()
+        if answer:
+            answers[at] = answer if answer.ns is not None else answer._replace(ns=(now - since) * 1e9)
+            following, so_far, since, size, start = at + 1, [], now, 0, 0
+        elif left < 0:  # lines that are not the last one gain no time
+            return following, HUNG
 
 
 def ask(command, questions, options):
-    """An Answer to each question. A death counts for the question at which it happened; a new process gets the next."""
+    """An Answer to each question, and how the process ended after the last one. A death counts for the question at which
+    it happened; a new process gets the next."""
     answers = [NOT_ASKED] * len(questions)
-    following = deaths = 0
-    start = max(30, 6 * options.limit)
+    following, deaths, start = 0, 0, max(30, 6 * options.limit)
     while following < len(questions) and deaths < options.deaths:
         first = following
-        following, (outcome, reason) = ask_from(command, questions, first, answers, options, start)
+        with contextlib.closing(Child(command, options)) as child:  # an interrupt reaches this program alone
+            following, (outcome, reason) = ask_from(child, questions, first, answers, options.limit, start)
         start = 2 * options.limit
         if following == len(questions):
-            break
+            return answers, (outcome, reason)
         if outcome == 'no memory' and following > first:
             continue  # earlier questions may have taken it: it is blamed only if it is the first of a process
         answers[following] = Answer(outcome, None, 0, reason)
         following += 1
         deaths += 1
-    return answers
+    return answers, None
 
 
 def ask_twice(command, questions, options):
     """The answers, and for each question whether a second answer was another one (None: it was not asked again)."""
-    answers = ask(command, questions, options)
+    answers = ask(command, questions, options)[0]
     step = AGAIN if questions and questions[0].kind != 'mesh' else 1
     again = [i for i in range(0, len(questions), step) if answers[i].outcome in ('answered', 'refused')][::-1]
     differs = [None] * len(questions)
-    for i, second in zip(again, ask(command, [questions[i] for i in again], options)):
+    for i, second in zip(again, ask(command, [questions[i] for i in again], options)[0]):
         if second.outcome != 'not asked':
             first = answers[i]
             if questions[i].kind == 'mesh':  # in any order
@@ -207,20 +211,14 @@ def ask_twice(command, questions, options):
 
 CARD = {'name': '', 'library': '', 'answers': ' '.join(KINDS), 'means': 'closed', 'degenerate': 'yes', 'neighbours': 'no',
         'margin': '0', 'promises': 'no', 'call': '', 'says': '', 'source': '', 'use': ''}
-VALUES = {'means': ('closed', 'crossing'), **dict.fromkeys(('degenerate', 'neighbours', 'promises'), ('yes', 'no'))}
+VALUES = {'answers': KINDS, 'means': ('closed', 'crossing'), **dict.fromkeys(('degenerate', 'neighbours', 'promises'), ('yes', 'no'))}
 
 
-def card_of(command, options):
+def card_of(command, answer):
     """The card of the program; if it gives none, that of a program that is asked everything."""
-    answer = ask(command, [Question('card', [])], options)[0]
-    card = {**CARD, 'name': ' '.join(command)}
     if answer.outcome not in ('answered', 'refused'):
         raise Wrong(f'{command[0]}: has no answer to the first question, `card`: {answer.outcome} {answer.reason}')
-    for key, value in answer.value or []:
-        if key not in CARD or value not in VALUES.get(key, [value]):
-            raise Wrong(f'{command[0]}: its card says "{key} {value}", which docs/ask.md does not have')
-        card[key] = value
-    return card
+    return {**CARD, 'name': ' '.join(command), **dict(answer.value or [])}
 
 
 # ---- exact geometry: of what a library's own documentation promises, and of points that it gives
@@ -378,10 +376,7 @@ class Suite:
 
 class Row(collections.Counter):
     """The counts of one family for one kind of question."""
-
-    def __init__(self):
-        super().__init__()
-        self.reason, self.worst = '', 0
+    reason, worst = '', 0
 
     def take(self, answer, differs):
         self['asked'] += answer.outcome != 'not asked'
@@ -420,11 +415,10 @@ def lists_of(card, suite):
 
 def score(card, listed, value, row):
     question, label, numbers = listed
+    right = label not in ('no', 'apart', 'neighbours-apart')
     if question.kind == 'distance':
         score_distance(label, numbers, value, row)
-        return
-    right = label not in ('no', 'apart', 'neighbours-apart')
-    if value != right:
+    elif value != right:
         fault = 'missed' if right else 'wrong'
         row[fault] += 1
         if question.kind == 'pair':
@@ -437,18 +431,20 @@ def score_distance(label, numbers, value, row):
     row['zero'] += distance == 0 < low
     row['not zero'] += distance > 0 == high
     row['negative'] += distance < 0
-    if distance > 0 and low > 0:
-        error = max(low - distance, distance - high, 0) / low
+    if distance > 0 and high > 0:  # low is 0 if the distance is below all doubles
+        error = max(low - distance, distance - high, 0) / (low or high)
         row['off'] += error > OFF
         row.worst = max(row.worst, error)
     triangles = [corners_of(numbers), corners_of(numbers[9:])]
     size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
     near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)  # or as near as doubles are
     if points:
+        points = exact([points[:3], points[3:]])
+        # Both points may be off by `near`, the distance by OFF. Points that are near their triangles are never too close.
+        most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
         row['points'] += 1
-        row['points off'] += any(
-            point_to_triangle([Fraction(x) for x in point], exact(triangle)) > near ** 2
-            for point, triangle in zip((points[:3], points[3:]), triangles))
+        row['points off'] += square(minus(*points)) > most ** 2 or any(
+            point_to_triangle(point, exact(triangle)) > near ** 2 for point, triangle in zip(points, triangles))
 
 
 def score_mesh(card, objects, rows, reported, row):
@@ -526,7 +522,7 @@ def write_csv(path, name, rows):
 
 def measure(command, options):
     suite = Suite(options.suite)
-    card = card_of(command, options)
+    card = card_of(command, ask(command, [Question('card', [])], options)[0][0])
     asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
     rows = {kind: {} for kind in KINDS}
     for kind, family, listed in lists_of(card, suite):
@@ -562,14 +558,16 @@ def check(command, options):
                  ('mesh', ['0', a, b], None), ('mesh', ['1', a], None), ('distance', far.split(), 1.0), ('distance', near.split(), 0.0),
                  ('self', [a], False), ('inside', [a, '0.5', '0.25', '0.75'], True), ('inside', [a, '2', '0.25', '0.75'], False),
                  ('clash', [a, b], True), ('pair', ['-', *far.split()], False)]
-        answers = ask(command, [Question(kind, fields) for kind, fields, _ in asked], options)
-    broken = any(answer.outcome not in ('answered', 'refused') for answer in answers)
+        answers, end = ask(command, [Question(kind, fields) for kind, fields, _ in asked], options)
+    broken = end not in (ENDED, None) or any(answer.outcome not in ('answered', 'refused') for answer in answers)
     for (kind, fields, right), answer in zip(asked, answers):
         value = answer.value[0] if kind == 'distance' and answer.value else answer.value
         bad = answer.outcome not in ('answered', 'refused')
         said = f'{answer.outcome} {answer.reason}' if answer.outcome != 'answered' else \
             'answered' if right is None or value == right else f'answered {value}, and {right} is right'
         print(f"{'BROKEN' if bad else 'ok':6}  {kind} {' '.join(os.path.basename(field) for field in fields)}: {said}".rstrip())
+    if end not in (ENDED, None):
+        print('BROKEN  after the last answer:', *end)
     print('the protocol is broken: docs/ask.md has its grammar' if broken else 'every answer obeys the grammar')
     return int(broken)
 
@@ -591,6 +589,8 @@ def main(arguments):
         if not command or not {*(options.only or [])} <= {*KINDS}:
             raise Wrong('COMMAND is empty' if not command else f"--only: choose of {','.join(KINDS)}")
         return check(command, options) if options.check else measure(command, options)
+    except KeyboardInterrupt:
+        return 130
     except (Wrong, ValueError, OSError) as error:
         print(f'ask.py: {error}', file=sys.stderr)
         return 2

@@ -1,15 +1,21 @@
 """farcull suite --ask and ask.py, on a small suite and on contestants that are right, or wrong in one way.
    ask_test.py FARCULL CONTESTANTS, the folder of the programs of contestants"""
+import argparse
+import contextlib
 import csv
 import hashlib
+import importlib.util
 import json
 import os
 import shutil
+import signal
 import sqlite3
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+from unittest import mock
 
 program, contestants = (os.path.realpath(path) for path in sys.argv[1:3])
 root = os.path.realpath(os.path.dirname(__file__) + '/../../..')
@@ -38,10 +44,17 @@ for line in sys.stdin:
     if i == 9 and fault == 'longer': answer += '\t1\t1'
     if i == 9 and fault == 'takes': kept = [bytearray(1 << 24) for _ in range(1 << 10)]
     if i == 9 and fault == 'leaves-out': continue
+    if i == 9 and fault == 'cut':
+        os.write(1, f'{number}\t0'.encode())
+        os._exit(0)
+    if i == 9 and fault == 'stops': open('stops', 'w').write(str(os.getpid())) and time.sleep(60)
+    if i == 9 and fault == 'number': number = '0_9'
     if fault == 'yes': answer = '1'
     if fault == 'no': answer = '0'
     print(number, answer, sep='\t', flush=True)
     if i == 9 and fault == 'twice': print(number, answer, sep='\t', flush=True)
+if fault == 'status': sys.exit(3)
+if fault == 'more': print('goodbye')
 '''
 
 
@@ -107,6 +120,9 @@ def faulty(fault, *options):
 
 write_suite('suite', make_suite('suite'))
 shutil.copy(root + '/experiments/suite/ask.py', 'suite/ask.py')
+spec = importlib.util.spec_from_file_location('ask_module', 'suite/ask.py')
+module = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(module)
 with open('faulty.py', 'w', encoding='utf-8') as script:
     script.write(FAULTY)
 
@@ -114,8 +130,8 @@ with open('faulty.py', 'w', encoding='utf-8') as script:
 class Ask(unittest.TestCase):
     def expect(self, row, **counts):
         """All counts but the sizes of questions are these, or 0."""
-        for name in ('missed', 'wrong', 'own missed', 'own wrong', 'refused', 'unanswered', 'crashed', 'hung', 'no memory',
-                     'not asked', 'differs'):
+        for name in ('missed', 'wrong', 'own missed', 'own wrong', 'zero', 'not zero', 'negative', 'off', 'points off',
+                     'refused', 'unanswered', 'crashed', 'hung', 'no memory', 'not asked', 'differs'):
             self.assertEqual(int(row[name]), counts.get(name.replace(' ', '_'), 0), (name, row))
 
     def test_the_right_one_has_no_fault(self):
@@ -132,10 +148,19 @@ class Ask(unittest.TestCase):
         self.assertEqual((row['asked'], row['reason']), (str(PAIRS), 'SIGSEGV'))
 
     def test_nonsense_is_a_crash_with_its_words(self):
-        for fault, words in ('nonsense', 'perhaps'), ('longer', '0 1 1'), ('twice', ''):
+        for fault, words in ('nonsense', 'perhaps'), ('longer', '0 1 1'), ('twice', ''), ('number', '0_9'), ('cut', '9 0'):
             row = faulty(fault)
             self.assertEqual(row['crashed'], '1', (fault, row))
             self.assertIn(words, ' '.join(row['reason'].split()))
+
+    def test_a_number_is_one_of_the_grammar(self):
+        for text in '0', '-0', '17', '1.5', '1.', '.5', '-1e-300', '4.9E+10':
+            self.assertEqual(module.number(text), float(text))
+        self.assertEqual(module.number('017', int), 17)
+        for kind, texts in (float, ' 0 |0_1|+1|inf|nan|1e999|0x1|.|1e|\u0663|'), (int, ' 0 |0_1|+1|-1|1.0|\u0663|' + '9' * 400):
+            for text in texts.split('|'):
+                with self.assertRaises(ValueError, msg=text):
+                    module.number(text, kind)
 
     def test_an_answer_that_is_left_out_or_not_given_is_unanswered(self):
         self.expect(faulty('leaves-out'), unanswered=1)
@@ -179,34 +204,107 @@ class Ask(unittest.TestCase):
     def test_the_check_finds_what_breaks_the_grammar(self):
         self.assertIn('BROKEN', run('python3', 'suite/ask.py', '--check', 'cat', status=1))
         self.assertIn('True is right', run('python3', 'suite/ask.py', '--check', 'python3 faulty.py no'))
+        for fault, words in ('status', 'crashed exit status 3'), ('more', 'crashed wrote what docs/ask.md does not have: goodbye'):
+            self.assertIn('BROKEN  after the last answer: ' + words,
+                          run('python3', 'suite/ask.py', '--check', 'python3 faulty.py ' + fault, status=1))
 
     def test_farcull_runs_the_same_file(self):
         def without_times(text):
-            return [line.rpartition(' ')[0] for line in text.split('\n')]
+            return [line.split()[:-1] for line in text.split('\n')]
         command = 'python3 separate.py'
         self.assertEqual(without_times(run(program, 'suite', 'suite', '--ask', command)),
                          without_times(run('python3', 'suite/ask.py', command)))
+        os.makedirs('shadows', exist_ok=True)
+        with open('shadows/queue.py', 'w', encoding='utf-8') as file:
+            file.write('raise SystemExit("a file of the user is no part of ask.py")\n')
+        self.assertIn('few', run('sh', '-c', 'cd shadows && exec "$@"', 'sh', program, 'suite', '../suite', '--ask',
+                                 'python3 ../separate.py'))
         self.assertIn('suite.txt', run(program, 'suite', 'nowhere', '--ask', command, status=2))
 
     def test_distances_have_their_own_table(self):
-        with open('far.py', 'w', encoding='utf-8') as file:
-            file.write('import sys\nfor line in sys.stdin:\n  number, question, *x = line.split()\n'
-                       '  i = int(float(x[0])) if question == "distance" else 0\n'
-                       '  d = 0 if i == 1 else 1.5 if i == 3 else -1 if i == 2 else 0.5 if i == 4 else i % 2\n'
-                       '  z = 7 if i == 5 else i % 2\n'
-                       '  print(number, *([d, i + 1, 1, 0, i + 1, 1, z] if question == "distance" else ["refused", "x"]),'
-                       ' sep="\\t", flush=True)\n')
-        row = ask('python3 far.py', '--only', 'distance')['distance', 'few']
-        self.expect(row)
-        self.assertEqual([row[name] for name in ('zero', 'not zero', 'negative', 'off', 'points', 'points off')],
-                         ['1', '1', '1', '1', str(PAIRS), '1'])
-        self.assertEqual(float(row['worst']), 0.5)
+        def row(distance, points):
+            with open('far.py', 'w', encoding='utf-8') as file:
+                file.write('import sys\nfor line in sys.stdin:\n  number, question, *x = line.split()\n'
+                           '  i = int(float(x[0])) if question == "distance" else 0\n'
+                           f'  answer = [{distance}, {points}] if question == "distance" else ["refused", "x"]\n'
+                           '  print(number, *answer, sep="\\t", flush=True)\n')
+            return ask('python3 far.py', '--only', 'distance')['distance', 'few']
+        nearest = 'i + 1, 1, 0, i + 1, 1, i % 2'
+        self.expect(row('i % 2', nearest))
+        found = row('{1: 0, 2: -1, 3: 1.5, 4: 0.5}.get(i, i % 2)', 'i + 1, 1, 0, i + 1, 1, 7 if i == 5 else i % 2')
+        self.expect(found, zero=1, not_zero=1, negative=1, off=1, points_off=1)
+        self.assertEqual((found['points'], float(found['worst'])), (str(PAIRS), 0.5))
+        always = row(1.0, nearest)
+        self.expect(always, not_zero=PAIRS // 2)
+        with self.assertRaises(AssertionError):
+            self.expect(always)
+        # Points of the triangles, but not at the distance: the first corner of each.
+        self.expect(row('i % 2', '*x[:3], *x[9:12]'), points_off=PAIRS)
+
+    def test_the_smallest_distances_are_compared(self):
+        """A distance that is below all doubles but above 0 lies between 0 and the smallest of them."""
+        least, numbers = 5e-324, [0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2]
+        for value, counts in (0.0, {}), (least, {}), (1e-300, {'off': 1}), (-least, {'negative': 1}):
+            found = module.Row()
+            module.score_distance(f'0x0p+0,{least.hex()}', numbers, [value], found)
+            self.assertEqual({name: n for name, n in found.items() if n}, counts, value)
+
+    def test_points_may_lie_a_millionth_off_in_opposite_directions(self):
+        numbers = [0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2]
+        for shift, off in (0, 0), (3e-6, 0), (-3e-6, 0), (5e-6, 1):  # the size is 4
+            found = module.Row()
+            module.score_distance('0x1p+0,0x1p+0', numbers, [1.0, 1.0, 1.0, -shift, 1.0, 1.0, 1.0 + shift], found)
+            self.assertEqual((found['points'], found['points off']), (1, off), shift)
 
     def test_our_own_contestants_answer_all_kinds_rightly(self):
         ours = f'{contestants}/farcull_contestant_ours'
-        for row in ask(ours + ' exact').values():
+        rows = ask(ours + ' exact')
+        self.assertEqual({*rows}, {('pair', 'few'), ('distance', 'few'), ('mesh', 'cubes'), ('mesh', 'cross'), ('self', 'cubes'),
+                                   ('inside', 'cubes'), ('clash', 'cubes')})
+        for row in rows.values():
+            self.assertGreater(int(row['asked']), 0, row)
             self.expect(row)
+        self.assertEqual(rows['distance', 'few']['points'], str(PAIRS))
         self.assertIn('every answer obeys', run('python3', 'suite/ask.py', '--check', ours + ' exact'))
+
+    def test_an_answer_has_an_end(self):
+        """The limits hold for all lines of an answer together."""
+        mesh = [module.Question('mesh', ['0', 'a', 'b'])]
+        with open('endless.py', 'w', encoding='utf-8') as file:
+            file.write('import time\nwhile True:\n  print("0\\tpair\\t0\\t0\\t0\\t1", flush=True)\n  time.sleep(0.01)\n')
+        with contextlib.closing(module.Child(['python3', 'endless.py'], argparse.Namespace(memory=4096))) as child:
+            self.assertEqual(module.ask_from(child, mesh, 0, [None], 0.02, 0), (0, module.HUNG))
+        # One that always has a line already.
+        fast = argparse.Namespace(lines=argparse.Namespace(get=lambda timeout: '0\tpair\t0\t0\t0\t1\n'),
+                                  send=lambda text: None, end_input=lambda: None)
+        with mock.patch.object(module, 'MOST', 1 << 18):
+            self.assertEqual(module.ask_from(fast, mesh, 0, [None], 0.001, 0), (0, module.HUNG))
+            self.assertEqual(module.ask_from(fast, mesh, 0, [None], 10, 0),
+                             (0, ('crashed', 'wrote too long an answer: 0\tpair\t0\t0\t0\t1')))
+
+    def test_an_interrupt_ends_the_contestant(self):
+        with subprocess.Popen(['python3', 'suite/ask.py', '--only', 'pair', 'python3 faulty.py stops'],
+                              preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as asks:
+            while not os.path.exists('stops') or not os.path.getsize('stops'):
+                time.sleep(0.01)
+            asks.send_signal(signal.SIGINT)
+            self.assertEqual(asks.wait(10), 130)
+        with open('stops', encoding='utf-8') as file, self.assertRaises(ProcessLookupError):
+            os.kill(int(file.read()), 0)
+
+    def test_a_card_has_known_words(self):
+        def asked(key, value, status):
+            with open('card.py', 'w', encoding='utf-8') as file:
+                file.write('import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+                           f'  print(number, "card", "{key}", "{value}", sep="\\t") if question == "card" else 0\n'
+                           '  print(number, "done" if question == "card" else "0", sep="\\t", flush=True)\n')
+            return run('python3', 'suite/ask.py', '--only', 'pair', 'python3 card.py', status=status)
+        self.assertIn('few', asked('answers', 'pair self', 0))
+        self.assertIn('pairs meshes', asked('answers', 'pairs meshes', 2))
+        self.assertIn('BROKEN  card', run('python3', 'suite/ask.py', '--check', 'python3 card.py', status=1))
+        for key, value in ('answers', ''), ('means', 'closed crossing'), ('margin', '0_1'), ('who', 'me'):
+            with self.assertRaises(ValueError):
+                module.parse('card', ['card', key, value], [])
 
     def test_pairs_of_a_mesh_are_missed_and_wrong(self):
         def row(*pairs):
