@@ -125,7 +125,7 @@ $ cp certificates/c_01.json certificates/c_02.json
   | ^not proved: 1 of 3 frames, the first is frame 2$ | not proved: the certificate is of another scene: hash
 bad certificates of frames without frames | CERTIFICATE: .*--frames | check certificates/c_%02d.json fall.json
 bad frames of one certificate | CERTIFICATE: .*%04d | check certificates/c_01.json fall.json --frames 1:3
-bad the proved checker for frames | --verified: is for one certificate | check certificates/c_%02d.json fall.json --frames 1:3 --verified
+bad the proved checker for frames | --verified: is for certificates of one scene | check certificates/c_%02d.json fall.json --frames 1:3 --verified
 bad a list of frames without frames | falls\.csv: has a column .*--frames | check fall.json --pairs falls.csv
 bad a list of other frames | falls\.csv:2: frame 2[ ] | check fall.json --frames 1:1 --pairs falls.csv
 $ rm certificates/c_03.json

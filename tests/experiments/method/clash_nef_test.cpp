@@ -62,7 +62,12 @@ Nef solid_of(const Scene& scene, const Object& object) {
       out += Nef(polyhedron);
     }
   }
-  for (const Nef& hollow : hollows) out -= hollow;
+  // A part that is turned inside out as a whole has its inside where its winding number is -1.
+  const bool turned = out.is_empty();
+  for (const Nef& hollow : hollows) {
+    if (turned) out += hollow;
+    if (!turned) out -= hollow.interior();  // its surface stays
+  }
   return out;
 }
 
@@ -77,7 +82,7 @@ TEST(Clash, OfAnAssemblyIsAsNefPolyhedraSay) {
     if (!solids.contains(o)) solids.emplace(o, solid_of(scene, scene.objects[o]));
     return solids.at(o);
   };
-  int compared = 0, wrong = 0, noticed = 0;
+  int compared = 0, wrong = 0, noticed = 0, touching = 0;
   for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
     for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b) {
       if (!overlap(boxes[a], boxes[b]) || !is_closed(scene, a) || !is_closed(scene, b)) continue;
@@ -85,12 +90,14 @@ TEST(Clash, OfAnAssemblyIsAsNefPolyhedraSay) {
       const auto at = ours.find({a, b});
       const bool said = at != ours.end() && at->second <= ClashVerdict::contained;
       wrong += said == (solid(a).interior() * solid(b).interior()).is_empty();
+      touching += at != ours.end() && at->second == ClashVerdict::touch;
       // The twin: closed solids have a point in common where they touch, too.
       noticed += said == (solid(a) * solid(b)).is_empty();
     }
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_EQ(noticed, 10);
+  EXPECT_EQ(noticed, touching);
+  EXPECT_GT(touching, 5);
   EXPECT_GT(compared, 30);
 }
 

@@ -60,7 +60,7 @@ TEST(Colliding, BothNumbersAndTheirSum) {
   EXPECT_EQ(json["colliding_pairs"], 1);
   EXPECT_EQ(json["neighbour_pairs"], 2);
   EXPECT_EQ(json["all_colliding_pairs"], 3);
-  EXPECT_TRUE(has_text(run_table(scene, record), "\ncolliding  3 pairs = 1 + 2 of neighbours; "));
+  EXPECT_TRUE(has_text(run_table(scene, record), "colliding  3 pairs = 1 + 2 of neighbours; "));
 }
 
 TEST(NothingToTest, IsOneObjectThatIsNotSelf) {

@@ -327,7 +327,9 @@ TEST(Versions, OfTheStudyAreThoseThatItsProgramsSay) {
     const ScratchFolder folder;
     const std::string program = folder.write(
         "farcull_contestant_gts",
-        std::string("#!/bin/sh\nprintf 'name gts\\nlibrary ") + version + "\\npairs yes\\n\\n'\n");
+        std::string("#!/bin/sh\nread -r number question\nprintf '%s\\tcard\\t%s\\t%s\\n' $number "
+                    "name gts $number library '") +
+            version + "' $number answers pair\nprintf '%s\\tdone\\n' $number\n");
     ASSERT_EQ(::chmod(program.c_str(), 0700), 0);
     EXPECT_EQ(said(folder.folder()), version);
   }
