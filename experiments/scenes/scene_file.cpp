@@ -509,24 +509,6 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
   }
 }
 
-SceneWords scene_words(const std::vector<std::string>& arguments) {
-  constexpr std::string_view kWeld = "--weld=", kFormat = "--format=", kIgnore = "--ignore=";
-  SceneWords out;
-  for (const std::string& word : arguments) {
-    if (word.starts_with(kWeld)) {
-      out.reading.weld = word.substr(kWeld.size());
-      parse_weld(out.reading.weld);
-    } else if (word.starts_with(kFormat)) {
-      out.reading.format = named_format(word.substr(kFormat.size()));
-    } else if (word.starts_with(kIgnore)) {
-      out.ignored = parse_ignored(word.substr(kIgnore.size()));
-    } else {
-      out.names.push_back(word);
-    }
-  }
-  return out;
-}
-
 std::vector<ObjectPair> stream_scene(const std::vector<std::string>& words, const TakePart& take) {
   SceneWords of = scene_words(words);
   const std::vector<std::string>& arguments = of.names;

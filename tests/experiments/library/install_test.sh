@@ -71,13 +71,13 @@ if command -v dpkg-shlibdeps >/dev/null; then
   (cd "$build" && "$(dirname "$cmake")/cpack" -G DEB -B "$work/deb" -D CPACK_CMAKE_GENERATOR=Ninja) >"$work/log" 2>&1 ||
     fail "$(cat "$work/log")"
   deb=("$work"/deb/*.deb)
-  dpkg-deb -x "${deb[0]}" "$work/root"
-  by_cmake "$work/root/usr" | cmp - "$work/cmake.txt" || fail 'the example of the package differs'
-  "$work/root/usr/bin/farcull" --version >/dev/null
+  dpkg-deb -x "${deb[0]}" "$work/tree"
+  by_cmake "$work/tree/usr" | cmp - "$work/cmake.txt" || fail 'the example of the package differs'
+  "$work/tree/usr/bin/farcull" --version >/dev/null
   depends=$(dpkg-deb -f "${deb[0]}" Depends)
   for package in libgmp-dev libmpfr-dev libhwy-dev pkg-config 'libc6 '; do
     [[ $depends == *"$package"* ]] || fail "the package does not depend on $package: $depends"
   done
-  [[ -s $work/root/usr/share/doc/farcull/copyright ]] || fail 'the package has no copyright file'
+  [[ -s $work/tree/usr/share/doc/farcull/copyright ]] || fail 'the package has no copyright file'
 fi
 echo "install_test: the example was built by CMake and by pkg-config"

@@ -403,7 +403,6 @@ MUTANTS = [
     ('(0 <=? y w) && (0 <=? z w)', '(y w <=? 0) && (0 <=? z w)'),
     ('(0 <? total w)', '(0 <=? total w)'),
     ('clearance * clearance * dot d d <? gap * gap', 'gap * gap <=? clearance * clearance * dot d d'),
-    ('(dot w w <=? r * r)', '(r * r <=? dot w w)'),
     ('(d <=? r)', '(r <=? d)'),
     ('(dot e r <? 0)', '(dot e r <=? 0)'),
     ('(m * dot e e <? dot e r)', '(m * dot e e <=? dot e r)'),

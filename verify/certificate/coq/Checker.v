@@ -175,11 +175,11 @@ Definition shows (good : vec Z -> Z -> bool) (a b : triangle Z) (p : probe) : bo
 Definition has_common (good : vec Z -> Z -> bool) (a b : triangle Z) : bool :=
   existsb (shows good a b) probes || existsb (shows good b a) probes.
 
-(** * Two points that are not farther apart than the clearance *)
-Definition are_near (clearance : Z) (a b : triangle Z) (u v : vec Z) : bool :=
-  let m := total u in let n := total v in
-  let w := sub (scale n (weigh u a)) (scale m (weigh v b)) in let r := m * n * clearance in
-  are_weights u && are_weights v && (dot w w <=? r * r).
+(** * Two points the square of whose distance is at most n / m *)
+Definition are_within (n m : Z) (a b : triangle Z) (u v : vec Z) : bool :=
+  let k := total u in let l := total v in
+  let w := sub (scale l (weigh u a)) (scale k (weigh v b)) in let r := k * l in
+  are_weights u && are_weights v && (m * dot w w <=? n * (r * r)).
 (** Weights that may make the point of a nearest to corner j of b: a corner, on an edge, inside. *)
 Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
   let p := corner b j in
@@ -308,7 +308,7 @@ Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : 
                | _ => if only_shared 7 a b shared indices indices then Some Only_shared else None
                end in
   let common (_ : unit) :=
-    match shared with [] => (0 <? clearance) && has_near (are_near clearance) a b | _ => false end ||
+    match shared with [] => (0 <? clearance) && has_near (are_within (clearance * clearance) 1) a b | _ => false end ||
     has_common (off_shared shared) a b in
   if first then (if common tt then Some Meeting else apart)
   else match apart with

@@ -15,10 +15,6 @@ Definition keeps_off (n m : Z) (a b : triangle Z) (d : vec Z) : bool :=
 Definition is_at_least (n m : Z) (a b : triangle Z) : bool :=
   (n <=? 0) || existsb (fun d => keeps_off n m a b (vector a b d)) directions.
 (** Two points have one whose square is at most n / m. *)
-Definition are_within (n m : Z) (a b : triangle Z) (u v : vec Z) : bool :=
-  let k := total u in let l := total v in
-  let w := sub (scale l (weigh u a)) (scale k (weigh v b)) in let r := k * l in
-  are_weights u && are_weights v && (m * dot w w <=? n * (r * r)).
 Definition is_at_most (n m : Z) (a b : triangle Z) : bool :=
   has_near (are_within n m) a b || ((0 <=? n) && has_common (fun _ _ => true) a b).
 

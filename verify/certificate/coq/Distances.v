@@ -42,25 +42,6 @@ Proof.
   - apply existsb_exists in H. destruct H as (d & _ & H). eapply keeps_off_sound; eauto.
 Qed.
 
-Definition near_squares (n m : Z) (a b : triangle Z) : Prop :=
-  exists p q, inside (qtri a) p /\ inside (qtri b) q /\ #m * squared_distance p q <= #n.
-Lemma are_within_sound n m a b u v : are_within n m a b u v = true -> near_squares n m a b.
-Proof.
-  unfold are_within. intros H. apply andb_prop in H. destruct H as [H N].
-  apply andb_prop in H. destruct H as [U V]. apply Z.leb_le in N.
-  exists (over (weigh u a) (total u)), (over (weigh v b) (total v)).
-  split; [now apply weigh_inside|]. split; [now apply weigh_inside|].
-  apply are_weights_total in U, V. apply -> inject_lt in U. apply -> inject_lt in V.
-  apply -> inject_le in N. change #0 with 0 in *. unfold squared_distance, over. cbn [x y z].
-  unfold dot, sub, scale in N. cbn [x y z] in N. inject.
-  set (k := #(total u)) in *. set (l := #(total v)) in *.
-  assert (K' : ~ k == 0) by lra. assert (L' : ~ l == 0) by lra.
-  assert (KL : 0 < k * l) by nra. assert (S : 0 < (k * l) * (k * l)) by nra.
-  apply (Qmult_lt_0_le_reg_r _ _ _ S). clear S KL U V.
-  match goal with |- ?g <= _ =>
-    match type of N with ?h <= _ => setoid_replace g with h by (field; split; assumption) end end.
-  lra.
-Qed.
 Lemma is_at_most_sound n m a b : is_at_most n m a b = true -> near_squares n m a b.
 Proof.
   unfold is_at_most. intros H. apply orb_prop in H. destruct H as [H | H].

@@ -35,23 +35,30 @@ Proof.
     destruct H as (q & m & M & G & A & B); exists q, m; auto.
 Qed.
 
-Lemma are_near_sound D a b u v :
-  are_near D a b u v = true -> near #D (qtri a) (qtri b).
+Definition near_squares (n m : Z) (a b : triangle Z) : Prop :=
+  exists p q, inside (qtri a) p /\ inside (qtri b) q /\ #m * squared_distance p q <= #n.
+Lemma are_within_sound n m a b u v : are_within n m a b u v = true -> near_squares n m a b.
 Proof.
-  unfold are_near. intros H. apply andb_prop in H. destruct H as [H N].
+  unfold are_within. intros H. apply andb_prop in H. destruct H as [H N].
   apply andb_prop in H. destruct H as [U V]. apply Z.leb_le in N.
   exists (over (weigh u a) (total u)), (over (weigh v b) (total v)).
   split; [now apply weigh_inside|]. split; [now apply weigh_inside|].
   apply are_weights_total in U, V. apply -> inject_lt in U. apply -> inject_lt in V.
   apply -> inject_le in N. change #0 with 0 in *. unfold squared_distance, over. cbn [x y z].
   unfold dot, sub, scale in N. cbn [x y z] in N. inject.
-  set (m := #(total u)) in *. set (n := #(total v)) in *.
-  assert (M' : ~ m == 0) by lra. assert (N' : ~ n == 0) by lra.
-  assert (MN : 0 < m * n) by nra. assert (S : 0 < (m * n) * (m * n)) by nra.
-  apply (Qmult_lt_0_le_reg_r _ _ _ S). clear S MN U V.
-  match goal with |- ?l <= _ =>
-    match type of N with ?k <= _ => setoid_replace l with k by (field; split; assumption) end end.
+  set (k := #(total u)) in *. set (l := #(total v)) in *.
+  assert (K' : ~ k == 0) by lra. assert (L' : ~ l == 0) by lra.
+  assert (KL : 0 < k * l) by nra. assert (S : 0 < (k * l) * (k * l)) by nra.
+  apply (Qmult_lt_0_le_reg_r _ _ _ S). clear S KL U V.
+  match goal with |- ?g <= _ =>
+    match type of N with ?h <= _ => setoid_replace g with h by (field; split; assumption) end end.
   lra.
+Qed.
+Lemma are_near_sound D a b u v :
+  are_within (D * D) 1 a b u v = true -> near #D (qtri a) (qtri b).
+Proof.
+  intros H. destruct (are_within_sound _ _ _ _ _ _ H) as (p & q & P & Q & N). exists p, q.
+  split; [exact P|]. split; [exact Q|]. inject. change #1 with 1 in N. lra.
 Qed.
 Lemma has_near_sound (P : triangle Z -> triangle Z -> Prop) good a b :
   (forall a b, P a b -> P b a) -> (forall a b u v, good a b u v = true -> P a b) ->

@@ -13,13 +13,13 @@ Proof.
   assert (none : shared = [] -> ~ (one /\ exists c, is_shared (qtri a) (qtri b) c)).
   { intros E (Y & c & C). rewrite (S1 Y) in E. apply is_shared_corners in C.
     destruct C as (k' & C & _). rewrite E in C. destruct C. }
-  set (common := (match shared with [] => (0 <? D)%Z && has_near (are_near D) a b | _ => false end ||
+  set (common := (match shared with [] => (0 <? D)%Z && has_near (are_within (D * D) 1) a b | _ => false end ||
                   has_common (off_shared shared) a b)%bool) in *.
   assert (M : common = true -> count #D one (qtri a) (qtri b)).
   { unfold common. intros C. apply orb_prop in C. destruct C as [C | C].
     - right. destruct shared; [|discriminate]. apply andb_prop in C. destruct C as [_ C].
       split; [|now apply none].
-      apply (has_near_sound (fun a b => near #D (qtri a) (qtri b)) (are_near D));
+      apply (has_near_sound (fun a b => near #D (qtri a) (qtri b)) (are_within (D * D) 1));
         [intros; now apply near_sym | intros; eapply are_near_sound; eassumption | exact C].
     - left. apply has_common_sound in C. destruct C as (q & m & M & G & A & B).
       exists (over q m). repeat split; auto. intros O. rewrite (S1 O) in G.
