@@ -400,6 +400,8 @@ int CheckCommand::run() {
   }
   if (mesh || to.scene.names.empty())
     to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
+  if (to.certificate == "-")
+    throw Error("CERTIFICATE", "is not read from standard input", "name a file");
   check_scene(to.scene.names);
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);

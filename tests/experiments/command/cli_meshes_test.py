@@ -37,7 +37,7 @@ edge.obj << v 0 0 0; v 1 0 0; v 0 -1 0; v 0 0 1e-17; v 1 0 -1e-17; v 0 1 0; f 1 
 0 checked | check c.json edge.obj --self --weld 1e-7*size | @err merged | #0 ^proved
 1 checked without | check c.json edge.obj --self | #0 not proved
 bad a weld | --weld: '-1' is no tolerance | run edge.obj --self --weld=-1
-bad a weld | --weld: '' is no tolerance | run edge.obj --self --weld=
+bad an empty weld | --weld: | run edge.obj --self --weld=
 bad of a built-in scene | --weld: has no meaning | run two-tori --weld 1
 bad an option as a name | --weld=1: | run edge.obj -- --weld=1
 0 a hint | run cad.obj --self | ^hint +cad is not closed: [0-9]+ open edges, one of them at .* Their ends nearly$
