@@ -139,21 +139,9 @@ class Collider:
     before, it also keeps what it found about triangles that did not move. The answers are those of
     :func:`collide`. One thread at a time may use it.
 
-    Parameters (all by name):
-
-    - ``self``: every object is tested against itself as well; or one truth value for each object.
-    - ``clearance``: pairs at this distance or less collide too. World units, finite, 0 or more.
-    - ``neighbours``: False: neighbours are counted, not decided.
-    - ``contacts``: True: say of each pair how the two triangles meet (:data:`KINDS`).
-    - ``segments``: True: say that, and the points that they have in common.
-    - ``ignore``: (k, 2) pairs of different objects, by their numbers from 0, that are not tested
-      against each other.
-    - ``limit``: only the first so many pairs, neighbours among them, in the order of the rows; 1 or
-      more. None: all.
-    - ``device``: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where
-      boxes of runs decide, else gl if hardware answers, else the CPU.
-    - ``threads``: up to 1024; 0: one for each core.
-    - ``views``, ``resolution``: directions to look along and pixels; they change the time only.
+    By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore`` (numbers
+    alone), ``limit``, ``device`` and ``threads`` as :func:`collide` does; and ``views`` and
+    ``resolution``, directions to look along and pixels, which change the time only.
 
     Raises InputError naming the option that is wrong, and Error where the device does not answer.
     """
