@@ -46,36 +46,38 @@ class BenchCommand {
   BenchOptions parse() const;
   DistanceBenchOptions parse_distances(const BenchOptions& options) const;
 
-  std::vector<std::string> scene_;
+  SceneArguments scene_;
   bool self_ = false;
-  Text ignore_, peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
+  Text peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
   Outputs outputs_;
 };
 
 CLI::App* BenchCommand::add_to(CLI::App& app) {
   return add_command(
       app, "bench", "times beside other libraries, from triangles to pairs",
-      {scene_row(scene_),
-       {"--self", &self_, "",
-        "every object is tested against itself as well, but\n"
-        "for triangles that share a vertex position"},
-       ignore_row(ignore_),
-       {"--peers", &peers_, "LIST", "all, none, or names by commas; default all"},
-       {"--methods", &methods_, "LIST", "of far-pairs,far,exact; all or none; default all"},
-       {"--threads", &threads_, "N", "cores for each of them; default all there are"},
-       {"--repeat", &repeat_, "N", "runs of each after a cold one; default 5"},
-       {"--limit", &limit_, "SECONDS",
-        "who takes longer in the cold run is not repeated;\ndefault 60"},
-       {"--device", &device_, "DEVICE",
-        "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
-        "one"},
-       {"--distances", &distances_, "PAIRS",
-        "times of distance queries instead: objects, every two\nobjects; or nearest, each with "
-        "the nearest other one.\nPeers are then "
-        "fcl-double,fcl-float,cgal-aabb,embree-points"},
-       {"--within", &within_, "DISTANCE",
-        "with --distances: farther ones need not be found;\nin world units, default all"},
-       {"--json", &outputs_.json, "FILE", kJsonHelp}},
+      scene_rows(scene_) +
+          Rows{{"--self", &self_, "",
+                "every object is tested against itself as well, but\n"
+                "for triangles that share a vertex position"},
+               ignore_row(scene_.ignore),
+               {"--peers", &peers_, "LIST", "all, none, or names by commas; default all"},
+               {"--methods", &methods_, "LIST", "of far-pairs,far,exact; all or none; default all"},
+               {"--threads", &threads_, "N", "cores for each of them; default all there are"},
+               {"--repeat", &repeat_, "N", "runs of each after a cold one; default 5"},
+               {"--limit", &limit_, "SECONDS",
+                "who takes longer in the cold run is not repeated;\ndefault 60"},
+               {"--device", &device_, "DEVICE",
+                "for methods on GL, as for farcull run, or cpu for\nnone of them; default where "
+                "there is "
+                "one"},
+               {"--distances", &distances_, "PAIRS",
+                "times of distance queries instead: objects, every two\nobjects; or nearest, each "
+                "with "
+                "the nearest other one.\nPeers are then "
+                "fcl-double,fcl-float,cgal-aabb,embree-points"},
+               {"--within", &within_, "DISTANCE",
+                "with --distances: farther ones need not be found;\nin world units, default all"},
+               {"--json", &outputs_.json, "FILE", kJsonHelp}},
       [] {
         return "Examples:\n"
                "  farcull bench two-bunnies\n"
@@ -103,7 +105,7 @@ BenchOptions BenchCommand::parse() const {
         number_of<double>("--limit", *limit_, "none", 0, 1e9, "give seconds, 0 to 1e9");
   options.device = device_of(device_);
   options.self = self_;
-  options.seed = seed_of(scene_);
+  options.seed = seed_of(scene_.names);
   if (!distances_) validate(options);  // --distances has other peers
   if (!is_cpu(options.device)) {
     RunOptions run;
@@ -135,13 +137,13 @@ int BenchCommand::run() {
   const BenchOptions options = parse();
   if (within_ && !distances_)
     throw Error("--within", "is a limit of distances", "add --distances objects, or leave it out");
-  check_scene(scene_);
-  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  check_scene(scene_.names);
+  const Outputs outputs = checked(outputs_, scene_files(scene_.names));
   confine_to_cores(options.threads);
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(with_ignored(scene_, ignore_));
+  Scene scene = read_scene(scene_);
   require_asked(scene, {});
   if (options.self) make_self(scene);
   if (distances_) {

@@ -239,7 +239,8 @@ Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
     // A built-in motion has frames up to its last one, so a missing certificate can be made.
-    const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
+    const std::vector<std::string>& names = arguments.scene.names;
+    const bool motion = names.size() == 1 && is_builtin_scene(names[0]);
     const FrameRange& range = *arguments.frames;
     throw Error(file, "the file does not exist",
                 motion ? fmt::format("make it with farcull run --certificate --frames {}:{}", frame,
@@ -326,38 +327,40 @@ class CheckCommand {
 
  private:
   CheckArguments arguments_;
-  Text ignore_, json_, pairs_, clearance_, frames_, tiles_;
+  Text json_, pairs_, clearance_, frames_, tiles_;
 };
 
 CLI::App* CheckCommand::add_to(CLI::App& app) {
   return add_command(
       app, "check", "prove or refute a certificate of a run, or a list of pairs",
-      {{"CERTIFICATE", &arguments_.certificate, "",
-        "as written by run or distance --certificate; may be\nleft out before SCENE to check "
-        "--pairs alone"},
-       {"SCENE", &arguments_.scene, "", kSceneHelp},
-       {"--self", &arguments_.self, "",
-        "every object was tested against itself, as by\nfarcull run --self"},
-       ignore_row(ignore_),
-       {"--pairs", &pairs_, "FILE",
-        "a list of pairs as farcull run --pairs writes it:\n"
-        "is it right and complete? Columns are found by their\n"
-        "names; rows may be in any order. With --tiles: the\n"
-        "merged list, which must be equal byte for byte"},
-       {"--clearance", &clearance_, "D",
-        "the list is of pairs at this distance or less, in\n"
-        "world units; default 0, or that of the certificate"},
-       {"--frames", &frames_, "N|A:B",
-        "check these frames, as of farcull run --frames: with\n"
-        "a number (%d or %04d) in the name of CERTIFICATE and\n"
-        "a column `frame` in the list"},
-       {"--tiles", &tiles_, "N",
-        "check the certificates of all N tiles of the scene\n(farcull run --tiles), with a number "
-        "(%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
-       {"--verified", &arguments_.verified, "",
-        "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
-        "(docs/verified.md)"},
-       {"--json", &json_, "FILE", kJsonHelp}},
+      Rows{{"CERTIFICATE", &arguments_.certificate, "",
+            "as written by run or distance --certificate; may be\nleft out before SCENE to check "
+            "--pairs alone"}} +
+          scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
+          Rows{
+              {"--self", &arguments_.self, "",
+               "every object was tested against itself, as by\nfarcull run --self"},
+              ignore_row(arguments_.scene.ignore),
+              {"--pairs", &pairs_, "FILE",
+               "a list of pairs as farcull run --pairs writes it:\n"
+               "is it right and complete? Columns are found by their\n"
+               "names; rows may be in any order. With --tiles: the\n"
+               "merged list, which must be equal byte for byte"},
+              {"--clearance", &clearance_, "D",
+               "the list is of pairs at this distance or less, in\n"
+               "world units; default 0, or that of the certificate"},
+              {"--frames", &frames_, "N|A:B",
+               "check these frames, as of farcull run --frames: with\n"
+               "a number (%d or %04d) in the name of CERTIFICATE and\n"
+               "a column `frame` in the list"},
+              {"--tiles", &tiles_, "N",
+               "check the certificates of all N tiles of the scene\n(farcull run --tiles), with a "
+               "number "
+               "(%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
+              {"--verified", &arguments_.verified, "",
+               "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
+               "(docs/verified.md)"},
+              {"--json", &json_, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
       "  farcull check c.json two-spheres --pairs pairs.csv\n"
@@ -390,20 +393,22 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
                 "name the certificate first, or give a list of pairs with --pairs FILE");
   }
-  if (!pairs_ && to.scene.empty()) {
+  if (!pairs_ && to.scene.names.empty()) {
     throw Error("SCENE", "is missing after '" + to.certificate + "'",
                 "name the scene that the certificate is of, or give a list of pairs with --pairs "
                 "FILE");
   }
-  if (mesh || to.scene.empty())
-    to.scene.insert(to.scene.begin(), std::exchange(to.certificate, ""));
-  check_scene(to.scene);
-  to.scene = with_ignored(to.scene, ignore_);
+  if (mesh || to.scene.names.empty())
+    to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
+  if (to.certificate == "-")
+    throw Error("CERTIFICATE", "is not read from standard input", "name a file");
+  check_scene(to.scene.names);
   if (clearance_) to.clearance = parse_clearance(*clearance_);
   if (frames_) to.frames = parse_frames(*frames_);
   if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-  if (tiles_ && (to.certificate.empty() || to.frames || clearance_)) {
-    throw Error("--tiles", "is for certificates of tiles, without --frames and --clearance",
+  if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
+    throw Error("--tiles",
+                "is for certificates of tiles, without --frames, --clearance and --ignore",
                 "leave it out, or name the certificates of the tiles");
   }
   require_number(to.certificate, to.frames || to.tiles);
@@ -413,7 +418,7 @@ int CheckCommand::run() {
                 "--pairs only beside --tiles",
                 "leave it out, or check each frame by its own certificate");
   }
-  std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);
+  std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
   if (!to.certificate.empty()) {
     for (const std::string& file : numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
       inputs.push_back({"CERTIFICATE", file});

@@ -42,7 +42,7 @@ ListRow row_of(const PairListRows& rows, const TrianglePair& pair) {
 
 struct CheckedTile {
   std::string file;
-  Slab slab;
+  Tile tile;
   double clearance = 0;
   CheckResult result;  // without the pairs that meet
   std::string pair;    // the one that refutes, by the numbers in the whole scene
@@ -53,19 +53,19 @@ struct CheckedTile {
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {
-    if (tile.slab.axis != tiles.front().slab.axis)
+    if (tile.tile.axis != tiles.front().tile.axis)
       return fmt::format("{} is of a tile along another axis than the first", tile.file);
     if (tile.clearance != tiles.front().clearance)
       return fmt::format("{} is of another clearance than the first", tile.file);
-    if (tile.slab.from != place) {
+    if (tile.tile.from != place) {
       return fmt::format("{} is of the tile {}, which does not begin where the tile before it ends",
-                         tile.file, interval_text(tile.slab));
+                         tile.file, interval_text(tile.tile));
     }
-    place = tile.slab.to;
+    place = tile.tile.to;
   }
   return place == HUGE_VAL ? ""
                            : fmt::format("a tile is missing: {}, the last one, has an end",
-                                         interval_text(tiles.back().slab));
+                                         interval_text(tiles.back().tile));
 }
 
 // How the file differs from the list; empty if it is the list, byte for byte.
@@ -98,12 +98,10 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     });
   };
   Census census = take_census(source, 0);
-  Scene ignoring;
-  ignoring.name = census.name;
-  ignoring.ignored = census.ignored;
-  require_nothing_ignored(ignoring, "a check");
+  require_nothing_ignored(names_of(census), "a check");
   std::vector<CheckedTile> tiles;
   std::vector<ListRow> rows;
+  std::string hash_of_scene;
   for (const std::string& file : files) {
     const Certificate certificate = read_certificate(file);
     if (!certificate.tile) {
@@ -113,6 +111,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     census.clearance = certificate.clearance;
     const TileScene part = gather_tile(source, census, *certificate.tile);
     const WholeScene scene = whole_scene(census, *certificate.tile, part);
+    hash_of_scene = part.hash;
     tiles.push_back({clean_name(file), *certificate.tile, certificate.clearance,
                      check_certificate(certificate, part.scene, &scene), ""});
     CheckedTile& tile = tiles.back();
@@ -131,24 +130,27 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   Verdict verdict = Verdict::proved;
   std::string reason, table;
   Json each = Json::array();
-  Certificate::Claims sum;
+  using Claims = Certificate::Claims;
+  Claims sum;
   double ms = 0;
   for (const CheckedTile& tile : tiles) {
     const CheckResult& result = tile.result;
     const std::string why =
         result.reason + (tile.pair.empty() ? "" : fmt::format(": {}", tile.pair));
-    table += fmt::format("tile       {}, {}: {}\n", tile.file, interval_text(tile.slab),
+    table += fmt::format("tile       {}, {}: {}\n", tile.file, interval_text(tile.tile),
                          result.verdict == Verdict::proved
                              ? counted(result.found.meeting, "pair", "pairs")
                              : to_string(result.verdict) + ": " + why);
     each.push_back({{"certificate", tile.file},
-                    {"tile", interval_text(tile.slab)},
+                    {"tile", interval_text(tile.tile)},
                     {"verdict", to_string(result.verdict)},
                     {"reason", text_json(why)},
-                    {"box_pairs", result.found.box_pairs},
-                    {"meeting", result.found.meeting},
-                    {"list_sha256", text_json(result.list_sha256)}});
-    sum.box_pairs += result.found.box_pairs;
+                    {"list", {{"found_sha256", text_json(result.list_sha256)}}},
+                    {"found", claims_json(result.found)},
+                    {"ms", result.ms}});
+    for (const auto count : {&Claims::box_pairs, &Claims::kept, &Claims::culled, &Claims::separated,
+                             &Claims::neighbours, &Claims::meeting})
+      sum.*count += result.found.*count;
     ms += result.ms;
     if (result.verdict == Verdict::proved || verdict == Verdict::refuted) continue;
     if (verdict == Verdict::not_proved && result.verdict != Verdict::refuted) continue;
@@ -157,7 +159,8 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   }
   if (reason.empty() && whole) reason = not_whole(tiles);
   const int certified = reason.empty() ? kExitDone : kExitBroken;  // whatever list is given
-  if (reason.empty() && !arguments.pairs.empty()) reason = other_list(arguments.pairs, list);
+  const std::string other = arguments.pairs.empty() ? "" : other_list(arguments.pairs, list);
+  if (reason.empty()) reason = other;
   if (!reason.empty() && verdict == Verdict::proved) verdict = Verdict::not_proved;
   const std::string proves =
       (whole ? "" : "of the pairs that belong to the tile, ") +
@@ -167,12 +170,21 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   const std::string sha256 = hash.digest();
   const int status = verdict == Verdict::proved ? kExitDone : kExitBroken;
   if (!arguments.json.empty()) {
-    write_json({{"verdict", to_string(verdict)},
+    // The keys are those of check_json() about one certificate.
+    write_json({{"certificate", clean_name(arguments.certificate)},
+                {"scene", {{"name", census.name}, {"hash", hash_of_scene}}},
+                {"clearance", tiles.front().clearance},
+                {"verdict", to_string(verdict)},
                 {"proves", json_if(status == kExitDone, proves)},
                 {"reason", text_json(reason)},
-                {"list_sha256", sha256},
-                {"tiles", each},
-                {"ms", ms}},
+                {"list",
+                 {{"found_sha256", sha256},
+                  {"given", text_json(clean_name(arguments.pairs))},
+                  {"given_is_found", json_if(!arguments.pairs.empty(), other.empty())}}},
+                {"found", claims_json(sum)},
+                {"unattested", tiles.back().result.unattested},
+                {"ms", ms},
+                {"tiles", each}},
                arguments.json);
   }
   if (arguments.json != "-") {

@@ -28,7 +28,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  farcull clash parts/\n"
     "  farcull clash parts/*.stl --clearance 0.5 --unit mm --csv clashes.csv\n"
-    "  farcull clash robot.json --ignore 'link*:base,hand:cup' --touching report\n"
+    "  farcull clash robot.json --ignore 'link*:base,hand:cup' --fail-on clash,touch\n"
     "  farcull clash a.obj b.obj --json - | jq '.pairs[0].depth'\n\n"
     "Each pair of parts has a verdict, the most serious first:\n"
     "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
@@ -51,44 +51,43 @@ class ClashCommand {
   int run() const;
 
  private:
-  std::vector<std::string> parts() const;
-  std::vector<IgnoredNames> ignored() const;
-  std::vector<ClashVerdict> failing(bool touches) const;
+  SceneArguments parts() const;
+  std::vector<ClashVerdict> failing() const;
 
-  std::vector<std::string> scene_;
-  Text clearance_, touching_, ignore_, ignore_file_, unit_, fail_on_;
+  SceneArguments scene_;
+  Text clearance_, ignore_, ignore_file_, unit_, fail_on_;
   Outputs outputs_;
 };
 
 CLI::App* ClashCommand::add_to(CLI::App& app) {
   return add_command(
       app, "clash", "which parts clash, touch or are too near, one row for each pair",
-      Rows{{"PARTS", &scene_, "", "a folder of mesh files; or " + std::string(kSceneHelp),
-            Need::must},
-           {"--clearance", &clearance_, "D",
-            "parts at this distance or less are near, in world\nunits; default 0"},
-           {"--touching", &touching_, "allow|report",
-            "report: list pairs that touch, and fail for them;\ndefault allow"},
-           {"--ignore", &ignore_, "LIST",
-            "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
-            "listed\nlast where they meet"},
-           {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
-           {"--fail-on", &fail_on_, "LIST",
-            "verdicts for which the exit status is 1, or none;\ndefault clash,contained,unknown"},
-           {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
-           {"--csv", &outputs_.csv, "FILE",
-            "write the pairs as CSV to this file; - for standard\noutput, without the table"},
-           {"--json", &outputs_.json, "FILE", kJsonHelp},
-           {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
+      scene_rows(scene_, "PARTS", "a folder of mesh files; or " + std::string(kSceneHelp)) +
+          Rows{
+              {"--clearance", &clearance_, "D",
+               "parts at this distance or less are near, in world\nunits; default 0"},
+              {"--ignore", &ignore_, "LIST",
+               "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
+               "listed\nlast where they meet"},
+              {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
+              {"--fail-on", &fail_on_, "LIST",
+               "verdicts for which the exit status is 1, or none;\n"
+               "with touch, pairs that touch are listed as well;\ndefault clash,contained,unknown"},
+              {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
+              {"--csv", &outputs_.csv, "FILE",
+               "write the pairs as CSV to this file; - for standard\noutput, without the table"},
+              {"--json", &outputs_.json, "FILE", kJsonHelp},
+              {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
       kExamples);
 }
 
 // The arguments, with the mesh files of a folder in place of the folder.
-std::vector<std::string> ClashCommand::parts() const {
-  std::vector<std::string> out;
-  for (const std::string& part : scene_) {
+SceneArguments ClashCommand::parts() const {
+  SceneArguments out = scene_;
+  out.names.clear();
+  for (const std::string& part : scene_.names) {
     if (!fs::is_directory(part)) {
-      out.push_back(part);
+      out.names.push_back(part);
       continue;
     }
     std::vector<std::string> files;
@@ -98,26 +97,14 @@ std::vector<std::string> ClashCommand::parts() const {
     if (files.empty())
       throw Error(part, "the folder has no mesh files", "name a folder with meshes, or the files");
     std::ranges::sort(files);
-    out.insert(out.end(), files.begin(), files.end());
+    out.names.insert(out.names.end(), files.begin(), files.end());
   }
   return out;
 }
 
-std::vector<IgnoredNames> ClashCommand::ignored() const {
-  std::vector<IgnoredNames> out;
-  if (ignore_) out = parse_ignored(*ignore_);
-  if (ignore_file_) {
-    for (IgnoredNames& names : read_ignored(*ignore_file_)) out.push_back(std::move(names));
-  }
-  return out;
-}
-
-std::vector<ClashVerdict> ClashCommand::failing(bool touches) const {
-  std::vector<ClashVerdict> out = {ClashVerdict::clash, ClashVerdict::contained,
-                                   ClashVerdict::unknown};
-  if (touches) out.push_back(ClashVerdict::touch);
-  if (!fail_on_) return out;
-  out.clear();
+std::vector<ClashVerdict> ClashCommand::failing() const {
+  if (!fail_on_) return {ClashVerdict::clash, ClashVerdict::contained, ClashVerdict::unknown};
+  std::vector<ClashVerdict> out;
   if (*fail_on_ == "none") return out;
   for (const std::string& word : split_list(*fail_on_)) {
     const auto at =
@@ -133,13 +120,11 @@ std::vector<ClashVerdict> ClashCommand::failing(bool touches) const {
 int ClashCommand::run() const {
   ClashOptions options;
   if (clearance_) options.clearance = parse_clearance(*clearance_);
-  const bool reported = word_of("--touching", touching_, {"allow", "report"}, "no choice",
-                                "give allow or report") == 1;
-  const std::vector<ClashVerdict> failing = this->failing(reported);
-  const bool touches = reported || std::ranges::find(failing, ClashVerdict::touch) != failing.end();
-  check_scene(scene_);
-  const std::vector<std::string> files = parts();
-  std::vector<NamedFile> inputs = scene_files(files);
+  const std::vector<ClashVerdict> failing = this->failing();
+  const bool touches = std::ranges::find(failing, ClashVerdict::touch) != failing.end();
+  check_scene(scene_.names);
+  const SceneArguments files = parts();
+  std::vector<NamedFile> inputs = scene_files(files.names);
   if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
   const Outputs outputs = checked(outputs_, inputs);
   TerminalProgress terminal;
@@ -147,7 +132,7 @@ int ClashCommand::run() const {
   if (progress) progress("reading the scene");
   Scene scene = read_scene(files);
   for (Object& object : scene.objects) object.self = false;
-  options.ignored = ignored_objects(scene, ignored());
+  options.ignored = ignored_objects(scene, ignored_names(ignore_, ignore_file_));
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
   options.ignored = in_order(std::move(options.ignored));
   require_asked(scene, options.ignored, "SCENE", "");

@@ -64,28 +64,6 @@ DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
 
 DeclaredCommand declared(const CLI::App& app) { return declared(app, ""); }
 
-namespace {
-
-// How the meshes of a scene are read. The options become words of the scene (scene_words()).
-void add_reading_options(CLI::App& command, std::vector<std::string>& scene) {
-  const auto weld = std::make_shared<std::string>(), format = std::make_shared<std::string>();
-  command
-      .add_option(
-          "--weld", *weld,
-          "merge vertices of a mesh that are at most T apart, in\nits units, or relative to "
-          "the diagonal of its box, as in\n1e-7*size")
-      ->type_name("T");
-  command
-      .add_option("--format", *format, "of the mesh SCENE -, standard input: obj, off, ply or stl")
-      ->type_name("F");
-  command.parse_complete_callback([weld, format, &command, &scene] {
-    if (command.count("--weld") > 0) scene.push_back("--weld=" + *weld);
-    if (command.count("--format") > 0) scene.push_back("--format=" + *format);
-  });
-}
-
-}  // namespace
-
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer) {
   CLI::App* command = parent.add_subcommand(name, title);
@@ -112,9 +90,6 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
     if (option->get_items_expected_max() > 0)
       option->type_name(row.type)->required(row.need == Need::must);
     if (*row.group != 0) option->group(row.group);
-    if (row.name != std::string("SCENE") && row.name != std::string("PARTS")) continue;
-    if (auto* const scene = std::get_if<std::vector<std::string>*>(&row.value))
-      add_reading_options(*command, **scene);
   }
   command->footer("");  // else CLI11 appends the parent's footer to a function's text
   std::visit([&](const auto& text) { command->footer(text); }, footer);
@@ -208,17 +183,17 @@ void require_number(const std::string& certificate, bool frames) {
 
 }  // namespace
 
-OptionRow scene_row(std::vector<std::string>& scene) {
-  return {"SCENE", &scene, "", kSceneHelp, Need::must};
+Rows scene_rows(SceneArguments& scene, const char* name, const std::string& help, Need need) {
+  return {{name, &scene.names, "", help, need},
+          {"--weld", &scene.weld, "T",
+           "merge vertices of a mesh that are at most T apart, in\nits units, or relative to the "
+           "diagonal of its box, as in\n1e-7*size"},
+          {"--format", &scene.format, "F",
+           "of the mesh SCENE -, standard input: obj, off, ply or stl"}};
 }
 
 OptionRow ignore_row(Text& ignore) {
   return {"--ignore", &ignore, "LIST", help_of_option("ignore")};
-}
-
-std::vector<std::string> with_ignored(std::vector<std::string> scene, const Text& ignore) {
-  if (ignore) scene.push_back("--ignore=" + *ignore);
-  return scene;
 }
 
 Rows MethodOptions::rows(const std::vector<std::string>& names) {
@@ -257,7 +232,7 @@ void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
 }
 
-Scene read_scene(const std::vector<std::string>& arguments) {
+Scene read_scene(const SceneArguments& arguments) {
   Scene scene = load_scene(arguments);
   for (const std::string& note : take_reading_notes()) complain(note);
   return scene;
@@ -268,9 +243,9 @@ void complain_broken(const std::string& message) {
   std::fprintf(stderr, "%s\n", coloured(line, Colour::bad, STDERR_FILENO).c_str());
 }
 
-std::string command_with(const std::string& command, const std::vector<std::string>& scene) {
+std::string command_with(const std::string& command, const SceneArguments& scene) {
   std::string out = command;
-  for (const std::string& word : scene) out += " " + quoted(clean_name(word));
+  for (const std::string& word : scene.words()) out += " " + quoted(clean_name(word));
   return out;
 }
 
@@ -329,7 +304,7 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
   };
   if (arguments.empty()) add_packaged();
   for (const std::string& argument : arguments) {
-    if (argument == "-" || argument.starts_with("--")) continue;  // no file
+    if (argument == "-") continue;  // no file
     if (is_builtin_scene(argument)) {
       if (needs_meshes(argument)) add_packaged();
     } else if (is_scene_file(argument)) {

@@ -174,7 +174,7 @@ struct NamedFile {
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
-/// The files that load_scene() and, with a range, FrameSource read for these arguments: the scene
+/// The files that load_scene() and, with a range, FrameSource read for these names: the scene
 /// file and its meshes, or the mesh files, numbered ones once per frame. For a built-in scene of
 /// packaged meshes, and for no arguments (all built-in scenes), the meshes of mesh_folder(). `by`
 /// is SCENE. A file that cannot be read is no error here: reading the scene reports it.
@@ -190,15 +190,12 @@ void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<Na
 /// terminal, /dev/null) may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
-/// The row of the required argument SCENE.
-OptionRow scene_row(std::vector<std::string>& scene);
-
 /// Prints the one line of a failure on standard error, without the control characters that a path
 /// may hold.
 void complain(const std::string& message);
 
 /// load_scene(), and its notes (take_reading_notes()) as lines on standard error.
-Scene read_scene(const std::vector<std::string>& arguments);
+Scene read_scene(const SceneArguments& arguments);
 
 /// Prints the line of a broken guarantee likewise, in red on a terminal.
 void complain_broken(const std::string& message);
@@ -210,7 +207,7 @@ void require_pairs(const NothingToTest& nothing, const std::string& command);
 /// objects are ignored, by these (as in_order() gives them) or by the scene.
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// The command followed by the words of a scene, quoted for a shell.
-std::string command_with(const std::string& command, const std::vector<std::string>& scene);
+std::string command_with(const std::string& command, const SceneArguments& scene);
 
 /// One line on standard error that each update overwrites; on a terminal only.
 class TerminalProgress {
@@ -300,10 +297,7 @@ std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
-/// The row of --ignore, for commands that give it to load_scene() as a word of the scene.
 OptionRow ignore_row(Text& ignore);
-/// The words of the scene with that of --ignore.
-std::vector<std::string> with_ignored(std::vector<std::string> scene, const Text& ignore);
 
 /// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
@@ -315,6 +309,9 @@ inline constexpr const char* kSceneHelp =
     "so on), each an object;\n"
     "or one scene file (.json: farcull help scene-file); or\n"
     "one built-in scene (farcull scenes lists them)";
+/// The rows of the argument that names a scene, and of how its meshes are read.
+Rows scene_rows(SceneArguments& scene, const char* name = "SCENE",
+                const std::string& help = kSceneHelp, Need need = Need::must);
 inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";
@@ -322,11 +319,11 @@ inline constexpr const char* kJsonHelp =
 // `farcull check`: checks a certificate, or a list of pairs, against its scene.
 
 struct CheckArguments {
-  std::string certificate;         // a file, numbered for frames; "": only `pairs` is checked
-  std::vector<std::string> scene;  // as of `farcull run`
-  std::string json = {};           // "" for none; "-": standard output, in place of the text
-  bool self = false;               // every object is tested against itself, as by run --self
-  std::string pairs = {};          // "" for none, or a list as `farcull run --pairs` writes it
+  std::string certificate;  // a file, numbered for frames; "": only `pairs` is checked
+  SceneArguments scene;
+  std::string json = {};   // "" for none; "-": standard output, in place of the text
+  bool self = false;       // every object is tested against itself, as by run --self
+  std::string pairs = {};  // "" for none, or a list as `farcull run --pairs` writes it
   std::optional<double> clearance = {};  // of the list; a certificate must have it too
   std::optional<FrameRange> frames = {};
   std::optional<FrameRange> tiles = {};  // the numbers of the tiles in the name of the certificate
@@ -356,9 +353,9 @@ class PictureCommand {
   /// The options that all panels share.
   RunOptions usual_options() const;
 
-  std::vector<std::string> scene_;
-  Text ignore_, method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_,
-      view_, up_, size_, output_, html_, resolutions_;
+  SceneArguments scene_;
+  Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
+      up_, size_, output_, html_, resolutions_;
   BareOption depth_view_;
   bool self_ = false, zoom_ = false;
 };

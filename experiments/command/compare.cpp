@@ -16,6 +16,7 @@ class CompareCommand {
   int run() const;
 
  private:
+  SceneArguments scene_;
   CompareArguments arguments_;
   MethodOptions options_;
   Outputs outputs_;
@@ -24,16 +25,16 @@ class CompareCommand {
 CLI::App* CompareCommand::add_to(CLI::App& app) {
   return add_command(
       app, "compare", "methods and resolutions side by side",
-      Rows{scene_row(arguments_.scene),
-           {"--methods", &arguments_.methods, "LIST",
-            "separated by commas;\ndefault far,cullide,far-pairs,exact"},
-           {"--resolutions", &arguments_.resolutions, "LIST",
-            "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
-            "far-pairs: with a number views decide"},
-           {"--offsets", &arguments_.offsets, "LIST",
-            "for far, separated by commas: obb, exact;\ndefault obb"},
-           {"--repeat", &arguments_.repeat, "N",
-            "runs of each, the one with the median time is shown;\ndefault 1"}} +
+      scene_rows(scene_) +
+          Rows{{"--methods", &arguments_.methods, "LIST",
+                "separated by commas;\ndefault far,cullide,far-pairs,exact"},
+               {"--resolutions", &arguments_.resolutions, "LIST",
+                "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
+                "far-pairs: with a number views decide"},
+               {"--offsets", &arguments_.offsets, "LIST",
+                "for far, separated by commas: obb, exact;\ndefault obb"},
+               {"--repeat", &arguments_.repeat, "N",
+                "runs of each, the one with the median time is shown;\ndefault 1"}} +
           options_.rows({"views", "rounds", "clear", "level", "boxes", "conservative", "device",
                          "self", "clearance"}) +
           Rows{{"--json", &outputs_.json, "FILE", kJsonHelp}},
@@ -50,7 +51,7 @@ int CompareCommand::run() const {
   CompareArguments arguments = arguments_;
   RunOptions& options = arguments.options;
   arguments.self = options_.has("self");
-  options.seed = seed_of(arguments.scene);
+  options.seed = seed_of(scene_.names);
   // The scene may choose the views only if far-pairs is among the methods.
   const bool pairs =
       !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
@@ -59,15 +60,14 @@ int CompareCommand::run() const {
     if (run_option(name).take) take_option(name, text, options);
   }
   validate(arguments);
-  check_scene(arguments.scene);
-  const Outputs outputs = checked(outputs_, scene_files(arguments.scene));
+  check_scene(scene_.names);
+  const Outputs outputs = checked(outputs_, scene_files(scene_.names));
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(arguments.scene);
+  Scene scene = read_scene(scene_);
   if (arguments.self) make_self(scene);
-  require_pairs(nothing_to_test(scene),
-                command_with("farcull compare", arguments.scene) + " --self");
+  require_pairs(nothing_to_test(scene), command_with("farcull compare", scene_) + " --self");
   const Comparison comparison = compare(scene, arguments, progress);
   terminal.clear();
   const std::vector<Record> records = comparison.median_records();

@@ -176,19 +176,20 @@ class DiagramArguments {
 
 // Writes the record of the scene to the outputs. Returns the exit status; 1: the reliable form lost
 // a nearest object.
-int run_diagram(const std::vector<std::string>& words, const DiagramOptions& options,
+int run_diagram(const SceneArguments& arguments, const DiagramOptions& options,
                 const Outputs& outputs) {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  const Scene scene = read_scene(words);
+  const Scene scene = read_scene(arguments);
   require_nothing_ignored(scene, "farcull distance");
   const std::string nothing = nothing_asked(scene, {.pairs = DistancePairs::nearest});
   if (!nothing.empty()) throw Error("SCENE", nothing, "name two objects or more");
   const DiagramRecord record = potential_neighbours(scene, options, progress);
   terminal.clear();
   if (outputs.csv) write_output(*outputs.csv, diagram_csv(scene, record));
-  if (outputs.json) write_json(diagram_json(scene, record, seed_of(words)), *outputs.json);
+  if (outputs.json)
+    write_json(diagram_json(scene, record, seed_of(arguments.names)), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", diagram_table(scene, record));
   const DiagramTotals totals = totals_of(record);
   if (options.form == DiagramForm::published || totals.lost == 0) return kExitDone;
@@ -209,8 +210,8 @@ class DistanceCommand {
   int run_once(const DistanceOptions& options, const Outputs& outputs) const;
   int run_frames(const DistanceOptions& options, const Outputs& outputs, FrameRange range) const;
 
-  std::vector<std::string> scene_;
-  Text ignore_, pairs_, k_, within_, inside_, threads_, frames_;
+  SceneArguments scene_;
+  Text pairs_, k_, within_, inside_, threads_, frames_;
   bool self_ = false, verify_ = false;
   DiagramArguments diagram_;
   Outputs outputs_;
@@ -219,33 +220,33 @@ class DistanceCommand {
 CLI::App* DistanceCommand::add_to(CLI::App& app) {
   return add_command(
       app, "distance", "how far objects are apart, and where they are nearest",
-      Rows{scene_row(scene_),
-           {"--pairs", &pairs_, "WHICH",
-            "objects: the nearest triangles of every two objects;\n"
-            "nearest: of each object and its K nearest others;\n"
-            "all: all pairs of triangles within D; default objects"},
-           {"--k", &k_, "K", "with --pairs nearest: how many others; default 1"},
-           {"--within", &within_, "D",
-            "nothing farther apart is answered, in world units;\n--pairs all needs it"},
-           {"--self", &self_, "",
-            "the triangles of one object as well, those that share\n"
-            "a vertex position left out"},
-           ignore_row(ignore_),
-           {"--inside", &inside_, "yes|parity|no",
-            "whether an object lies inside another: by winding\n"
-            "numbers (yes, the default), by the parity of\n"
-            "crossings, or not at all"},
-           {"--threads", &threads_, "N", "of the CPU; default as many as there are cores"},
-           {"--verify", &verify_, "",
-            "check each answer by other code, and of each pair that\nit is no nearer than the "
-            "answers"},
-           {"--frames", &frames_, "N|A:B", "as for farcull run: of a scene that moves"},
-           {"--json", &outputs_.json, "FILE", kJsonHelp},
-           {"--csv", &outputs_.csv, "FILE",
-            "write the pairs as CSV to this file; - for standard\noutput, without the table"},
-           {"--certificate", &outputs_.certificate, "FILE",
-            "write evidence of each distance to this file, for\n"
-            "farcull check; with --frames a number (%d or %04d) in it"}} +
+      scene_rows(scene_) +
+          Rows{{"--pairs", &pairs_, "WHICH",
+                "objects: the nearest triangles of every two objects;\n"
+                "nearest: of each object and its K nearest others;\n"
+                "all: all pairs of triangles within D; default objects"},
+               {"--k", &k_, "K", "with --pairs nearest: how many others; default 1"},
+               {"--within", &within_, "D",
+                "nothing farther apart is answered, in world units;\n--pairs all needs it"},
+               {"--self", &self_, "",
+                "the triangles of one object as well, those that share\n"
+                "a vertex position left out"},
+               ignore_row(scene_.ignore),
+               {"--inside", &inside_, "yes|parity|no",
+                "whether an object lies inside another: by winding\n"
+                "numbers (yes, the default), by the parity of\n"
+                "crossings, or not at all"},
+               {"--threads", &threads_, "N", "of the CPU; default as many as there are cores"},
+               {"--verify", &verify_, "",
+                "check each answer by other code, and of each pair that\nit is no nearer than the "
+                "answers"},
+               {"--frames", &frames_, "N|A:B", "as for farcull run: of a scene that moves"},
+               {"--json", &outputs_.json, "FILE", kJsonHelp},
+               {"--csv", &outputs_.csv, "FILE",
+                "write the pairs as CSV to this file; - for standard\noutput, without the table"},
+               {"--certificate", &outputs_.certificate, "FILE",
+                "write evidence of each distance to this file, for\n"
+                "farcull check; with --frames a number (%d or %04d) in it"}} +
           diagram_.rows(),
       kDistanceExamples);
 }
@@ -311,7 +312,7 @@ int DistanceCommand::run() const {
     refuse_given({{"--pairs", pairs_.has_value()},
                   {"--k", k_.has_value()},
                   {"--within", within_.has_value()},
-                  {"--ignore", ignore_.has_value()},
+                  {"--ignore", scene_.ignore.has_value()},
                   {"--self", self_},
                   {"--inside", inside_.has_value()},
                   {"--verify", verify_},
@@ -319,14 +320,14 @@ int DistanceCommand::run() const {
                   {"--certificate", outputs_.certificate.has_value()}},
                  "has no meaning with --voronoi", "leave one of the two out");
     const DiagramOptions options = diagram_.parse(threads());
-    check_scene(scene_);
-    return run_diagram(scene_, options, checked(outputs_, scene_files(scene_, {})));
+    check_scene(scene_.names);
+    return run_diagram(scene_, options, checked(outputs_, scene_files(scene_.names)));
   }
   const DistanceOptions options = parse();
-  check_scene(scene_);
+  check_scene(scene_.names);
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
-  const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
+  const Outputs outputs = checked(outputs_, scene_files(scene_.names, range), range);
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
@@ -346,13 +347,13 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(with_ignored(scene_, ignore_));
+  Scene scene = read_scene(scene_);
   if (self_) make_self(scene);
   require_question(scene, options);
   const DistanceRecord record = distances(scene, options, progress);
   terminal.clear();
   if (outputs.csv) write_output(*outputs.csv, distances_header() + distances_rows(scene, record));
-  if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_)), *outputs.json);
+  if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_.names)), *outputs.json);
   if (outputs.certificate)
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
   if (!outputs.to_stdout())
@@ -368,27 +369,27 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  FrameSource source(with_ignored(scene_, ignore_), range, self_);
+  FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {
     terminal.clear();
     complain(missing->where + ": the file does not exist; the frames before it are run");
   }
   Frames frames(outputs, options, range.count());
   DistanceMemory memory;
-  for_each_frame(range, "what they gave is written", progress, "",
-                 [&](long frame, const Progress&) {
-                   const Scene& scene = source.at(frame);
-                   require_question(scene, options);
-                   const DistanceRecord record = distances(scene, options, progress, &memory);
-                   terminal.clear();
-                   // Written first, so that every frame in the record has its certificate.
-                   if (outputs.certificate) {
-                     write_output(numbered(*outputs.certificate, frame),
-                                  to_text(certificate_of(scene, record)));
-                   }
-                   frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_)),
-                              source.topology_changed());
-                 });
+  for_each_frame(
+      range, "what they gave is written", progress, "", [&](long frame, const Progress&) {
+        const Scene& scene = source.at(frame);
+        require_question(scene, options);
+        const DistanceRecord record = distances(scene, options, progress, &memory);
+        terminal.clear();
+        // Written first, so that every frame in the record has its certificate.
+        if (outputs.certificate) {
+          write_output(numbered(*outputs.certificate, frame),
+                       to_text(certificate_of(scene, record)));
+        }
+        frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_.names)),
+                   source.topology_changed());
+      });
   frames.finish();
   if (frames.sum().holds()) return kExitDone;
   complain_broken(verdict_text(frames.sum()));

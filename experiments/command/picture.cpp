@@ -92,39 +92,41 @@ std::string size_text(std::size_t bytes) {
 CLI::App* PictureCommand::add_to(CLI::App& app) {
   return add_command(
       app, "picture", "what a method finds and misses, as a picture (PNG) or a page",
-      {{"SCENE", &scene_, "", kSceneHelp, Need::must},
-       {"-o,--output", &output_, "FILE", "where the PNG goes; - for standard output"},
-       {"--method", &method_, "METHOD", "as farcull run takes it; default far-pairs"},
-       {"--compare", &compare_, "LIST",
-        "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
-        "cullide:128,far:128"},
-       {"--resolution", &resolution_, "N", "px, as farcull run takes it"},
-       {"--radius", &radius_, "RADIUS", "for far: budget, published, or a factor"},
-       {"--offset", &offset_, "OFFSET", "for far: obb or exact; default obb"},
-       {"--depth", &depth_, "fragment|fixed", "for far; default fragment"},
-       {"--device", &device_, "DEVICE", help_of_option("device")},
-       {"--self", &self_, "", help_of_option("self")},
-       ignore_row(ignore_),
-       {"--frame", &frame_, "F", "of a scene that moves"},
-       {"--frames", &frames_, "N|A:B",
-        "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
-        "--frame: the\nframes that the reader steps through"},
-       {"--view", &view_, "DIR",
-        "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82"},
-       {"--up", &up_, "AXIS", "upwards in the picture; default y"},
-       {"--zoom", &zoom_, "", "show only where something collides"},
-       {"--view-depth", &depth_view_, "[VIEW]",
-        "instead: the depth that the method stores in one of\nits "
-        "views (default z; --view-depth=-z for -z), and\n"
-        "what that view culls"},
-       {"--html", &html_, "FILE",
-        "a page to look into the answers: one file that opens in\nany browser and needs no "
-        "network"},
-       {"--resolutions", &resolutions_, "LIST",
-        "with --html: px, by commas, that the reader steps\nthrough, of methods without a "
-        "resolution "
-        "of their own;\ndefault 32,64,128,256,512"},
-       {"--size", &size_, "WxH", "px of a panel; default 900x760"}},
+      scene_rows(scene_) +
+          Rows{{"-o,--output", &output_, "FILE", "where the PNG goes; - for standard output"},
+               {"--method", &method_, "METHOD", "as farcull run takes it; default far-pairs"},
+               {"--compare", &compare_, "LIST",
+                "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
+                "cullide:128,far:128"},
+               {"--resolution", &resolution_, "N", "px, as farcull run takes it"},
+               {"--radius", &radius_, "RADIUS", "for far: budget, published, or a factor"},
+               {"--offset", &offset_, "OFFSET", "for far: obb or exact; default obb"},
+               {"--depth", &depth_, "fragment|fixed", "for far; default fragment"},
+               {"--device", &device_, "DEVICE", help_of_option("device")},
+               {"--self", &self_, "", help_of_option("self")},
+               ignore_row(scene_.ignore),
+               {"--frame", &frame_, "F", "of a scene that moves"},
+               {"--frames", &frames_, "N|A:B",
+                "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and "
+                "without "
+                "--frame: the\nframes that the reader steps through"},
+               {"--view", &view_, "DIR",
+                "direction that the picture looks along, as in -z or\n-1:-1:-2; default "
+                "-0.45:-0.35:-0.82"},
+               {"--up", &up_, "AXIS", "upwards in the picture; default y"},
+               {"--zoom", &zoom_, "", "show only where something collides"},
+               {"--view-depth", &depth_view_, "[VIEW]",
+                "instead: the depth that the method stores in one of\nits "
+                "views (default z; --view-depth=-z for -z), and\n"
+                "what that view culls"},
+               {"--html", &html_, "FILE",
+                "a page to look into the answers: one file that opens in\nany browser and needs no "
+                "network"},
+               {"--resolutions", &resolutions_, "LIST",
+                "with --html: px, by commas, that the reader steps\nthrough, of methods without a "
+                "resolution "
+                "of their own;\ndefault 32,64,128,256,512"},
+               {"--size", &size_, "WxH", "px of a panel; default 900x760"}},
       "Examples:\n"
       "  farcull picture two-bunnies --method cullide --resolution 128 -o missed.png\n"
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
@@ -150,7 +152,7 @@ RunOptions PictureCommand::usual_options() const {
 
 PictureArguments PictureCommand::arguments() const {
   PictureArguments out;
-  out.scene = with_ignored(scene_, ignore_);
+  out.scene = scene_;
   out.self = self_;
   out.zoom = zoom_;
   if (frame_) out.frame = parse_frame(*frame_);
@@ -235,10 +237,11 @@ int PictureCommand::run() const {
   const PictureArguments arguments = this->arguments();
   if (resolutions_ && !html_)
     throw Error("--resolutions", "has a meaning for a page alone", "give --html FILE as well");
-  check_scene(arguments.scene);
+  check_scene(arguments.scene.names);
   std::optional<FrameRange> range = arguments.frames;
   if (arguments.frame && !range) range = FrameRange{*arguments.frame, *arguments.frame};
-  const Outputs outputs = checked_outputs(output_, html_, scene_files(arguments.scene, range));
+  const Outputs outputs =
+      checked_outputs(output_, html_, scene_files(arguments.scene.names, range));
   PageArguments page_arguments;
   if (html_) {
     page_arguments = this->page_arguments(arguments);

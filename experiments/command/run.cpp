@@ -123,7 +123,9 @@ class RunCommand {
   // Throws Error if an output cannot express what another option asks for.
   void refuse_outputs() const;
   PairColumns columns() const;
-  std::vector<IgnoredNames> ignored() const;
+  std::vector<IgnoredNames> ignored() const {
+    return ignored_names(options_.text("ignore"), options_.text("ignore_file"));
+  }
   bool leaves_out() const { return options_.has("only") || !ignored().empty(); }
   // The pairs of objects that are not tested: those of --ignore, and all but those of --only.
   std::vector<ObjectPair> left_out(const Scene& scene, Lacking lacking = Lacking::refused) const;
@@ -143,7 +145,7 @@ class RunCommand {
   int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
 
   Kind kind_;
-  std::vector<std::string> scene_;
+  SceneArguments scene_;
   MethodOptions options_;
   Text frames_, kinds_, tiles_;
   Outputs outputs_;
@@ -152,7 +154,7 @@ class RunCommand {
 };
 
 CLI::App* RunCommand::add_to(CLI::App& app) {
-  Rows rows = Rows{scene_row(scene_)} + options_.rows();
+  Rows rows = scene_rows(scene_) + options_.rows();
   if (kind_ != Kind::verify)
     rows.push_back({"--no-verify", &no_verify_, "", "leave out the accounting of all pairs"});
   const auto& [name, title, examples] = kCommands[static_cast<std::size_t>(kind_)];
@@ -212,7 +214,7 @@ Rows RunCommand::output_rows() {
 }
 
 RunOptions RunCommand::parse() const {
-  RunOptions out{.verify = !no_verify_, .seed = seed_of(scene_)};
+  RunOptions out{.verify = !no_verify_, .seed = seed_of(scene_.names)};
   if (contacts_ || kinds_) out.contacts = ContactDetail::kinds;
   if (segments_) out.contacts = ContactDetail::segments;
   return read_options(options_.given(), out);
@@ -246,15 +248,6 @@ PairColumns RunCommand::columns() const {
           .kinds = kinds_ ? parse_kinds(*kinds_) : std::vector<ContactKind>()};
 }
 
-std::vector<IgnoredNames> RunCommand::ignored() const {
-  std::vector<IgnoredNames> out;
-  if (const Text& list = options_.text("ignore")) out = parse_ignored(*list);
-  if (const Text& file = options_.text("ignore_file")) {
-    for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
-  }
-  return out;
-}
-
 std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking) const {
   std::vector<ObjectPair> out = ignored_objects(scene, ignored(), lacking);
   const Text& only = options_.text("only");
@@ -277,7 +270,7 @@ std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking
 }
 
 std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& range) const {
-  std::vector<NamedFile> out = scene_files(scene_, range);
+  std::vector<NamedFile> out = scene_files(scene_.names, range);
   if (const Text& file = options_.text("ignore_file")) out.push_back({"--ignore-file", *file});
   return out;
 }
@@ -301,7 +294,7 @@ std::string RunCommand::verdict_line(const Accounting& accounting) const {
 
 int RunCommand::run() const {
   const RunOptions options = parse();
-  check_scene(scene_);
+  check_scene(scene_.names);
   if (kind_ == Kind::plan) return tiles_ ? plan_tiles(options) : plan(options);
   if (tiles_) return run_tile(options);
   refuse_outputs();
@@ -442,7 +435,7 @@ void RunCommand::refuse_with_tiles(const RunOptions& options) const {
 }
 
 int RunCommand::run_tile(const RunOptions& options) const {
-  TileQuestion question{.options = options, .tile = parse_tile(*tiles_)};
+  TileQuestion question{.options = options, .number = parse_tile(*tiles_)};
   refuse_with_tiles(options);
   refuse_outputs();
   const Outputs outputs = checked(outputs_, read_files());
@@ -457,11 +450,8 @@ int RunCommand::run_tile(const RunOptions& options) const {
   require_pairs(nothing_to_test(tile.census), with_self());
   require_asked(tile.census, tile.ignored);
   if (outputs.certificate) {
-    Scene ignoring;
-    ignoring.name = tile.census.name;
-    ignoring.ignored = tile.ignored;
-    require_nothing_ignored(ignoring, "a certificate");
-    const WholeScene whole = whole_scene(tile.census, tile.slab, tile.part);
+    require_nothing_ignored(names_of(tile.census), "a certificate");
+    const WholeScene whole = whole_scene(tile.census, tile.tile, tile.part);
     write_output(*outputs.certificate,
                  to_text(certificate_of(tile.part.scene, tile.record, &whole)));
   }

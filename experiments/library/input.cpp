@@ -379,9 +379,10 @@ std::vector<Contact> given_out(const std::vector<ContactShape>& shapes) {
   return out;
 }
 
-std::vector<ObjectPair> ignored_of(const Options& options, std::size_t objects) {
+std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2>>& ignore,
+                                   std::size_t objects) {
   std::vector<ObjectPair> out;
-  for (const auto& [a, b] : options.ignore) {
+  for (const auto& [a, b] : ignore) {
     const std::string text = "names objects " + std::to_string(a) + " and " + std::to_string(b);
     if (std::max(a, b) >= objects) {
       throw Error("ignore", text + " of " + std::to_string(objects) + ", numbered from 0",

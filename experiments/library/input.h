@@ -1,6 +1,7 @@
 // For the functions of the library: converts and checks their input, options, answers and errors.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -115,7 +116,8 @@ ContactDetail detail_of(Contacts contacts);
 
 /// The ignored pairs of a scene with so many objects. Throws Error if a pair names an object that
 /// the scene does not have.
-std::vector<ObjectPair> ignored_of(const Options& options, std::size_t objects);
+std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2>>& ignore,
+                                   std::size_t objects);
 
 Contact given_out(const ContactShape& shape);
 std::vector<Contact> given_out(const std::vector<ContactShape>& shapes);

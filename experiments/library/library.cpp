@@ -121,7 +121,7 @@ void Collider::State::take_scene(const Input& input) {
 Result Collider::State::find(const Stopwatch& start, const FloatingPoint& callers,
                              const Progress& progress) {
   device();
-  run.ignored = ignored_of(options, taken.scene.objects.size());
+  run.ignored = ignored_of(options.ignore, taken.scene.objects.size());
   require_asked(taken.scene, run.ignored, "ignore", "test objects against themselves (self)");
   const Record record = farcull::run(
       taken.scene, run, session, progress,
@@ -205,7 +205,7 @@ struct Stream::State {
     TakenInput taken;
     take(input, options.self, options.self_objects, taken);
     scene = std::move(taken.scene);
-    const std::vector<ObjectPair> ignored = ignored_of(options, scene.objects.size());
+    const std::vector<ObjectPair> ignored = ignored_of(options.ignore, scene.objects.size());
     require_asked(scene, ignored, "ignore", "test objects against themselves (self)");
     candidates.emplace(scene, options.clearance, ignored, true, threads);
   }
@@ -290,6 +290,7 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
   DistanceOptions out{.pairs = pairs_of(options.kind),
                       .k = options.k,
                       .inside = options.inside,
+                      .parity = options.parity,
                       .threads = options.threads};
   if (options.threads > kMostThreads)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
@@ -301,6 +302,8 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
                 "give a finite distance, 0 or more");
   if (out.pairs == DistancePairs::nearest && options.k == 0)
     throw Error("k", "is 0", "give 1 or more");
+  if (out.pairs == DistancePairs::nearest && !options.ignore.empty())
+    throw Error("ignore", "has no meaning with nearest", "leave it out, or give another kind");
   return out;
 }
 
@@ -341,8 +344,11 @@ DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
 std::vector<DistanceAnswer> DistanceFinder::find(const Input& input) {
   return exclusive(state_, "DistanceFinder", [&](State& state) {
     take(input, state.given.self, state.given.self_objects, state.taken);
+    Scene& scene = state.taken.scene;
+    scene.ignored = ignored_of(state.given.ignore, scene.objects.size());
+    require_asked(scene, {}, "ignore", "give `self`");
     const DistanceRecord record = watched(state.given.may_go_on, [&](const Progress& progress) {
-      return distances(state.taken.scene, state.options, progress, &state.memory);
+      return distances(scene, state.options, progress, &state.memory);
     });
     std::vector<DistanceAnswer> out;
     out.reserve(record.distances.size());

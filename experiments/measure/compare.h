@@ -12,7 +12,6 @@
 namespace farcull {
 
 struct CompareArguments {
-  std::vector<std::string> scene;
   /// Names with commas. Empty: far, cullide, far-pairs and exact, without those that do not support
   /// the clearance, or objects tested against themselves if the scene has such objects.
   std::optional<std::string> methods;

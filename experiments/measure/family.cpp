@@ -169,14 +169,6 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod&
   return asks ? std::optional(cell) : std::nullopt;
 }
 
-// A field of a CSV file, in quotes where it has to be (RFC 4180).
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char ch : text) out += ch == '"' ? std::string("\"\"") : std::string(1, ch);
-  return out + "\"";
-}
-
 std::string rate(double ms) { return ms > 0 ? fmt::format("{:.1f}", 1000 / ms) : "-"; }
 
 }  // namespace
@@ -301,7 +293,7 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
       const FamilyFrame none;
       const FamilyFrame& box = found == swept.end() ? none : *found->second;
       out += fmt::format(
-          "{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", field(cell.scene), to_string(cell.method),
+          "{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", csv_cell(cell.scene), to_string(cell.method),
           cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles, csv_of(f),
           f.missed_contacts
               ? fmt::format("{},{}", f.missed_contacts->touching, f.missed_contacts->penetrating)

@@ -21,9 +21,9 @@ namespace farcull {
 // ---- the arguments of `farcull picture` as values ----
 
 struct PictureArguments {
-  std::vector<std::string> scene;  // as load_scene()
-  bool self = false;               // every object is tested against itself as well
-  std::optional<long> frame;       // of a scene that moves; empty: the scene without frames
+  SceneArguments scene;
+  bool self = false;          // every object is tested against itself as well
+  std::optional<long> frame;  // of a scene that moves; empty: the scene without frames
   std::optional<FrameRange>
       frames;  // of the motion; default 30 frames, or only `frame` for numbered meshes
   std::vector<RunOptions> panels;  // one panel each, side by side; verify and device are ignored

@@ -67,7 +67,8 @@ View camera(const PictureArguments& arguments) {
 
 FrameRange frames_of(const PictureArguments& arguments) {
   if (arguments.frames) return *arguments.frames;
-  const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene.front());
+  const std::vector<std::string>& names = arguments.scene.names;
+  const bool motion = names.size() == 1 && is_builtin_scene(names.front());
   if (motion) return {0, kUsualFrames - 1};
   return {*arguments.frame, *arguments.frame};
 }
@@ -79,7 +80,7 @@ std::string command_of(const PictureArguments& arguments) {
     add(name);
     add(value);
   };
-  for (const std::string& part : arguments.scene) add(part);
+  for (const std::string& word : arguments.scene.words()) add(word);
   const RunOptions& first = arguments.panels.front();
   if (arguments.panels.size() == 1) {
     option("--method", to_string(first.method));
@@ -165,11 +166,11 @@ std::string device_of(const Record& record) {
 }  // namespace
 
 const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
-  if (arguments.scene.size() == 1 && !arguments.self && !arguments.frame)
-    return lab.scene(arguments.scene.front());
+  const std::vector<std::string> words = arguments.scene.words();
+  if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
   // '\n' separates the parts: no name of a scene contains it.
   std::string key = arguments.self ? "self\n" : "\n";
-  for (const std::string& part : arguments.scene) key += part + "\n";
+  for (const std::string& word : words) key += word + "\n";
   if (arguments.frame) {
     const FrameRange range = frames_of(arguments);
     key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
@@ -384,13 +385,6 @@ PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
     result.panels[i].height = sheets[i].image.height;
   }
   result.texts = provenance(arguments, result, context.info());
-  return result;
-}
-
-PictureResult write_picture(const PictureArguments& arguments, Lab& lab, const std::string& path) {
-  check_output(path);
-  PictureResult result = make_picture(arguments, lab);
-  write_output(path, to_png(result.image, result.texts));
   return result;
 }
 

@@ -46,10 +46,6 @@ struct PictureResult {
 /// triangles or one that a method does not accept, and for faults of the device.
 PictureResult make_picture(const PictureArguments& arguments, Lab& lab);
 
-/// Writes make_picture() to the path as PNG, whole or not at all; "-" is standard output. Also
-/// throws Error as write_output().
-PictureResult write_picture(const PictureArguments& arguments, Lab& lab, const std::string& path);
-
 // `farcull picture --html`: one file with the scene, the answers of methods on it, and everything
 // that a browser needs to show and explore them. Its data are text: numbers and bits, compressed
 // for a reader in JavaScript (web/page_view.js).

@@ -195,7 +195,8 @@ std::span<const std::int64_t> Rows::wide() const {
   return {reinterpret_cast<const std::int64_t*>(data_), 3 * rows_};
 }
 
-Given::Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts)
+Given::Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts,
+             const py::array& poses)
     : vertices_(vertices, "V", false), triangles_(triangles, "F", true) {
   const auto starts = py::array_t<std::int64_t, py::array::c_style>::ensure(object_starts);
   if (!starts || starts.ndim() != 1)
@@ -210,13 +211,24 @@ Given::Given(const py::array& vertices, const py::array& triangles, const py::ar
     }
     starts_.push_back(static_cast<std::uint32_t>(first));
   }
+  const auto moves = py::array_t<double, py::array::c_style>::ensure(poses);
+  if (!moves || moves.ndim() != 3 || moves.shape(1) != 3 || moves.shape(2) != 4)
+    refuse("poses", "are no matrices", "give an array of shape (k, 3, 4)");
+  poses_.resize(static_cast<std::size_t>(moves.shape(0)));
+  const double* from = moves.data();
+  for (Pose& pose : poses_) {
+    for (std::size_t row = 0; row < 3; ++row, from += 4) {
+      std::copy(from, from + 3, pose.r.begin() + static_cast<std::ptrdiff_t>(3 * row));
+      pose.t[row] = from[3];
+    }
+  }
 }
 
 Input Given::input(Copies& copies) const {
   const std::span<const double> vertices = vertices_.doubles(copies.vertices);
   const std::span<const std::int64_t> wide = triangles_.wide();
-  if (!wide.empty()) return {vertices, {}, starts_, wide};
-  return {vertices, triangles_.indices(copies.triangles), starts_};
+  if (!wide.empty()) return {vertices, {}, starts_, wide, poses_};
+  return {vertices, triangles_.indices(copies.triangles), starts_, {}, poses_};
 }
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,

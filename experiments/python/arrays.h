@@ -132,7 +132,9 @@ struct Copies {
 /// The input of a call. Only its constructor and destructor need the interpreter.
 class Given {
  public:
-  Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts);
+  /// poses: (k, 3, 4) doubles, row by row; empty: no object moves.
+  Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts,
+        const py::array& poses);
   /// Overwrites `copies` if the library cannot use the arrays directly. The input is valid as long
   /// as this object exists and the copies exist unchanged.
   Input input(Copies& copies) const;
@@ -140,6 +142,7 @@ class Given {
  private:
   Rows vertices_, triangles_;
   std::vector<std::uint32_t> starts_;
+  std::vector<Pose> poses_;
 };
 
 /// An array (k, 2) from any type of pairs with members a and b.

@@ -96,10 +96,11 @@ class KeptFinder {
     beside([&] { finder_ = std::make_unique<Finder>(options); });
   }
 
-  auto find(const py::array& vertices, const py::array& triangles, const py::array& starts) {
+  auto find(const py::array& vertices, const py::array& triangles, const py::array& starts,
+            const py::array& poses) {
     require_process(process_, name_);
     const Turn turn(used_, name_);
-    const Given given(vertices, triangles, starts);
+    const Given given(vertices, triangles, starts, poses);
     return answer_beside([&] { return finder_->find(given.input(copies_)); });
   }
 
@@ -194,8 +195,8 @@ void add_collider(py::module_& module) {
            py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
            py::arg("resolution"))
       .def("find", [](KeptCollider& kept, const py::array& vertices, const py::array& triangles,
-                      const py::array& starts) {
-        return result_of(kept.find(vertices, triangles, starts), kept.options.contacts);
+                      const py::array& starts, const py::array& poses) {
+        return result_of(kept.find(vertices, triangles, starts, poses), kept.options.contacts);
       });
   // Codes of kinds are indices into this tuple, for both enumerations.
   static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
@@ -208,8 +209,8 @@ void add_collider(py::module_& module) {
 void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
       .def(py::init([](const std::string& kind, std::size_t k, std::optional<double> within,
-                       bool self, const std::vector<bool>& self_objects, bool inside,
-                       unsigned threads) {
+                       bool self, const std::vector<bool>& self_objects, bool inside, bool parity,
+                       const std::vector<std::array<std::uint32_t, 2>>& ignore, unsigned threads) {
         return std::make_unique<KeptDistances>("DistanceFinder",
                                                DistanceFinderOptions{.kind = kind_of(kind),
                                                                      .k = k,
@@ -217,11 +218,13 @@ void add_distances(py::module_& module) {
                                                                      .self = self,
                                                                      .self_objects = self_objects,
                                                                      .inside = inside,
+                                                                     .parity = parity,
+                                                                     .ignore = ignore,
                                                                      .threads = threads});
       }))
       .def("find", [](KeptDistances& kept, const py::array& vertices, const py::array& triangles,
-                      const py::array& starts) {
-        return columns_of(kept.find(vertices, triangles, starts));
+                      const py::array& starts, const py::array& poses) {
+        return columns_of(kept.find(vertices, triangles, starts, poses));
       });
   module.attr("features") = names_of(kFeatures);
   module.attr("inside") = names_of(kInside);
@@ -237,9 +240,9 @@ namespace {
 class KeptStream {
  public:
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
-             const Options& options)
+             const py::array& poses, const Options& options)
       : process_(::getpid()), contacts_(options.contacts) {
-    const Given given(vertices, triangles, starts);
+    const Given given(vertices, triangles, starts, poses);
     beside([&] {
       Copies copies;
       stream_ = std::make_unique<Stream>(given.input(copies), options);
@@ -293,8 +296,9 @@ class KeptStream {
 void add_stream(py::module_& module) {
   py::class_<KeptStream>(module, "Stream")
       .def(py::init([](const py::array& vertices, const py::array& triangles,
-                       const py::array& starts, const py::dict& question) {
-        return std::make_unique<KeptStream>(vertices, triangles, starts, options_of(question));
+                       const py::array& starts, const py::array& poses, const py::dict& question) {
+        return std::make_unique<KeptStream>(vertices, triangles, starts, poses,
+                                            options_of(question));
       }))
       .def("next", &KeptStream::next)
       // Python checks for signals after a call, but not after an assignment.

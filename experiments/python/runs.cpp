@@ -2,12 +2,15 @@
 // same names.
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ranges>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +29,8 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/weld.h"
 #include "experiments/scenes/scene_file.h"
 #include "verify/certificate/certificate.h"
 
@@ -38,9 +43,10 @@ namespace {
 using Kept = std::unique_ptr<KeptScene>;
 
 Kept from_arrays(const py::array& vertices, const py::array& triangles, const py::array& starts,
-                 const std::string& name, const std::vector<std::string>& names, bool self,
+                 const py::array& poses, const std::string& name,
+                 const std::vector<std::string>& names, bool self,
                  const std::vector<bool>& self_objects) {
-  const Given given(vertices, triangles, starts);
+  const Given given(vertices, triangles, starts, poses);
   return answer_beside([&] {
     TakenInput taken;
     Copies copies;
@@ -61,9 +67,16 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   });
 }
 
-Kept from_names(const std::vector<std::string>& names, bool self) {
+// weld: "" for none.
+SceneArguments arguments_of(const std::vector<std::string>& names, const std::string& weld) {
+  SceneArguments out(names);
+  if (!weld.empty()) out.weld = weld;
+  return out;
+}
+
+Kept from_names(const std::vector<std::string>& names, const std::string& weld, bool self) {
   return answer_beside([&] {
-    Scene scene = load_scene(names);
+    Scene scene = load_scene(arguments_of(names, weld));
     if (self) {
       for (Object& object : scene.objects) object.self = true;
     }
@@ -74,10 +87,11 @@ Kept from_names(const std::vector<std::string>& names, bool self) {
 // A scene that moves, for one thread at a time.
 class Frames {
  public:
-  Frames(const std::vector<std::string>& names, const std::string& range, bool self) {
+  Frames(const std::vector<std::string>& names, const std::string& weld, const std::string& range,
+         bool self) {
     beside([&] {
       range_ = parse_frames(range);
-      source_ = std::make_unique<FrameSource>(names, range_, self);
+      source_ = std::make_unique<FrameSource>(arguments_of(names, weld), range_, self);
     });
   }
   long first() const { return range_.first; }
@@ -100,6 +114,27 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   py::array_t<std::int64_t> out(static_cast<py::ssize_t>(objects.size()));
   for (std::size_t o = 0; o < objects.size(); ++o)
     out.mutable_at(static_cast<py::ssize_t>(o)) = objects[o].first_triangle;
+  return out;
+}
+
+// The triangles of a mesh after vertices that are at most so far apart were merged.
+py::array_t<std::uint32_t> welded(const py::array& vertices, const py::array& triangles,
+                                  const std::string& tolerance) {
+  const Rows from(vertices, "V", false), of(triangles, "F", true);
+  py::array_t<std::uint32_t> out({triangles.shape(0), py::ssize_t{3}});
+  std::uint32_t* const to = out.mutable_data();
+  beside([&] {
+    Copies copies;
+    Mesh mesh;
+    const std::span<const double> points = from.doubles(copies.vertices);
+    const std::span<const std::uint32_t> corners = of.indices(copies.triangles);
+    for (std::size_t k = 0; k + 2 < points.size(); k += 3)
+      mesh.vertices.emplace_back(points[k], points[k + 1], points[k + 2]);
+    for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
+      mesh.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
+    weld(mesh, parse_weld(tolerance));
+    std::ranges::copy(mesh.triangles | std::views::join, to);
+  });
   return out;
 }
 
@@ -147,6 +182,7 @@ void add_scenes(py::module_& module) {
       .def_property_readonly("self", each(&Object::self));
   module.def("scene_of_arrays", &from_arrays);
   module.def("scene_of_names", &from_names);
+  module.def("weld", &welded);
   module.def("take_reading_notes", [] {
     py::list out;
     for (const std::string& note : take_reading_notes()) out.append(note);
@@ -158,7 +194,8 @@ void add_scenes(py::module_& module) {
     return out;
   });
   py::class_<Frames>(module, "Frames")
-      .def(py::init<const std::vector<std::string>&, const std::string&, bool>())
+      .def(
+          py::init<const std::vector<std::string>&, const std::string&, const std::string&, bool>())
       .def_property_readonly("first", &Frames::first)
       .def_property_readonly("last", &Frames::last)
       .def("at", &Frames::at);

@@ -22,10 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json claims_json(const Certificate::Claims& claims) {
-  return FARCULL_JSON(claims, box_pairs, kept, culled, separated, neighbours, meeting);
-}
-
 Json checked_scene_json(const Scene& scene) {
   return {
       {"name", scene.name}, {"hash", scene_hash(scene)}, {"self_not_asked", not_asked_json(scene)}};
@@ -215,6 +211,10 @@ std::string unattested_text(const SceneCheck& check) {
                        to_string(callers_floating_point()));
   }
   return out;
+}
+
+Json claims_json(const Certificate::Claims& claims) {
+  return FARCULL_JSON(claims, box_pairs, kept, culled, separated, neighbours, meeting);
 }
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check) {

@@ -45,6 +45,7 @@ std::string check_text(const Scene& scene, const SceneCheck& check);
 std::string unattested_text(const SceneCheck& check);
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check);
+nlohmann::ordered_json claims_json(const Certificate::Claims& claims);
 
 /// The verdicts of several frames, and the verdict about all of them: refuted if one frame is
 /// refuted, else not proved if one frame is not proved.

@@ -61,11 +61,12 @@ FrameRange parse_frames(const std::string& text) {
   return range;
 }
 
-FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, bool self)
+FrameSource::FrameSource(SceneArguments arguments, FrameRange range, bool self)
     : arguments_(std::move(arguments)), range_(range), self_(self), meshes_(range.first) {
-  const bool built_in = arguments_.size() == 1 && is_builtin_scene(arguments_[0]);
-  if (built_in && has_motion(arguments_[0])) {
-    built_in_.emplace(arguments_[0], range.last + 1, self);
+  const std::vector<std::string>& names = arguments_.names;
+  const bool built_in = names.size() == 1 && is_builtin_scene(names[0]);
+  if (built_in && has_motion(names[0])) {
+    built_in_.emplace(names[0], range.last + 1, self);
     return;
   }
   if (!built_in) scene_ = load_scene(arguments_, meshes_);
@@ -87,8 +88,11 @@ const Scene& FrameSource::at(long frame) {
     if (now.triangles == scene_.triangles) now.triangles.swap(scene_.triangles);
     scene_ = std::move(now);
     for (Object& object : scene_.objects) object.self = object.self || self_;
+  } else if (arguments_.ignore) {
+    scene_ = built_in_->at(frame);  // the copies stay in the same memory
+    ignore_more(scene_, arguments_, first_ ? Lacking::refused : Lacking::passed_over);
   }
-  const Scene& scene = built_in_ ? built_in_->at(frame) : scene_;
+  const Scene& scene = built_in_ && !arguments_.ignore ? built_in_->at(frame) : scene_;
   const bool same = vertices_ == scene.vertices.size() && triangles_ == scene.triangles &&
                     same_objects(objects_, scene.objects);
   changed_ = !same && !first_;
@@ -292,11 +296,27 @@ std::vector<IgnoredNames> read_ignored(const std::string& path) {
   return out;
 }
 
+std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
+                                        const std::optional<std::string>& file) {
+  std::vector<IgnoredNames> out;
+  if (list) out = parse_ignored(*list);
+  if (!file) return out;
+  for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
+  return out;
+}
+
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         Lacking lacking) {
   std::vector<ObjectPair> out;
   for (const IgnoredNames& one : names) append(scene, one, lacking, out);
   return in_order(std::move(out));
+}
+
+void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking) {
+  for (const ObjectPair& pair :
+       ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
+    scene.ignored.push_back(pair);
+  scene.ignored = in_order(std::move(scene.ignored));
 }
 
 namespace {

@@ -467,6 +467,13 @@ std::string likely_name(const std::string& name) {
   return best.empty() ? "correct the name; " : "did you mean " + best + "? ";
 }
 
+MeshReading reading_of(const SceneArguments& arguments) {
+  MeshReading out{.weld = arguments.weld.value_or(""), .format = {}};
+  if (arguments.weld) parse_weld(*arguments.weld);
+  if (arguments.format) out.format = named_format(*arguments.format);
+  return out;
+}
+
 Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
   if (arguments.empty()) {
     throw Error("SCENE", "no scene is named",
@@ -489,31 +496,36 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
 
 }  // namespace
 
-Scene load_scene(const std::vector<std::string>& arguments) {
+std::vector<std::string> SceneArguments::words() const {
+  std::vector<std::string> out = names;
+  if (weld) out.push_back("--weld=" + *weld);
+  if (format) out.push_back("--format=" + *format);
+  if (ignore) out.push_back("--ignore=" + *ignore);
+  return out;
+}
+
+Scene load_scene(const SceneArguments& arguments) {
   MeshCache meshes;
   return load_scene(arguments, meshes);
 }
 
-Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
+Scene load_scene(const SceneArguments& arguments, MeshCache& meshes) {
+  const bool later_frame = !meshes.numbered_paths().empty();
   try {
-    SceneWords words = scene_words(arguments);
-    meshes.read_as(std::move(words.reading));
-    Scene out = load_any_scene(words.names, meshes);
-    const std::vector<ObjectPair> more = ignored_objects(out, words.ignored);
-    out.ignored.insert(out.ignored.end(), more.begin(), more.end());
-    out.ignored = in_order(std::move(out.ignored));
+    meshes.read_as(reading_of(arguments));
+    Scene out = load_any_scene(arguments.names, meshes);
+    ignore_more(out, arguments, later_frame ? Lacking::passed_over : Lacking::refused);
     return out;
   } catch (const std::bad_alloc&) {
-    throw Error(arguments[0], "the scene does not fit into memory",
+    throw Error(arguments.names[0], "the scene does not fit into memory",
                 "give fewer or smaller objects, or use a larger machine");
   }
 }
 
-std::vector<ObjectPair> stream_scene(const std::vector<std::string>& words, const TakePart& take) {
-  SceneWords of = scene_words(words);
-  const std::vector<std::string>& arguments = of.names;
+std::vector<ObjectPair> stream_scene(const SceneArguments& given, const TakePart& take) {
+  const std::vector<std::string>& arguments = given.names;
   MeshCache meshes;
-  meshes.read_as(of.reading);
+  meshes.read_as(reading_of(given));
   if (arguments.size() == 1 && is_builtin_scene(arguments[0])) {
     const SceneRequest request = parse_scene_name(arguments[0]);
     if (request.entry->name == "field" && request.suffixes.empty()) {
@@ -527,7 +539,7 @@ std::vector<ObjectPair> stream_scene(const std::vector<std::string>& words, cons
     stream_meshes(arguments, meshes, take);
     return {};
   }
-  Scene whole = load_scene(words);
+  Scene whole = load_scene(given);
   const std::vector<ObjectPair> ignored = std::exchange(whole.ignored, {});
   take(whole);
   return ignored;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +47,9 @@ std::vector<IgnoredNames> parse_ignored(const std::string& list);
 /// The pairs of a text file, one a line. Empty lines, lines that begin with # and a byte order mark
 /// are passed over. Throws Error naming the file if it cannot be read or names no pair.
 std::vector<IgnoredNames> read_ignored(const std::string& path);
+/// The pairs of a list and of a file, as --ignore and --ignore-file give them; either may be empty.
+std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
+                                        const std::optional<std::string>& file);
 
 /// The pairs of an object of the first group and a different one of the second, as in_order() gives
 /// them. A name may hold colons: each colon is tried as the one between the groups. Throws Error
@@ -55,7 +59,22 @@ std::vector<IgnoredNames> read_ignored(const std::string& path);
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         Lacking lacking = Lacking::refused);
 
-/// The scene that the arguments name. They are one of
+/// A scene as a command line asks for it. Names alone make one.
+struct SceneArguments {
+  SceneArguments() = default;
+  SceneArguments(std::vector<std::string> of) : names(std::move(of)) {}
+  SceneArguments(std::initializer_list<std::string> of) : names(of) {}
+
+  std::vector<std::string> names;     // of files, or of a built-in scene
+  std::optional<std::string> weld;    // as parse_weld() takes it (weld.h)
+  std::optional<std::string> format;  // of the mesh file "-", standard input: named_format()
+  std::optional<std::string> ignore;  // as parse_ignored() takes it
+
+  /// The same as words of a command line.
+  std::vector<std::string> words() const;
+};
+
+/// The scene that the arguments name. Their names are one of
 /// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz), each an object named by its
 ///   file without extension;
 /// - one built-in scene, perhaps with suffixes (builtin/scenes.h);
@@ -80,20 +99,14 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 /// Throws Error if an argument cannot be read or is not of this form. The Error names the file and,
 /// in a scene file, the line (syntax, and names of ignored objects) or the place as in
 /// objects[1].rotate.axis (contents).
-/// Beside them may stand --weld=T (weld.h), which the name of the scene then says, and --format=F,
-/// for a mesh file "-", which is standard input, and --ignore=LIST (parse_ignored()), pairs that
-/// Scene::ignored then has as well.
-Scene load_scene(const std::vector<std::string>& arguments);
+/// If meshes are welded, the name of the scene says so. Scene::ignored has the pairs of the scene
+/// file and those of `ignore`.
+Scene load_scene(const SceneArguments& arguments);
+/// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
+/// ignored_objects().
+void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking);
 /// load_scene() that takes meshes from the cache `meshes`, where they stay.
-Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
-
-struct SceneWords {
-  std::vector<std::string> names;
-  MeshReading reading;
-  std::vector<IgnoredNames> ignored;
-};
-/// The arguments of load_scene(), taken apart. Throws Error for a bad value.
-SceneWords scene_words(const std::vector<std::string>& arguments);
+Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 
 /// Whether load_scene() treats the name as that of a scene file.
 bool is_scene_file(const std::string& name);
@@ -128,11 +141,10 @@ using TakePart = std::function<void(Scene& part)>;
 /// each part. A part is a mesh file, an object of a scene file, or some objects of the built-in
 /// scene `field`; every other built-in scene, or one with suffixes, is a single part. Memory: the
 /// largest part with its file, 256 MiB of meshes that a scene file names several times, and the
-/// names of the objects of mesh and scene files. Returns the pairs of objects that the scene
+/// names of the objects of mesh and scene files. Returns the pairs of objects that the scene file
 /// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
-/// perhaps after some parts, and what take() throws.
-std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
-                                     const TakePart& take);
+/// perhaps after some parts, and what take() throws. Precondition: `ignore` is not given.
+std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
 
 // A scene that moves, frame by frame; and writing scenes to files.
 //
@@ -158,7 +170,7 @@ class FrameSource {
   /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
   /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
   /// frame.
-  FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
+  FrameSource(SceneArguments arguments, FrameRange range, bool self);
   /// A scene that moves, in place of arguments.
   explicit FrameSource(MovingScene moving);
 
@@ -181,12 +193,12 @@ class FrameSource {
   // The Error that at(frame) would throw if a mesh file of the frame is missing now.
   std::optional<Error> missing_at(long frame) const;
 
-  std::vector<std::string> arguments_;
+  SceneArguments arguments_;
   FrameRange range_;
   bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
-  Scene scene_;  // of meshes, at the current frame
+  Scene scene_;  // at the current frame; empty for a built-in motion without ignored objects
   // The topology in the previous call.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;

@@ -140,6 +140,7 @@ Census take_census(const SceneSource& source, double clearance, bool names) {
 Scene names_of(const Census& census) {
   Scene out;
   out.name = census.name;
+  out.ignored = census.ignored;
   for (const std::string& name : census.names) out.objects.push_back({.name = name});
   return out;
 }
@@ -187,8 +188,8 @@ constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, s
 
 class Gathering {
  public:
-  Gathering(const Census& census, const Slab& slab)
-      : census_(census), slab_(slab), hash_(census.begun_hash()) {
+  Gathering(const Census& census, const Tile& tile)
+      : census_(census), tile_(tile), hash_(census.begun_hash()) {
     out_.numbers.self = census.self_objects > 0;
   }
 
@@ -242,9 +243,9 @@ class Gathering {
       }
       faces_.add(std::uint64_t{part.source_face[t]});
       const Box box = box_of(part, t);
-      const double lo = box.lo[slab_.axis], hi = box.hi[slab_.axis];
-      if (!meets(slab_, lo, hi, census_.clearance)) continue;
-      out_.home += holds(slab_, lo);
+      const double lo = box.lo[tile_.axis], hi = box.hi[tile_.axis];
+      if (!meets(tile_, lo, hi, census_.clearance)) continue;
+      out_.home += holds(tile_, lo);
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(part, part.triangles[t][i]);
       to.triangles.push_back(corners);
@@ -272,7 +273,7 @@ class Gathering {
   }
 
   const Census& census_;
-  Slab slab_;
+  Tile tile_;
   Fnv1a hash_, faces_;
   TileScene out_;
   std::size_t run_ = 0;       // index in census_.sizes of the next object's run
@@ -317,14 +318,14 @@ TileNumber parse_tile(const std::string& text) {
               fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostTiles));
 }
 
-TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab) {
-  Gathering gathering(census, slab);
+TileScene gather_tile(const SceneSource& source, const Census& census, const Tile& tile) {
+  Gathering gathering(census, tile);
   source([&](Scene& part) { gathering.add(part); });
   return gathering.take();
 }
 
-WholeScene whole_scene(const Census& census, const Slab& slab, const TileScene& part) {
-  WholeScene out{.tile = slab,
+WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part) {
+  WholeScene out{.tile = tile,
                  .numbers = &part.numbers,
                  .key = {census.name, census.objects, census.triangles, part.hash},
                  .not_asked = {}};
@@ -343,11 +344,11 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
     throw std::logic_error("run_tile: a tile is of far-pairs, without a limit");
   const Stopwatch reading;
   if (progress) progress("reading the scene for the cuts");
-  TileRun out{.tile = question.tile,
+  TileRun out{.number = question.number,
               .census = take_census(source, question.options.clearance,
                                     static_cast<bool>(question.ignored)),
               .cuts = {},
-              .slab = {},
+              .tile = {},
               .part = {},
               .record = {}};
   out.ignored = out.census.ignored;
@@ -356,19 +357,19 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
     out.ignored.insert(out.ignored.end(), asked.begin(), asked.end());
     out.ignored = in_order(std::move(out.ignored));
   }
-  out.cuts = choose_cuts(out.census, question.tile.n);
-  out.slab = slab_of(out.cuts.axis, out.cuts.at, question.tile.k - 1);
+  out.cuts = choose_cuts(out.census, question.number.n);
+  out.tile = tile_of(out.cuts.axis, out.cuts.at, question.number.k - 1);
   if (progress) progress("reading the triangles of the tile");
-  out.part = gather_tile(source, out.census, out.slab);
-  out.part.scene.name += fmt::format(" (tile {} of {})", out.tile.k, out.tile.n);
+  out.part = gather_tile(source, out.census, out.tile);
+  out.part.scene.name += fmt::format(" (tile {} of {})", out.number.k, out.number.n);
   out.read_ms = reading.ms();
   RunOptions options = question.options;
   options.ignored = in_part(out.ignored, out.part.numbers);
   const Scene& scene = out.part.scene;
   const auto keep_ours = [&](std::vector<TrianglePair>& candidates) {
     out.elsewhere = std::erase_if(candidates, [&](const TrianglePair& pair) {
-      const auto begin = [&](std::uint32_t t) { return box_of(scene, t).lo[out.slab.axis]; };
-      return !owns(out.slab, begin(pair.a), begin(pair.b));
+      const auto begin = [&](std::uint32_t t) { return box_of(scene, t).lo[out.tile.axis]; };
+      return !owns(out.tile, begin(pair.a), begin(pair.b));
     });
   };
   out.record =
@@ -440,12 +441,12 @@ double expected_mib(const TileCount& count) {
 
 }  // namespace
 
-std::string interval_text(const Slab& slab) {
-  const bool first = slab.from == -HUGE_VAL, last = slab.to == HUGE_VAL;
+std::string interval_text(const Tile& tile) {
+  const bool first = tile.from == -HUGE_VAL, last = tile.to == HUGE_VAL;
   if (first && last) return "everything";
-  if (first) return fmt::format("{} below {}", axis_name(slab.axis), slab.to);
-  if (last) return fmt::format("{} from {} on", axis_name(slab.axis), slab.from);
-  return fmt::format("{} from {} to below {}", axis_name(slab.axis), slab.from, slab.to);
+  if (first) return fmt::format("{} below {}", axis_name(tile.axis), tile.to);
+  if (last) return fmt::format("{} from {} on", axis_name(tile.axis), tile.from);
+  return fmt::format("{} from {} to below {}", axis_name(tile.axis), tile.from, tile.to);
 }
 
 Json tile_json(const TileRun& run, const TileList* list) {
@@ -471,11 +472,11 @@ Json tile_json(const TileRun& run, const TileList* list) {
   Json cuts = Json::array();
   for (const double cut : run.cuts.at) cuts.push_back(cut);
   out["tile"] = {
-      {"k", run.tile.k},
-      {"n", run.tile.n},
+      {"k", run.number.k},
+      {"n", run.number.n},
       {"axis", axis_name(run.cuts.axis)},
-      {"from", end_json(run.slab.from)},
-      {"to", end_json(run.slab.to)},
+      {"from", end_json(run.tile.from)},
+      {"to", end_json(run.tile.to)},
       {"cuts", cuts},
       {"objects", scene.objects.size()},
       {"triangles", scene.triangles.size()},
@@ -518,7 +519,7 @@ std::string tile_lines(const TileRun& run) {
       "tile       {} of {}: {}; {} of {} meet it, {} begin in it\n"
       "           pairs of other tiles are not covered: {} left to them; farcull merge joins all\n"
       "memory     {:.0f} MiB at most; the scene was read twice in {:.1f} ms\n",
-      run.tile.k, run.tile.n, interval_text(run.slab), grouped(run.part.scene.triangles.size()),
+      run.number.k, run.number.n, interval_text(run.tile), grouped(run.part.scene.triangles.size()),
       counted(run.census.triangles, "triangle", "triangles"), grouped(run.part.home),
       counted(run.elsewhere, "candidate pair is", "candidate pairs are"), peak_memory_mib(),
       run.read_ms);
@@ -542,10 +543,10 @@ std::string tiles_table(const Census& census, const Cuts& cuts,
 Json tiles_json(const Census& census, const Cuts& cuts, const std::vector<TileCount>& counts) {
   Json tiles = Json::array();
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    const Slab slab = slab_of(cuts.axis, cuts.at, k);
+    const Tile tile = tile_of(cuts.axis, cuts.at, k);
     tiles.push_back({{"k", k + 1},
-                     {"from", end_json(slab.from)},
-                     {"to", end_json(slab.to)},
+                     {"from", end_json(tile.from)},
+                     {"to", end_json(tile.to)},
                      {"triangles", counts[k].triangles},
                      {"home_triangles", counts[k].home},
                      {"expected_mib", expected_mib(counts[k])}});

@@ -60,7 +60,7 @@ std::uint64_t size_word(const Object& object);
 /// the objects. An exception of `source` is passed on.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
 
-/// A scene whose objects have names but no triangles.
+/// A scene without triangles, with the names of the objects and the ignored pairs.
 Scene names_of(const Census& census);
 
 /// Where a scene is cut.
@@ -86,7 +86,7 @@ std::vector<TileCount> count_tiles(const SceneSource& source, const Census& cens
                                    const Cuts& cuts);
 
 /// "x from 1.5 to below 3".
-std::string interval_text(const Slab& slab);
+std::string interval_text(const Tile& tile);
 
 /// Tile k of n, 1 <= k <= n.
 struct TileNumber {
@@ -113,24 +113,24 @@ struct TileScene {
 /// triangles that meet the tile). Throws Error naming the scene if it differs from the
 /// census in an object's number of triangles or self, and if 2^31 or more triangles and objects
 /// meet the tile. An exception of `source` is passed on.
-TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab);
+TileScene gather_tile(const SceneSource& source, const Census& census, const Tile& tile);
 
 /// For certificates: the scene of which `part` is the tile. The part must outlive the result.
-WholeScene whole_scene(const Census& census, const Slab& slab, const TileScene& part);
+WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part);
 
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
-  TileNumber tile = {};
+  TileNumber number = {};
   /// Returns the pairs of objects to ignore besides those that the scene ignores. Its argument is
   /// names_of() the census. Empty: no more pairs.
   std::function<std::vector<ObjectPair>(const Scene& names)> ignored = {};
 };
 
 struct TileRun {
-  TileNumber tile;
+  TileNumber number;
   Census census;
   Cuts cuts;
-  Slab slab;
+  Tile tile;
   TileScene part;  // its scene's name is that of the whole and the tile
   Record record;   // of the part; its candidates and pairs are those that belong to the tile. The
                    // accounting is about all pairs of the part, whichever tile they belong to

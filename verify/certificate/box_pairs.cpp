@@ -66,7 +66,7 @@ void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
 
 // ---- a tree over all triangles; each triangle asks it for later ones whose boxes it meets ----
 
-BoxPairs::BoxPairs(const Scene& scene, double clearance, const Slab& tile)
+BoxPairs::BoxPairs(const Scene& scene, double clearance, const Tile& tile)
     : scene_(scene), clearance_(clearance), tile_(tile), tree_(scene) {
   const auto count = static_cast<std::uint32_t>(scene.triangles.size());
   if (count > 0) tree_.add(0, count);

@@ -57,7 +57,7 @@ struct BoundsTree {
 /// object.
 class BoxPairs {
  public:
-  explicit BoxPairs(const Scene& scene, double clearance = 0, const Slab& tile = {});
+  explicit BoxPairs(const Scene& scene, double clearance = 0, const Tile& tile = {});
 
   /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at
   /// least `enough` or the scene ends. Returns false, with no pairs, after the last pair.
@@ -68,7 +68,7 @@ class BoxPairs {
 
   const Scene& scene_;
   double clearance_;
-  Slab tile_;
+  Tile tile_;
   BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
   std::uint32_t triangle_ = 0;  // the next to be asked

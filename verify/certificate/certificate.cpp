@@ -114,7 +114,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
 
   Marked kept_pairs(kept, "kept", clearance > 0);
   Marked colliding_pairs(colliding, "colliding", false);
-  BoxPairs enumeration(scene, clearance, whole ? whole->tile : Slab());
+  BoxPairs enumeration(scene, clearance, whole ? whole->tile : Tile());
   const std::vector<std::uint32_t> owner = owners(scene);
   std::vector<TrianglePair> pairs;
   std::vector<std::array<bool, 2>> marks;

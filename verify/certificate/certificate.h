@@ -97,7 +97,7 @@ struct Certificate {
 
   SceneKey scene;            // the whole scene, also of a tile's certificate
   double clearance = 0;      // world units, finite, >= 0
-  std::optional<Slab> tile;  // none: the certificate is about all pairs
+  std::optional<Tile> tile;  // none: the certificate is about all pairs
   Unasked not_asked;         // of the whole scene
   Claims claims;
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
@@ -117,7 +117,7 @@ struct ListNumbers;
 
 /// The whole scene of which a scene has the triangles that meet a tile.
 struct WholeScene {
-  Slab tile;
+  Tile tile;
   const ListNumbers* numbers = nullptr;  // of the objects and triangles of the part in the whole
   Certificate::SceneKey key;
   Certificate::Unasked not_asked;

@@ -200,7 +200,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
                        const WholeScene* whole) {
   constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
   constexpr std::size_t kPerThread = 1024;
-  BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Slab());
+  BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Tile());
   const std::vector<std::uint32_t> owner = owners(scene);
   Tally tally(certificate.clearance > 0);
   std::vector<TrianglePair> pairs;

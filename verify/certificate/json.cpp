@@ -196,11 +196,11 @@ Certificate::Run read_run(const Reader& reader, const Json& value) {
 
 constexpr std::string_view kAxes = "xyz";
 
-Slab read_tile(const Reader& reader, const Json& value) {
+Tile read_tile(const Reader& reader, const Json& value) {
   reader.object(value, "tile", {"axis", "from", "to"});
   const std::string axis = reader.text(value["axis"], "tile.axis");
   if (axis.size() != 1 || kAxes.find(axis) == kAxes.npos) reader.fail("tile.axis is not x, y or z");
-  Slab tile{.axis = static_cast<int>(kAxes.find(axis))};
+  Tile tile{.axis = static_cast<int>(kAxes.find(axis))};
   const auto place = [&](const char* key, double& to) {
     const Json& at = value[key];
     if (at.is_null()) return;
@@ -215,7 +215,7 @@ Slab read_tile(const Reader& reader, const Json& value) {
   return tile;
 }
 
-Json tile_json(const Slab& tile) {
+Json tile_json(const Tile& tile) {
   const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
   return {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile.axis)])},
           {"from", place(tile.from)},

@@ -11,36 +11,36 @@
 namespace farcull {
 
 /// The tile from .. to of an axis (0, 1 or 2), in world units: `from` belongs to it, `to` does not.
-struct Slab {
+struct Tile {
   int axis = 0;
   double from = -std::numeric_limits<double>::infinity();
   double to = std::numeric_limits<double>::infinity();
-  bool operator==(const Slab&) const = default;
+  bool operator==(const Tile&) const = default;
 };
 
 /// Tile k of the cuts.size() + 1 tiles of an axis. Preconditions: the cuts ascend, some may be
 /// equal; k <= cuts.size(). The first tile begins at minus infinity, the last ends at infinity.
-inline Slab slab_of(int axis, std::span<const double> cuts, std::size_t k) {
-  Slab out{.axis = axis};
+inline Tile tile_of(int axis, std::span<const double> cuts, std::size_t k) {
+  Tile out{.axis = axis};
   if (k > 0) out.from = cuts[k - 1];
   if (k < cuts.size()) out.to = cuts[k];
   return out;
 }
 
 /// Whether a place on the axis is in the tile. Exact: it only compares doubles.
-inline bool holds(const Slab& slab, double at) { return at >= slab.from && at < slab.to; }
+inline bool holds(const Tile& tile, double at) { return at >= tile.from && at < tile.to; }
 
 /// Whether a triangle, whose box reaches from lo to hi on the axis, may be of a pair that belongs
 /// to the tile and whose boxes are at most `clearance` apart. The difference is rounded as that of
 /// two boxes is (box_pairs.h); rounding is monotone.
-inline bool meets(const Slab& slab, double lo, double hi, double clearance) {
-  return lo < slab.to && slab.from - hi <= clearance;
+inline bool meets(const Tile& tile, double lo, double hi, double clearance) {
+  return lo < tile.to && tile.from - hi <= clearance;
 }
 
 /// Whether a pair belongs to the tile, by the places where the boxes of its triangles begin:
 /// whether the later one is in the tile.
-inline bool owns(const Slab& slab, double lo_a, double lo_b) {
-  return holds(slab, std::max(lo_a, lo_b));
+inline bool owns(const Tile& tile, double lo_a, double lo_b) {
+  return holds(tile, std::max(lo_a, lo_b));
 }
 
 }  // namespace farcull

@@ -31,6 +31,8 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
 
 def array(name: str, given: Any) -> np.ndarray:
     """The argument as an array, without a copy if it is one. An empty list becomes (0, 3)."""
+    if hasattr(given, "faces") or hasattr(given, "cells"):
+        raise InputError(name, "is a mesh", "give V, F and object_starts of farcull.join(mesh, ...)")
     out = read(name, given, "give rows of three numbers")
     if not out.dtype.isnative:
         out = out.astype(out.dtype.newbyteorder("="))
@@ -100,7 +102,7 @@ class Grouped:
         return (named[by], *(None if other is None else other[by] for other in others))
 
     def ignored(self, given: Any) -> Any:
-        """Pairs of labels as pairs of numbers of objects."""
+        """Pairs of objects, by their labels where there are some, as pairs of numbers."""
         if self.labels is None or given is None or np.size(given) == 0:
             return given
         rows = np.asarray(given)
@@ -111,6 +113,41 @@ class Grouped:
                 "ignore", "are no rows of two labels that triangles have", "give labels, as in [(3, 7)]"
             )
         return np.searchsorted(self.labels, rows)
+
+
+def poses(given: Any) -> np.ndarray:
+    """Matrices as (k, 3, 4) doubles; None stands for no poses."""
+    if given is None:
+        return np.empty((0, 3, 4))
+    remedy = "give a matrix of 4 x 4 numbers for each object, whose last row is 0, 0, 0, 1"
+    out = read("poses", given, remedy)
+    if out.shape[1:] not in ((3, 4), (4, 4)) or not np.can_cast(out.dtype, np.float64):
+        raise InputError("poses", f"have the shape {out.shape} and the type {out.dtype}", remedy)
+    if not len(out):
+        raise InputError("poses", "are none", "give one for each object, or leave them out")
+    if out.shape[1] == 4 and not (out[:, 3] == (0, 0, 0, 1)).all():
+        raise InputError("poses", "have a last row that is not 0, 0, 0, 1", remedy)
+    return np.ascontiguousarray(out[:, :3], np.float64)
+
+
+#: What the compiled module takes of a call: vertices, triangles, starts and poses.
+Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def arrays(
+    V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Optional[Grouped] = None
+) -> Tuple[Grouped, Arrays]:
+    """The input of a call. ``before``: of the call whose arrays poses move where they are given alone."""
+    matrices = poses(moves)
+    alone = V is None and F is None and object_starts is None and labels is None
+    if alone and before is not None and len(matrices):
+        return before, (np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices)
+    for name, given in (("V", V), ("F", F)):
+        if given is None:
+            remedy = "give V and F; poses alone move those of the call before, if it had an answer"
+            raise InputError(name, "is not given", remedy)
+    grouped = Grouped(F, object_starts, labels)
+    return grouped, (array("V", V), grouped.triangles, grouped.starts, matrices)
 
 
 def _starts(given: Any) -> np.ndarray:
@@ -228,6 +265,16 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
 def limit(given: Any) -> int:
     """How many pairs at most; None, as 0 for the library, stands for all."""
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
+
+
+def weld(given: Any) -> str:
+    """A tolerance as the library reads it; empty for None."""
+    if given is None:
+        return ""
+    text = _text_of("weld", given)
+    if not text:
+        raise InputError("weld", "is empty", "give a length, or one as in '1e-7*size'")
+    return text
 
 
 def texts(**options: Any) -> Dict[str, str]:

@@ -108,7 +108,7 @@ def _html(what: Any) -> str:
     if isinstance(what, Scene):
         return picture(what, page=True).html
     remedy = "show the scene, as in farcull.show(farcull.Scene.from_arrays(V, F, object_starts))"
-    unusual = "has no page, since it was asked with a clearance, ignored objects or a limit"
+    unusual = "has no page, since it was asked with a clearance, poses, ignored objects or a limit"
     if isinstance(what, Record):
         if what._options is None:
             raise InputError("what", unusual, "show its scene")

@@ -113,7 +113,7 @@ def pandas() -> Any:
 
 def _question(
     self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
-    kinds: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
+    contacts: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
 ) -> _farcull.Question:
     """What a collider and a stream are asked, checked."""
     all_objects, each = _arguments.selves(self)
@@ -124,7 +124,9 @@ def _question(
         "neighbours": _arguments.flag("neighbours", neighbours),
         "threads": _arguments.threads(threads),
         # The place in Contacts of C++: nothing, kinds, or kinds and segments.
-        "contacts": max(_arguments.flag("kinds", kinds), 2 * _arguments.flag("segments", segments)),
+        "contacts": max(
+            _arguments.flag("contacts", contacts), 2 * _arguments.flag("segments", segments)
+        ),
         "ignore": _arguments.ignored(ignore),
         "limit": _arguments.limit(limit),
     }
@@ -137,21 +139,9 @@ class Collider:
     before, it also keeps what it found about triangles that did not move. The answers are those of
     :func:`collide`. One thread at a time may use it.
 
-    Parameters (all by name):
-
-    - ``self``: every object is tested against itself as well; or one truth value for each object.
-    - ``clearance``: pairs at this distance or less collide too. World units, finite, 0 or more.
-    - ``neighbours``: False: neighbours are counted, not decided.
-    - ``kinds``: True: say of each pair how the two triangles meet (:data:`KINDS`).
-    - ``segments``: True: say that, and the points that they have in common.
-    - ``ignore``: (k, 2) pairs of different objects, by their numbers from 0, that are not tested
-      against each other.
-    - ``limit``: only the first so many pairs, neighbours among them, in the order of the rows; 1 or
-      more. None: all.
-    - ``device``: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where
-      boxes of runs decide, else gl if hardware answers, else the CPU.
-    - ``threads``: up to 1024; 0: one for each core.
-    - ``views``, ``resolution``: directions to look along and pixels; they change the time only.
+    By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore`` (numbers
+    alone), ``limit``, ``device`` and ``threads`` as :func:`collide` does; and ``views`` and
+    ``resolution``, directions to look along and pixels, which change the time only.
 
     Raises InputError naming the option that is wrong, and Error where the device does not answer.
     """
@@ -159,11 +149,14 @@ class Collider:
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
         collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
-        neighbours: bool = True, device: Device = "cpu", threads: int = 0, kinds: bool = False,
+        neighbours: bool = True, device: Device = "cpu", threads: int = 0, contacts: bool = False,
         segments: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
         views: str = "auto", resolution: int = 0,
     ) -> None:
-        question = _question(self, clearance, neighbours, threads, kinds, segments, ignore, limit)
+        question = _question(
+            self, clearance, neighbours, threads, contacts, segments, ignore, limit
+        )
+        collider._grouped: Optional[_arguments.Grouped] = None  # of the call before
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(
             question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
@@ -172,8 +165,9 @@ class Collider:
         )
 
     def find(
-        self, V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
-        labels: Optional[ArrayLike] = None,
+        self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
+        poses: Optional[ArrayLike] = None,
     ) -> Result:
         """The pairs that collide.
 
@@ -185,23 +179,30 @@ class Collider:
             triangles are one object, which has to be tested against itself.
         labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in
             any order. The objects are numbered by their labels in ascending order.
+        poses: a matrix (4, 4) or (3, 4) for each object, which moves its vertices; no two objects
+            share a vertex then. Each product and sum of a coordinate is rounded, from left to right;
+            the answer is exact for the points that come out. ``find(poses=...)`` alone moves the
+            arrays of the call before, unless that raised an exception.
 
         Raises InputError for arrays that are not so, where there is nothing to test, and where
         ``ignore`` names an object that is not there; Error for a fault of the device, and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
-        grouped = _arguments.Grouped(F, object_starts, labels)
+        grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, self._grouped)
         if labels is not None and self._needs_numbers:
             raise InputError(
                 "labels", "have no meaning with the ignored numbers or the limit of a Collider",
                 "sort the triangles by label and give object_starts, or call farcull.collide",
             )
-        return self._find(_arguments.array("V", V), grouped)
+        return self._find(grouped, given)
 
     def _find(
-        self, V: NDArray[Any], grouped: _arguments.Grouped, shown: Optional[Tuple[Any, Any, Any]] = None
+        self, grouped: _arguments.Grouped, given: _arguments.Arrays,
+        shown: Optional[Tuple[Any, Any, Any]] = None,
     ) -> Result:
-        found = self._collider.find(V, grouped.triangles, grouped.starts)
+        self._grouped = None  # until there is an answer
+        found = self._collider.find(*given)
+        self._grouped = grouped
         for names in (
             ("pairs", "kinds", "segments"),
             ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
@@ -213,9 +214,10 @@ class Collider:
 def collide(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
-    device: Device = "cpu", threads: int = 0, kinds: bool = False,
+    device: Device = "cpu", threads: int = 0, contacts: bool = False,
     ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
     labels: Optional[ArrayLike] = None, segments: bool = False,
+    poses: Optional[ArrayLike] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
     itself. For many frames, keep a :class:`Collider`.
@@ -232,7 +234,7 @@ def collide(
     device: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where boxes of
         runs decide, else gl if hardware answers, else the CPU.
     threads: up to 1024; 0: one for each core.
-    kinds: True: say of each pair how the two triangles meet (:data:`KINDS`).
+    contacts: True: say of each pair how the two triangles meet (:data:`KINDS`).
     ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers
         from 0; with ``labels`` by their labels.
     limit: only the first so many pairs, neighbours among them, in the order of the rows; 1 or more.
@@ -240,21 +242,22 @@ def collide(
     labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any
         order. The objects are numbered by their labels in ascending order.
     segments: True: say of each pair how the two triangles meet, and the points that they have in common.
+    poses: a matrix for each object, which moves it, as in :meth:`Collider.find`.
 
-    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for arguments that are not so and where there is nothing
-    to test; Error for a fault of the device, and MemoryError.
+    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for
+    arguments that are not so and where there is nothing to test; Error for a fault of the device, and
+    MemoryError.
     """
-    grouped = _arguments.Grouped(F, object_starts, labels)
+    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     _refuse_limit(limit, labels)
-    V = _arguments.array("V", V)
     all_objects, each = _arguments.selves(self)
     selves = each or all_objects
     collider = Collider(
         self=selves, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
-        kinds=kinds, segments=segments, ignore=grouped.ignored(ignore), limit=limit,
+        contacts=contacts, segments=segments, ignore=grouped.ignored(ignore), limit=limit,
     )
-    usual = clearance == 0 and ignore is None and limit is None
-    return collider._find(V, grouped, (V, grouped, selves) if usual else None)
+    usual = clearance == 0 and ignore is None and limit is None and poses is None
+    return collider._find(grouped, given, (given[0], grouped, selves) if usual else None)
 
 
 def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
@@ -314,8 +317,9 @@ class Stream:
 def stream(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
-    threads: int = 0, kinds: bool = False, ignore: Optional[ArrayLike] = None,
+    threads: int = 0, contacts: bool = False, ignore: Optional[ArrayLike] = None,
     limit: Optional[int] = None, labels: Optional[ArrayLike] = None, segments: bool = False,
+    poses: Optional[ArrayLike] = None,
 ) -> Stream:
     """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
     rows: where they are too many for the memory, or the first ones are wanted at once. ::
@@ -333,24 +337,25 @@ def stream(
     Raises as :func:`collide`. After an exception in a part, Ctrl-C among them, what that part had is
     lost: the stream then raises Error, so that nobody takes what is left for all.
     """
-    grouped = _arguments.Grouped(F, object_starts, labels)
+    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     _refuse_limit(limit, labels)
     question = _question(
-        self, clearance, neighbours, threads, kinds, segments, grouped.ignored(ignore), limit
+        self, clearance, neighbours, threads, contacts, segments, grouped.ignored(ignore), limit
     )
-    made = _farcull.Stream(
-        _arguments.array("V", V), grouped.triangles, grouped.starts, question
-    )
-    return Stream(made, grouped)
+    return Stream(_farcull.Stream(*given, question), grouped)
 
 
-def join(*meshes: Any) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+def join(
+    *meshes: Any, weld: Union[None, float, str] = None
+) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
     """Several meshes, or one, as V, F and object_starts: the arguments of :func:`collide`.
 
     A mesh is a pair (V, F); or an object with ``vertices`` and ``faces``, as of trimesh; or one with
     ``points`` and ``cells``, as of meshio, whose cells are triangles (lines and vertices among them are
-    no surface, and are passed over). Raises InputError for anything else, and for a mesh without triangles.
+    no surface, and are passed over). ``weld`` merges vertices of a mesh that nearly coincide, as
+    :class:`Scene` does. Raises InputError for anything else, and for a mesh without triangles.
     """
+    tolerance = _arguments.weld(weld)
     if not meshes:
         raise InputError("meshes", "are none", "give (V, F) of each")
     vertices, triangles = [], []
@@ -370,6 +375,8 @@ def join(*meshes: Any) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[
             raise InputError(
                 "F", "names a vertex that the mesh does not have", "correct the index"
             )
+        if tolerance:
+            F = _farcull.weld(V, F, tolerance)
         vertices.append(V)
         triangles.append(F.astype(np.int64) + first_vertex)
         starts.append(first_triangle)

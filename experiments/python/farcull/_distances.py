@@ -99,7 +99,8 @@ class DistanceFinder:
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
         finder, /, *, kind: Kind = "objects", k: int = 1, within: Optional[float] = None,
-        self: Union[bool, Sequence[bool]] = False, inside: bool = True, threads: int = 0,
+        self: Union[bool, Sequence[bool]] = False, inside: Union[bool, Literal["parity"]] = True,
+        threads: int = 0, ignore: Optional[ArrayLike] = None,
     ) -> None:
         all_objects, each = _arguments.selves(self)
         limit = _arguments.optional_number("within", within)
@@ -115,19 +116,37 @@ class DistanceFinder:
             raise InputError(
                 "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
             )
+        parity = isinstance(inside, str) and inside == "parity"
+        if parity and which == "all":
+            raise InputError("inside", "has no meaning with kind all", "leave it out")
+        pairs = _arguments.ignored(ignore)
+        finder._grouped: Optional[_arguments.Grouped] = None  # of the call before
+        finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
-            which, wanted, limit, all_objects, each,
-            _arguments.flag("inside", inside), _arguments.threads(threads),
+            which, wanted, limit, all_objects, each, parity or _arguments.flag("inside", inside),
+            parity, pairs, _arguments.threads(threads),
         )
 
     def find(
-        self, V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
-        labels: Optional[ArrayLike] = None,
+        self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
+        poses: Optional[ArrayLike] = None,
     ) -> Distances:
         """The distances. The parameters are those of :meth:`Collider.find`; with ``labels`` the objects
         of an answer are labels. The finder can be used again after an error, and after Ctrl-C."""
-        grouped = _arguments.Grouped(F, object_starts, labels)
-        found = self._finder.find(_arguments.array("V", V), grouped.triangles, grouped.starts)
+        if labels is not None and self._ignores:
+            raise InputError(
+                "labels", "have no meaning with the ignored numbers of a DistanceFinder",
+                "sort the triangles by label and give object_starts, or call farcull.distances",
+            )
+        return self._find(
+            *_arguments.arrays(V, F, object_starts, labels, poses, self._grouped)
+        )
+
+    def _find(self, grouped: _arguments.Grouped, given: _arguments.Arrays) -> Distances:
+        self._grouped = None  # until there is an answer
+        found = self._finder.find(*given)
+        self._grouped = grouped
         found["squared"] = np.array(found["squared"], dtype=object)
         if grouped.order is not None:
             found["triangles"] = grouped.order[found["triangles"]]
@@ -139,28 +158,34 @@ class DistanceFinder:
 def distances(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None, kind: Kind = "objects",
     k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
-    inside: bool = True, threads: int = 0, labels: Optional[ArrayLike] = None,
+    inside: Union[bool, Literal["parity"]] = True, threads: int = 0,
+    labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
+    poses: Optional[ArrayLike] = None,
 ) -> Distances:
     """How far objects are apart, exactly, with the points that are nearest. For many frames, keep a
     :class:`DistanceFinder`.
 
     Parameters
     ----------
-    V, F, object_starts, labels: as in :func:`collide`. With ``labels`` the objects of an answer are
-        labels.
+    V, F, object_starts, labels, poses: as in :func:`collide`. With ``labels`` the objects of an answer
+        are labels.
     kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
         "all": every pair of triangles at the distance ``within`` or less.
     k: how many others, 1 or more; with "nearest" alone.
     within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
     self: as in :func:`collide`, but not with "nearest".
-    inside: whether an object lies inside another; not with "all".
+    inside: whether an object lies inside another, by winding numbers; "parity": by the parity of
+        crossings; False: not at all. Not with "all".
     threads: up to 1024; 0: one for each core.
+    ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
 
     Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the
     labels. Raises InputError naming the argument that is wrong, also where there is nothing to ask, and
     MemoryError.
     """
+    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(
-        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads
+        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads,
+        ignore=grouped.ignored(ignore),
     )
-    return finder.find(V, F, object_starts, labels)
+    return finder._find(grouped, given)

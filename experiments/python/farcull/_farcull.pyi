@@ -29,7 +29,8 @@ class Collider:
         self, question: Question, *, device: str, views: str, resolution: int
     ) -> None: ...
     def find(
-        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
+        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64],
+        poses: NDArray[float64],
     ) -> dict[str, Any]: ...
 
 class Stream:
@@ -41,6 +42,7 @@ class Stream:
         vertices: NDArray[Any],
         triangles: NDArray[Any],
         starts: NDArray[int64],
+        poses: NDArray[float64],
         question: Question,
     ) -> None: ...
     def next(
@@ -56,14 +58,17 @@ class DistanceFinder:
         self,
         kind: str,
         k: int,
-        within: float,
+        within: Optional[float],
         all_objects: bool,
         self_objects: Sequence[bool],
         inside: bool,
+        parity: bool,
+        ignore: Sequence[Sequence[int]],
         threads: int,
     ) -> None: ...
     def find(
-        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
+        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64],
+        poses: NDArray[float64],
     ) -> dict[str, Any]: ...
 
 class Scene:
@@ -80,19 +85,23 @@ def scene_of_arrays(
     vertices: NDArray[Any],
     triangles: NDArray[Any],
     starts: NDArray[int64],
+    poses: NDArray[float64],
     name: str,
     names: Sequence[str],
     all_objects: bool,
     self_objects: Sequence[bool],
 ) -> Scene: ...
-def scene_of_names(names: Sequence[str], all_objects: bool) -> Scene: ...
+def scene_of_names(names: Sequence[str], weld: str, all_objects: bool) -> Scene: ...
+def weld(vertices: NDArray[Any], triangles: NDArray[Any], tolerance: str) -> NDArray[uint32]: ...
 def builtin_scenes() -> List[str]: ...
 def take_reading_notes() -> List[str]: ...
 
 class Frames:
     first: int
     last: int
-    def __init__(self, names: Sequence[str], frames: str, all_objects: bool) -> None: ...
+    def __init__(
+        self, names: Sequence[str], weld: str, frames: str, all_objects: bool
+    ) -> None: ...
     def at(self, frame: int) -> Scene: ...
 
 class Record:
@@ -118,7 +127,7 @@ def run(
     given: Mapping[str, str],
     verify: bool,
     threads: int,
-    kinds: bool,
+    contacts: bool,
     ignore: Sequence[Sequence[int]],
     limit: int,
 ) -> Record: ...

@@ -57,7 +57,7 @@ class Record:
 
     @property
     def kinds(self) -> Optional[NDArray[np.uint8]]:
-        """How each of ``pairs`` meets, as in :class:`Result`; None without kinds=True."""
+        """How each of ``pairs`` meets, as in :class:`Result`; None without contacts=True."""
         return self._record.kinds
 
     @property
@@ -126,12 +126,12 @@ class Record:
 
 
 def run(
-    scene: "Scene", method: str, /, *, verify: bool = True, threads: int = 0, kinds: bool = False,
+    scene: "Scene", method: str, /, *, verify: bool = True, threads: int = 0, contacts: bool = False,
     ignore: Optional[Any] = None, limit: Optional[int] = None, **options: Any,
 ) -> Record:
     made = _farcull.run(
         scene_of(scene), _options(method, options), _arguments.flag("verify", verify),
-        _arguments.threads(threads), _arguments.flag("kinds", kinds),
+        _arguments.threads(threads), _arguments.flag("contacts", contacts),
         _arguments.ignored(ignore, scene._scene), _arguments.limit(limit),
     )
     usual = ignore is None and limit is None and not options.get("clearance")
@@ -154,7 +154,7 @@ def plan(
     limit: Optional[int] = None, **options: Any,
 ) -> Plan:
     """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
-    since it stops what comes behind the culling; ``kinds`` is no part of one."""
+    since it stops what comes behind the culling; ``contacts`` is no part of one."""
     given = _options(method, options)
     made = scene_of(scene)
     text, table = _farcull.plan(

@@ -28,6 +28,12 @@ def _names(names: Tuple[Any, ...]) -> List[str]:
     return out
 
 
+def _warn() -> None:
+    """Says to the caller of the package what readers passed over."""
+    for note in _farcull.take_reading_notes():
+        warnings.warn(note, stacklevel=3)
+
+
 class Scene:
     """A scene that never changes: triangles, grouped into objects.
 
@@ -44,13 +50,10 @@ class Scene:
         scene, /, *names: Union[str, os.PathLike[str]], self: bool = False,
         weld: Union[None, float, str] = None,
     ) -> None:
-        words = _names(names)
-        if weld is not None:
-            (text,) = _arguments.texts(weld=weld).values()
-            words.append("--weld=" + text)
-        scene._scene = _farcull.scene_of_names(words, _arguments.flag("self", self))
-        for note in _farcull.take_reading_notes():
-            warnings.warn(note, stacklevel=2)
+        scene._scene = _farcull.scene_of_names(
+            _names(names), _arguments.weld(weld), _arguments.flag("self", self)
+        )
+        _warn()
 
     @classmethod
     def _of(cls, made: Any) -> Scene:
@@ -66,14 +69,13 @@ class Scene:
     ) -> Scene:
         """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
         objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
-        grouped = _arguments.Grouped(F, object_starts, None)
+        _, given = _arguments.arrays(V, F, object_starts, None, None)
         all_objects, each = _arguments.selves(self)
         if isinstance(names, str):
             raise InputError("names", "are one text", "give a list of texts")
         return Scene._of(
             _farcull.scene_of_arrays(
-                _arguments.array("V", V), grouped.triangles, grouped.starts,
-                _arguments.text("name", name),
+                *given, _arguments.text("name", name),
                 [_arguments.text("names", one) for one in names or []], all_objects, each,
             )
         )
@@ -118,7 +120,7 @@ class Scene:
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
         ``depth_format``, ``query``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
         ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
-        for every pair) and ``threads``. ``kinds``, ``ignore`` and ``limit`` are those of
+        for every pair) and ``threads``. ``contacts``, ``ignore`` and ``limit`` are those of
         :func:`collide`; ``ignore`` takes names as well, as in [("link*", "hand")]: every two different
         objects with such names, where * stands for any characters. What the scene file ignores is
         ignored too. Raises InputError naming the option that is wrong, and Error
@@ -153,12 +155,12 @@ class Frames:
 
     The names are those of :class:`Scene`: a built-in scene that moves, or mesh files with %d or %04d
     in their names. ``frames``: a number N (0 to N - 1), or (first, last). Raises Error where nothing
-    moves, and for a frame that cannot be read when it is reached.
+    moves, and for a frame that cannot be read when it is reached. ``weld``: as of :class:`Scene`.
     """
 
     def __init__(
         collection, /, *names: Union[str, os.PathLike[str]], frames: Union[int, Tuple[int, int]],
-        self: bool = False,
+        self: bool = False, weld: Union[None, float, str] = None,
     ) -> None:
         most = 10**9
         if isinstance(frames, (tuple, list)):
@@ -168,14 +170,19 @@ class Frames:
             asked = f"{first}:{last}"
         else:
             asked = str(_arguments.integer("frames", frames, 1, most))
-        collection._frames = _farcull.Frames(_names(names), asked, _arguments.flag("self", self))
+        collection._frames = _farcull.Frames(
+            _names(names), _arguments.weld(weld), asked, _arguments.flag("self", self)
+        )
+        _warn()
 
     def __len__(self) -> int:
         return self._frames.last - self._frames.first + 1
 
     def at(self, frame: int) -> Scene:
         """The scene at a frame. A simulation computes the frames before it first."""
-        return Scene._of(self._frames.at(_arguments.integer("frame", frame, 0, 2**31 - 1)))
+        scene = Scene._of(self._frames.at(_arguments.integer("frame", frame, 0, 2**31 - 1)))
+        _warn()
+        return scene
 
     def __iter__(self) -> Iterator[Tuple[int, Scene]]:
         for frame in range(self._frames.first, self._frames.last + 1):

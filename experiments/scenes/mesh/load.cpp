@@ -480,8 +480,10 @@ Mesh MeshCache::read(const std::string& path) const {
   }
   if (reading_.weld.empty()) return mesh;
   const std::uint64_t merged = weld(mesh, parse_weld(reading_.weld));
-  add_reading_notes(path,
-                    {counted(merged, "vertex", "vertices") + " merged by --weld " + reading_.weld});
+  if (merged > 0) {
+    add_reading_notes(path, {counted(merged, "vertex", "vertices") +
+                             " merged with others that are at most " + reading_.weld + " away"});
+  }
   return mesh;
 }
 

@@ -86,8 +86,8 @@ bool is_numbered(const std::string& name);
 /// The name with the number in its place. Precondition: is_numbered(name), number >= 0.
 std::string numbered(const std::string& name, long number);
 
-/// How the meshes of a scene are read, as the words --weld=T and --format=F among its arguments
-/// say.
+/// How the meshes of a scene are read, as --weld and --format say (SceneArguments of
+/// scene_file.h).
 struct MeshReading {
   std::string weld;                  // as parse_weld() takes it; empty: vertices stay as they are
   std::optional<MeshFormat> format;  // of standard input, "-"

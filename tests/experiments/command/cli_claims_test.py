@@ -47,6 +47,7 @@ $ grep -qx '  "list_sha256": "{missed}",' c.json
   | #0 ^not proved: missed\.csv is another list:
 bad a list that is not there | nothing\.csv: | check exact.json two-spheres --pairs nothing.csv
 bad the proved checker for a list | --verified: is for certificates of one scene | check exact.json two-spheres --pairs pairs.csv --verified
+bad a certificate from standard input | CERTIFICATE: is not read from standard input; name a file | check - two-spheres --verified
 bad an empty name of a list | --pairs: | check exact.json two-spheres --pairs ''
 $ sed 's/"version": 3/"version": 2/' exact.json >older.json
 bad a certificate of another version | older\.json: version is not 3, 4 or 5 | check older.json two-spheres

@@ -24,7 +24,6 @@ bad no part | SCENE: none is named | clash
 bad one part | scene: has fewer than two objects; name two parts | clash inner.obj
 bad a folder without meshes | nothing: the folder has no mesh files | clash nothing
 bad clearance '{clearance}' | --clearance: | clash parts --clearance {clearance}
-bad touching | --touching: 'never' is no choice; give allow or report | clash parts --touching never
 bad fail on {word} | --fail-on: '{word}' is no verdict; give none, or some of | clash parts --fail-on {word}
 bad ignored | --ignore: | clash parts --ignore a:none
 bad a part without triangles | empty.off: the mesh has no triangles | clash parts/a.obj empty.off
@@ -36,7 +35,7 @@ bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 rows(r"""
 1 a folder | clash parts | ^examined   6 of 6 pairs of parts$ | ^verdicts   1 clash, 0 contained, 0 unknown, 1 touch, 0 near, 4 clear$
   | ^clash +a +b +1 +.* crossing | ! ^touch
-1 touching | clash parts --touching report --fail-on touch | ^touch +c +d
+1 touching | clash parts --fail-on touch | ^touch +c +d
 0 fail on none | clash parts --fail-on none | ^clash
 0 fail on near | clash parts --fail-on near | ^clash
 1 near | clash parts --fail-on near --clearance 2 --unit mm | ^near +b +c .* 2 | depth .mm.

@@ -76,6 +76,7 @@ shells.obj << {T}; v 0.1 0.1 0.1; v 9.1 0.1 0.1; v 0.1 9.1 0.1; v 0.1 0.1 9.1; {
 point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
 0 inside two shells | distance point.obj shells.obj --csv - | ,a$
 0 by parity | distance point.obj shells.obj --inside parity --csv - --json parity.json | ,none$ | @parity.json "inside_by": "parity"
+0 ignored in each frame | distance cylinders:3 --frames 2 --ignore cylinder0:cylinder1 | ^ +0 +2 | ^ +1 +2
 0 ignored | {three} --ignore small:right --csv ignored.csv | ^ignored    1 pair of objects$
   | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && (($(wc -l <ignored.csv) == 3))
 0 triangles of ignored objects | {three} --ignore small:right --pairs all --within 9 --csv ignored.csv | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && grep -q '^0,[0-9]*,2,' ignored.csv

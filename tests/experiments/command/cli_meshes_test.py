@@ -32,12 +32,14 @@ edge.obj << v 0 0 0; v 1 0 0; v 0 -1 0; v 0 0 1e-17; v 1 0 -1e-17; v 0 1 0; f 1 
 # Corners that differ in the last digits.
 0 apart | run edge.obj --self | ^colliding +1 pair = 1 \+ 0 of neighbours
 0 welded | run edge.obj --self --weld 1e-7*size --certificate c.json --json r.json
-  | @err ^farcull: edge\.obj: 2 vertices merged by --weld 1e-7\*size$ | ^scene      edge, welded at 1e-7\*size: 1 object
+  | @err ^farcull: edge\.obj: 2 vertices merged with others that are at most 1e-7\*size away$ | ^scene      edge, welded at 1e-7\*size: 1 object
   | ^colliding +0 pairs | @r.json "edge, welded at 1e-7\*size" | @c.json welded at 1e-7
 0 checked | check c.json edge.obj --self --weld 1e-7*size | @err merged | #0 ^proved
 1 checked without | check c.json edge.obj --self | #0 not proved
 bad a weld | --weld: '-1' is no tolerance | run edge.obj --self --weld=-1
+bad an empty weld | --weld: | run edge.obj --self --weld=
 bad of a built-in scene | --weld: has no meaning | run two-tori --weld 1
+bad an option as a name | --weld=1: | run edge.obj -- --weld=1
 0 a hint | run cad.obj --self | ^hint +cad is not closed: [0-9]+ open edges, one of them at .* Their ends nearly$
   | ^ +coincide; --weld 1e-[01][0-9][*]size closes it$
 0 no hint | run cad.obj --self --weld 1e-9 | @err merged | ! ^hint | ^colliding +0 pairs

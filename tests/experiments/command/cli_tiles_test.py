@@ -135,5 +135,9 @@ $ cp t1.json u1.json && sed 's/"to": {border}/"to": 1e9/' t2.json >u2.json && cp
 bad a whole scene | .*is about a whole scene | check w%d.json field:3000 --tiles 1
 bad no number | CERTIFICATE: .*has no place for a number | check t1.json field:3000 --tiles 3
 bad frames | --tiles: | check t%d.json field:3000 --tiles 3 --frames 2
+bad ignored | --tiles: .*--ignore | check t%d.json field:3000 --tiles 3 --ignore a:b
+# The record of tiles has the keys of a record of one certificate, and those of the tiles.
+0 a whole scene | check w1.json field:3000 --json w.json
+$ python3 -c 'import json; c, w = (json.load(open(f)) for f in ("c.json", "w.json")); t = c.pop("tiles"); assert set(c) < set(w) and all(set(x) - set(w) == set(["tile"]) for x in t), c; assert c["scene"]["hash"] == w["scene"]["hash"] and c["list"]["given_is_found"]; assert c["found"]["meeting"] == sum(x["found"]["meeting"] for x in t) > 100'
 bad ignored pairs | .*ignores pairs of objects, and a certificate | run crowd/ignores.json --tiles 1/2 --certificate i.json
 """, border=re.escape(border))

@@ -476,6 +476,23 @@ TEST(LibraryDistances, OfObjectsThatAreAskedAboutByThemselves) {
   EXPECT_THROW(DistanceFinder({.self_objects = {true}}).find(Flat(scene).input()), Error);
 }
 
+TEST(LibraryDistances, LeaveIgnoredObjectsOut) {
+  Scene scene = make_builtin_scene("cylinders:3");
+  const Flat flat(scene);
+  const auto answers = distances(flat.input(), {.ignore = {{2, 0}, {0, 2}}});
+  scene.ignored = {{0, 2}};
+  expect_same(answers, distances(scene, {}));
+  EXPECT_EQ(answers.size(), 2u);
+  EXPECT_EQ(distances(flat.input()).size(), 3u);  // the twin
+  const auto where = [&](const DistanceFinderOptions& options) {
+    return refusal([&] { distances(flat.input(), options); })[0];
+  };
+  EXPECT_EQ(where({.ignore = {{0, 3}}}), "ignore");
+  EXPECT_EQ(where({.ignore = {{1, 1}}}), "ignore");
+  EXPECT_EQ(where({.ignore = {{0, 1}, {0, 2}, {1, 2}}}), "ignore");
+  EXPECT_EQ(where({.kind = DistanceKind::nearest, .ignore = {{0, 1}}}), "ignore");
+}
+
 TEST(LibraryDistances, OfACallerThatRoundsUpwardAreTheSame) {
   const Scene scene = make_builtin_scene("degenerate");
   const Flat flat(scene);

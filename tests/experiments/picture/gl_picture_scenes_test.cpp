@@ -117,13 +117,9 @@ TEST(GlPictureScenes, AViewOfFarLosesNothingAndOneOfCullideDoes) {
 }
 
 TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
-  const ScratchFolder folder;
-  const std::string path = folder.path("a picture.png");
-  const PictureResult r = write_picture(
-      picture_arguments(
-          "two-spheres --method far --resolution 64 --radius published --size 200x160"),
-      shared_lab(), path);
-  const PngContent back = png_content(read_text(path));
+  const PictureResult r =
+      made("two-spheres --method far --resolution 64 --radius published --size 200x160");
+  const PngContent back = png_content(to_png(r.image, r.texts));
   EXPECT_EQ(back.image.pixels, r.image.pixels);
   EXPECT_EQ(back.texts, r.texts);
   const auto text = [&](const std::string& key) {

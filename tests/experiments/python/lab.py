@@ -8,7 +8,7 @@ import pytest
 
 PROGRAM = os.environ["FARCULL_PROGRAM"]
 FOLDER = os.path.dirname(os.path.abspath(__file__))
-ALL = dict(self=True, kinds=True)
+ALL = dict(self=True, contacts=True)
 
 
 def error_of(call, *arguments, **options):

@@ -11,7 +11,7 @@ import types
 import farcull
 import numpy as np
 import pytest
-from lab import ALL, PROGRAM, error_of, refused
+from lab import ALL, PROGRAM, error_of, refused, same_pairs
 from test_contacts import OBJECTS, Program, tangled
 
 
@@ -114,6 +114,123 @@ def test_a_finder_answers_frame_after_frame(scene):
         assert set(first.objects) <= set("abcd")
     for wrong in (dict(kind="far"), dict(k=2), dict(within=-1), dict(kind="all"), dict(self=1), dict(threads=-1)):
         assert refused(farcull.DistanceFinder, **wrong) in (*wrong, "within")
+
+
+def test_objects_that_are_ignored_have_no_distance(scene):
+    V, F, program = scene
+    truth = of_program(program, "--ignore", "o0:o2,o3:o1")
+    for ignore in ([(0, 2), (3, 1)], [(2, 0), (1, 3), (0, 2)]):
+        found = list(farcull.distances(V, F, OBJECTS, ignore=ignore))
+        assert found == truth == list(farcull.DistanceFinder(ignore=ignore).find(V, F, OBJECTS))
+    labels = np.repeat([7, 5, 3, 9], 40)  # the objects 2, 1, 0 and 3
+    labelled = farcull.distances(V, F, labels=labels, ignore=[(7, 3), (5, 9)])
+    assert sorted(d.squared for d in labelled) == sorted(d.squared for d in truth)
+    # Twin: other objects, and none.
+    assert list(farcull.distances(V, F, OBJECTS, ignore=[(0, 1), (3, 1)])) != truth
+    assert len(truth) == 4 and len(farcull.distances(V, F, OBJECTS)) == 6
+    near = dict(kind="all", within=0.75)
+    of_all = farcull.distances(V, F, OBJECTS, ignore=[(0, 2)], **near)
+    kept = [d for d in farcull.distances(V, F, OBJECTS, **near) if d.objects != (0, 2)]
+    assert list(of_all) == kept and 1 < len(kept) < len(farcull.distances(V, F, OBJECTS, **near))
+    every = [(a, b) for a in range(4) for b in range(a)]
+    for wrong in ([(0, 4)], [(1, 1)], [("o0", "o1")], every):
+        assert refused(farcull.distances, V, F, OBJECTS, ignore=wrong) == "ignore"
+    assert refused(farcull.distances, V, F, OBJECTS, kind="nearest", ignore=[(0, 2)]) == "ignore"
+    assert refused(farcull.DistanceFinder(ignore=[(0, 2)]).find, V, F, labels=labels) == "labels"
+
+
+def box_of(low, high):
+    """A closed box, its faces outward."""
+    V = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], float)
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return V, np.array([[a, b, c] for q in quads for a, b, c in (q[:3], (q[0], q[2], q[3]))])
+
+
+def test_inside_is_by_winding_numbers_or_by_parity():
+    # Two shells that overlap, as one object: where both are, the winding number is 2 and the parity even.
+    shells = farcull.join(box_of((0, 0, 0), (2, 2, 2)), box_of((1, 0.5, 0.5), (3, 1.5, 1.5)))
+    V, F, starts = farcull.join(shells[:2], box_of((1.4, 0.9, 0.9), (1.6, 1.1, 1.1)))
+    def said(**options):
+        (found,) = farcull.distances(V, F, starts, **options)
+        return found.inside
+
+    assert said() == said(inside=True) == "b" and said(inside="parity") == "none" and said(inside=False) == "unknown"
+    assert said(kind="nearest", inside="parity") == "none"
+    for wrong in ("yes", 1, None):
+        assert refused(farcull.distances, V, F, starts, inside=wrong) == "inside"
+    assert refused(farcull.distances, V, F, starts, kind="all", within=1, inside="parity") == "inside"
+
+
+# ---- poses
+
+
+def moved(V, F, starts, poses):
+    """The vertices after each object was moved, by the operations that the documentation states."""
+    out = V.copy()
+    for first, end, pose in zip(starts, [*starts[1:], len(F)], poses):
+        x, y, z = V[F[first:end]].reshape(-1, 3).T
+        rows = [((r[0] * x + r[1] * y) + r[2] * z) + r[3] for r in pose[:3]]
+        out[F[first:end].reshape(-1)] = np.stack(rows, axis=1)
+    return out
+
+
+def random_poses(rng, count):
+    out = np.stack([np.eye(4)] * count)
+    for pose in out:
+        pose[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        pose[:3, 3] = rng.normal(size=3) / 4
+    return out
+
+
+def test_poses_move_objects_frame_after_frame():
+    scene = farcull.Scene("two-spheres")
+    V, F, starts = np.array(scene.vertices), np.array(scene.triangles), scene.object_starts
+    rng = np.random.default_rng(20261128)
+    collider, finder = farcull.Collider(contacts=True), farcull.DistanceFinder()
+    sizes = set()
+    for frame in range(6):
+        poses = random_poses(rng, 2)
+        arrays = (V, F, starts) if frame % 3 == 0 else ()  # poses alone move those of the frame before
+        expected = moved(V, F, starts, poses)
+        found, truth = collider.find(*arrays, poses=poses[:, :3]), farcull.collide(expected, F, starts, contacts=True)
+        assert same_pairs(found, truth) and np.array_equal(found.kinds, truth.kinds)
+        assert list(finder.find(*arrays, poses=list(poses))) == list(farcull.distances(expected, F, starts))
+        for call in (farcull.collide, farcull.distances):
+            assert len(call(V, F, starts, poses=poses)) if call is farcull.distances else same_pairs(call(V, F, starts, poses=poses), truth)
+        parts = [part.pairs for part in farcull.stream(V, F, starts, poses=poses)]
+        assert np.array_equal(np.concatenate([np.empty((0, 2), int), *parts]), truth.pairs)
+        sizes.add(len(truth.pairs))
+        # Twin: the inverse rotations give another answer where objects meet.
+        other = poses.copy()
+        other[:, :3, :3] = poses[:, :3, :3].transpose(0, 2, 1)
+        assert list(farcull.distances(V, F, starts, poses=other)) != list(farcull.distances(V, F, starts, poses=poses))
+    assert len(sizes) > 3
+
+
+def test_poses_alone_follow_an_answer():
+    V, F, starts = farcull.join(box_of((0, 0, 0), (1, 1, 1)), box_of((2, 0, 0), (3, 1, 1)))
+    still, into = np.stack([np.eye(4)] * 2), np.stack([np.eye(4)] * 2)
+    into[1, 0, 3] = -1.5
+    order = np.random.default_rng(2).permutation(len(F))
+    labels = np.repeat(["b", "a"], 12)[order]
+    collider, finder = farcull.Collider(), farcull.DistanceFinder()
+    for kept in (collider, finder):
+        assert refused(kept.find, poses=still) == "V"
+        kept.find(V, F[order], labels=labels)
+    # Of the labels in ascending order, and in the numbers of the caller.
+    truth = farcull.collide(V, F[order], labels=labels, poses=into[::-1])
+    assert same_pairs(collider.find(poses=into[::-1]), truth) and len(truth.pairs) > 10
+    (apart,) = finder.find(poses=still)
+    assert apart.distance == 1 and apart.objects == ("a", "b")
+    for kept in (collider, finder):
+        assert refused(kept.find, poses=still[:1]) == "poses"
+        assert refused(kept.find, poses=still) == "V"  # what was refused is not there for poses alone
+        assert refused(kept.find, V, F) in ("object_starts", "F")
+        kept.find(V, F, starts, poses=still)
+        shared = F.copy()
+        shared[-1] = 0
+        assert refused(kept.find, V, shared, starts, poses=still) == "poses"
+    assert "poses" in str(error_of(farcull.show, farcull.collide(V, F, starts, poses=into), browse=False))
 
 
 # ---- contacts

@@ -7,11 +7,12 @@ import os
 import pickle
 import subprocess
 import threading
+import types
 
 import farcull
 import numpy as np
 import pytest
-from lab import PROGRAM, error_of, same_pairs
+from lab import PROGRAM, error_of, refused, same_pairs
 
 V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1], [9, 9, 9]], float)
 F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
@@ -129,10 +130,12 @@ def bad_arguments():
         self=[[True], 1, "yes"],
         clearance=[-1, math.inf, math.nan, "0", 10**400],
         neighbours=[1],
-        kinds=[1, "crossing"],
+        contacts=[1, "crossing"],
         ignore=[[(0, 3)], [(0, 1), (1, 1)], [(-1, 0)], [(0, 2**32)], [(0, 2**70)], [(0.0, 1.0)], [(0, 1, 2)],
                 [(0, 1), (2,)], [("base", "hand")], "0:1", True],
         limit=[0, -1, 2**64, 1.0, True],
+        poses=[[], np.eye(4), [np.eye(4)], [np.eye(4)] * 4, np.full((3, 4, 4), np.nan), [np.eye(4).T + 1] * 3,
+               [np.eye(3)] * 3, np.stack([np.eye(4)] * 3).astype(np.longdouble), "poses"],
         device=["toaster", 0],
         threads=[-1, 1025, 2**70, 1.0])
     return [(name, value) for name, all_values in values.items() for value in all_values]
@@ -190,7 +193,7 @@ def test_labels_group_triangles_in_any_order():
     scene = farcull.Scene("two-tori")
     V, F, starts = scene.vertices, scene.triangles, scene.object_starts
     count = len(F)
-    expected = farcull.collide(V, F, starts, kinds=True)
+    expected = farcull.collide(V, F, starts, contacts=True)
     assert len(expected.pairs) == 282
     labels = np.repeat([3, 7], [starts[1], count - starts[1]])
     order = np.random.default_rng(20261127).permutation(count)
@@ -199,7 +202,7 @@ def test_labels_group_triangles_in_any_order():
     wanted = wanted[np.lexsort((wanted[:, 1], wanted[:, 0]))].tolist()
     for names in (labels, labels.astype(str)):
         assert same_pairs(farcull.collide(V, F, labels=names), expected)
-        mixed = farcull.collide(V, F[order], labels=names[order], kinds=True)
+        mixed = farcull.collide(V, F[order], labels=names[order], contacts=True)
         assert mixed.pairs.tolist() == wanted
         assert sorted(mixed.kinds) == sorted(expected.kinds)
         streamed = [pair for part in farcull.stream(V, F[order], labels=names[order]) for pair in part.pairs.tolist()]
@@ -253,6 +256,9 @@ def test_what_only_claims_to_be_an_array_is_refused():
         def __array__(self, *_):
             raise RuntimeError("no")
 
+    mesh = types.SimpleNamespace(vertices=V, faces=F)
+    for call in (farcull.collide, farcull.distances):
+        assert "farcull.join" in error_of(call, mesh, mesh).remedy
     for given in (Liar(), Thrower(), object(), {1, 2}, b"bytes"):
         assert error_of(farcull.collide, given, F, OBJECTS).where == "V"
         assert error_of(farcull.collide, V, given, OBJECTS).where == "F"
@@ -267,7 +273,8 @@ def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
     starts = np.zeros(1, np.int64)
     for vertices, triangles in ((V.astype(object), F), (V, F.astype(object)), (V.astype(">f8"), F), (V[:, :1], F),
                                 (V, F.ravel()), (np.zeros((0, 3), "V8"), F)):
-        error_of(collider.find, vertices, triangles, starts)
+        error_of(collider.find, vertices, triangles, starts, np.empty((0, 3, 4)))
+    assert refused(collider.find, V, F, np.array(OBJECTS), np.zeros((3, 4, 4))) == "poses"
     with pytest.raises(TypeError):
         collider.find(None, None)
 

@@ -85,7 +85,7 @@ def test_kinds_are_said_where_they_are_asked_for(scene):
     assert silent.kinds is None and silent.neighbour_kinds is None
     assert np.array_equal(asked.pairs, silent.pairs)
     assert np.array_equal(asked.neighbour_pairs, silent.neighbour_pairs)
-    none = farcull.collide(V, F[:2], [0, 1], neighbours=False, kinds=True)
+    none = farcull.collide(V, F[:2], [0, 1], neighbours=False, contacts=True)
     assert none.neighbour_kinds.shape == (0,)
 
 
@@ -128,18 +128,18 @@ def test_runs_of_scenes_answer_the_same(scene):
     starts = read.object_starts.tolist()
     assert starts == OBJECTS and read.names == ["o0", "o1", "o2", "o3"]
     for method in ("far-pairs", "exact"):
-        record = read.run(method, kinds=True)
+        record = read.run(method, contacts=True)
         whole, _ = program.rows()
         assert rows_of(record) == whole and record.complete
         for pairs in ([(0, 2), (3, 1)], [("o0", "o2"), ("o3", "o1")]):
             truth, _ = program.rows("--ignore", "o0:o2,o3:o1")
-            record = read.run(method, kinds=True, ignore=pairs)
+            record = read.run(method, contacts=True, ignore=pairs)
             assert rows_of(record) == truth != whole
             counted = record.accounting
             assert counted["ignored"] == 2 * 40 * 40 and counted["false_negatives"] == 0
             ms, total = counted.pop("ms"), counted.pop("pairs_total")
             assert ms > 0 and sum(counted.values()) == total and len(record.missed()) == 0
-        limited = read.run(method, kinds=True, limit=50, verify=False)
+        limited = read.run(method, contacts=True, limit=50, verify=False)
         assert rows_of(limited) == whole[:50] and not limited.complete
         assert read.run(method, verify=False).kinds is None
         for partial in (record, limited):
@@ -189,9 +189,9 @@ def test_what_a_scene_file_ignores_is_ignored(scene):
     read = farcull.Scene(path)
     assert read.ignored.tolist() == [[0, 1], [0, 2], [0, 3]] and whole.ignored.shape == (0, 2)
     for method in ("far-pairs", "exact"):
-        expected = whole.run(method, kinds=True, ignore=[(0, 1), (2, 0), (0, 3), (1, 2)])
-        record = read.run(method, kinds=True, ignore=[("o1", "o2")])
-        assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, kinds=True))
+        expected = whole.run(method, contacts=True, ignore=[(0, 1), (2, 0), (0, 3), (1, 2)])
+        record = read.run(method, contacts=True, ignore=[("o1", "o2")])
+        assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, contacts=True))
         assert record.accounting["false_negatives"] == 0 and record.accounting["ignored"] == 4 * 40 * 40
         refused(record.certificate)
     # A list is checked without the pairs that the scene ignores; this one lacks those of o1 and o2 as well.
@@ -203,7 +203,7 @@ def test_what_a_scene_file_ignores_is_ignored(scene):
     counts = [str(farcull.plan(one, ignore=ignore, limit=3)).split("boxes overlap")[1][:40]
               for one, ignore in ((whole, None), (read, None), (read, [("o1", "o2")]))]
     assert len(set(counts)) == 3, counts
-    assert "is no option" in str(error_of(farcull.plan, whole, kinds=True))
+    assert "is no option" in str(error_of(farcull.plan, whole, contacts=True))
 
 
 def test_frames_of_one_collider_answer_as_single_calls(scene):

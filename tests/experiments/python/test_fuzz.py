@@ -23,7 +23,7 @@ TYPES = "f2 f4 f8 g i1 i2 i4 i8 u1 u2 u4 u8 >f4 >f8 >i8 >u4 ? c16 S3 U2 O M8[s] 
 VALUES = [0, 1, 2, 3, -1, 0.5, 1e308, -1e-308, math.nan, math.inf, 2**31, 2**32, 2**63, 2**64 - 1]
 SHAPES = [(0,), (3,), (0, 3), (3, 0), (1, 3), (2, 3), (4, 3), (7, 3), (2, 2), (2, 4), (2, 3, 3), ()]
 JUNK = [None, True, False, -1, 0, 1, 2, 1025, 2**70, 0.0, -0.5, 1e-9, math.nan, math.inf, "", "cpu"]
-JUNK += ["gl?", "objects", "all", "nearest", b"x", [], [True], [False, True], {}, object(), 1j]
+JUNK += ["gl?", "objects", "all", "nearest", "parity", b"x", [], [True], [False, True], {}, object(), 1j]
 
 
 def random_array(rng):
@@ -79,9 +79,9 @@ def one_call(rng):
             arguments[name] = rng.choice([random_array, lambda r: r.choice(JUNK)])(rng)
     call = rng.choice([farcull.collide, farcull.collide, streamed, farcull.distances])
     options = {
-        farcull.collide: ("self", "clearance", "neighbours", "device", "threads", "kinds", "ignore", "limit"),
-        streamed: ("self", "clearance", "neighbours", "threads", "kinds", "ignore", "limit"),
-        farcull.distances: ("self", "kind", "k", "within", "inside", "threads"),
+        farcull.collide: ("self", "clearance", "neighbours", "device", "threads", "contacts", "ignore", "limit", "poses"),
+        streamed: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
+        farcull.distances: ("self", "kind", "k", "within", "inside", "threads", "ignore", "poses"),
     }[call]
     for name in options:
         if rng.random() < 0.12:
@@ -156,7 +156,7 @@ def test_random_calls_answer_or_say_what_is_wrong():
     print(f"of {CALLS} calls {answered} answered, {refused} refused, {compared} compared with distances")
     # Else the calls would show nothing.
     assert min(answered, refused, compared) > CALLS // 10, (answered, refused, compared)
-    assert wheres >= {"V", "F", "object_starts", "self", "clearance", "threads", "kind", "kinds", "ignore",
+    assert wheres >= {"V", "F", "object_starts", "self", "clearance", "threads", "kind", "contacts", "poses", "ignore",
                       "limit"}
 
 

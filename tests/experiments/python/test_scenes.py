@@ -110,6 +110,38 @@ def test_scenes_of_files(tmp_path):
     assert error_of(farcull.Scene, "no-such-scene").remedy
 
 
+def test_vertices_that_nearly_coincide_are_welded_where_that_is_asked(tmp_path):
+    V = np.array([[0, 0, 0], [1, 0, 0], [0, -1, 0], [0, 0, 1e-17], [1, 0, -1e-17], [0, 1, 0]])
+    F = np.array([[0, 1, 2], [3, 4, 5]])
+    for number in range(2):
+        name = tmp_path / f"edge_{number}.obj"
+        name.write_text("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in V.tolist()) + "f 1 2 3\nf 4 5 6\n")
+
+    def met(scene):
+        return len(scene.run(verify=False).neighbour_pairs) + len(scene.run(verify=False).pairs)
+
+    def pairs(**options):
+        found = farcull.collide(*farcull.join((V, F), **options), self=True)
+        return len(found.pairs) + len(found.neighbour_pairs)
+
+    pattern = tmp_path / "edge_%d.obj"
+    assert pairs() == met(farcull.Scene(name, self=True)) == 1  # the twin
+    for weld in ("1e-7*size", 1e-9, np.float32(1e-9)):
+        with pytest.warns(UserWarning, match="2 vertices merged"):
+            assert pairs(weld=weld) == met(farcull.Scene(name, self=True, weld=weld)) == 0
+        with pytest.warns(UserWarning, match="edge_1.*2 vertices merged"):
+            frames = farcull.Frames(pattern, frames=2, self=True, weld=weld)
+            assert [met(scene) for _, scene in frames] == [0, 0]
+    assert [met(scene) for _, scene in farcull.Frames(pattern, frames=2, self=True)] == [1, 1]
+    assert pairs(weld=0) == met(farcull.Scene(name, self=True, weld=0)) == 1
+    for wrong in (-1, "", "size", float("nan"), True, [1], "1e-7 * size"):
+        assert refused(farcull.Scene, name, weld=wrong) == "weld"
+        assert refused(farcull.join, (V, F), weld=wrong) == "weld"
+    assert refused(farcull.Scene, "two-tori", weld=1) == "weld"
+    # A name that begins like an option of the program is a name.
+    assert "weld=1" in error_of(farcull.Scene, name, "--weld=1").where
+
+
 def test_bad_names_are_refused():
     for names in ((), ("",), (3,), (None,), ("two\0tori",), (b"two-tori",), ("\ud800",), (["a"],)):
         assert isinstance(error_of(farcull.Scene, *names), farcull.InputError)

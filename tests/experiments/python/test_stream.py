@@ -47,7 +47,7 @@ def test_pairs_are_those_of_a_collider_in_order(options):
     is_neighbour = np.concatenate([p.neighbours for p in parts])
     assert (pairs[~is_neighbour] == whole.pairs).all() and (pairs[is_neighbour] == whole.neighbour_pairs).all()
     assert len(pairs) > 50 and stream.complete == whole.complete
-    if options.get("kinds"):
+    if options.get("contacts"):
         kinds = np.concatenate([p.kinds for p in parts])
         assert (kinds[~is_neighbour] == whole.kinds).all() and (kinds[is_neighbour] == whole.neighbour_kinds).all()
     else:
@@ -139,7 +139,7 @@ V, F, objects = crossed(3000)
 def stop(*_):
     raise KeyboardInterrupt
 signal.signal(signal.SIGALRM, stop)
-stream = farcull.stream(V, F, objects, kinds=True)
+stream = farcull.stream(V, F, objects, contacts=True)
 for attempt in range(2000):
     signal.setitimer(signal.ITIMER_REAL, 0.02)
     try:

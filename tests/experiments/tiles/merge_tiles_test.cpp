@@ -35,7 +35,8 @@ class MergeTiles : public testing::Test {
   std::string out() const { return (folder_ / "all.csv").string(); }
 
   void run(std::size_t k, std::size_t n, const std::string& scene, double clearance = 0) {
-    TileQuestion question{.options = {.device = "native", .clearance = clearance}, .tile = {k, n}};
+    TileQuestion question{.options = {.device = "native", .clearance = clearance},
+                          .number = {k, n}};
     const SceneSource source = [&](const TakePart& take) { return stream_scene({scene}, take); };
     const TileRun tile = run_tile(source, question, session_);
     const TileList text{

@@ -119,7 +119,7 @@ TEST(Tiles, GiveTheListOfOneRunOnRandomScenes) {
     const std::size_t n = 1 + random.below(std::size_t{5});
     std::uint64_t home = 0, candidates = 0;
     for (std::size_t k = 1; k <= n; ++k) {
-      question.tile = {k, n};
+      question.number = {k, n};
       const TileRun tile = run_tile(source_of(scene), question, session);
       EXPECT_EQ(tile.part.hash, whole.scene_hash);
       ASSERT_TRUE(tile.record.verification);
@@ -149,7 +149,7 @@ TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
   while (scene.objects.size() < 3 || scene.objects[1].triangle_count == 0)
     scene = small_scene(random);
   Session session("native");
-  const TileQuestion question{.options = native(0), .tile = {1, 1}};
+  const TileQuestion question{.options = native(0), .number = {1, 1}};
   const std::string hash = run_tile(source_of(scene), question, session).part.hash;
   int reading = 0;
   const auto changing = [&](const std::function<void(Scene&)>& change) -> SceneSource {
@@ -229,7 +229,7 @@ TEST(Tiles, SayWhichObjectsTheyIgnore) {
   Scene scene = small_scene(random);
   while (scene.objects.size() < 4) scene = small_scene(random);
   Session session("native");
-  TileQuestion question{.options = native(0), .tile = {1, 2}};
+  TileQuestion question{.options = native(0), .number = {1, 2}};
   const auto asked = [&] {
     return json_of(run_tile(source_of(scene), question, session))["tile"]["options"];
   };
@@ -257,7 +257,7 @@ TEST(Tiles, SayWhichObjectsTheyIgnore) {
 TEST(Tiles, NameMissedPairsAsInTheWholeScene) {
   const Scene scene = load_scene({"field:3000"});
   Session session("native");
-  TileRun tile = run_tile(source_of(scene), {.options = native(0), .tile = {3, 3}}, session);
+  TileRun tile = run_tile(source_of(scene), {.options = native(0), .number = {3, 3}}, session);
   ASSERT_GT(tile.part.numbers.objects.front(), 0);
   const auto last = static_cast<std::uint32_t>(tile.part.scene.triangles.size()) - 1;
   tile.record.verification->examples = {{0, last}};
@@ -343,8 +343,8 @@ TEST(Tiles, ReadAScenePartByPartAsAtOnce) {
 
 // The definitions, as they are or changed.
 struct Rules {
-  std::function<bool(const Slab&, double, double, double)> meets = farcull::meets;
-  std::function<bool(const Slab&, double)> holds = farcull::holds;
+  std::function<bool(const Tile&, double, double, double)> meets = farcull::meets;
+  std::function<bool(const Tile&, double)> holds = farcull::holds;
   std::function<double(double, double)> place = [](double a, double b) { return std::max(a, b); };
 };
 
@@ -378,12 +378,12 @@ Faults faults_of(const Rules& rules) {
         if (!near(boxes[a], boxes[b])) continue;
         int times = 0;
         for (std::size_t k = 0; k <= cuts.size(); ++k) {
-          const Slab slab = slab_of(axis, cuts, k);
+          const Tile tile = tile_of(axis, cuts, k);
           const auto meets = [&](const Box& box) {
-            return rules.meets(slab, box.lo[axis], box.hi[axis], clearance);
+            return rules.meets(tile, box.lo[axis], box.hi[axis], clearance);
           };
           times += meets(boxes[a]) && meets(boxes[b]) &&
-                   rules.holds(slab, rules.place(boxes[a].lo[axis], boxes[b].lo[axis]));
+                   rules.holds(tile, rules.place(boxes[a].lo[axis], boxes[b].lo[axis]));
         }
         out.lost += times == 0;
         out.repeated += times > 1;
@@ -401,24 +401,24 @@ TEST(Tiles, EachPairBelongsToOneTile) {
 
 TEST(Tiles, ATriangleThatEndsOnTheCutMustNotBeDropped) {
   const Faults faults =
-      faults_of({.meets = [](const Slab& slab, double lo, double hi, double clearance) {
-        return lo < slab.to && slab.from - hi < clearance;
+      faults_of({.meets = [](const Tile& tile, double lo, double hi, double clearance) {
+        return lo < tile.to && tile.from - hi < clearance;
       }});
   EXPECT_GT(faults.lost, 0);
 }
 
 TEST(Tiles, ATriangleThatEndsWithinTheClearanceOfTheCutMustNotBeDropped) {
-  const Faults faults = faults_of({.meets = [](const Slab& slab, double lo, double hi, double) {
-    return lo < slab.to && hi >= slab.from;
+  const Faults faults = faults_of({.meets = [](const Tile& tile, double lo, double hi, double) {
+    return lo < tile.to && hi >= tile.from;
   }});
   EXPECT_GT(faults.lost, 0);
 }
 
 TEST(Tiles, TilesMustNotHoldBothEnds) {
   const Faults faults = faults_of(
-      {.meets = [](const Slab& slab, double lo, double hi,
-                   double clearance) { return lo <= slab.to && slab.from - hi <= clearance; },
-       .holds = [](const Slab& slab, double at) { return at >= slab.from && at <= slab.to; }});
+      {.meets = [](const Tile& tile, double lo, double hi,
+                   double clearance) { return lo <= tile.to && tile.from - hi <= clearance; },
+       .holds = [](const Tile& tile, double at) { return at >= tile.from && at <= tile.to; }});
   EXPECT_EQ(faults.lost, 0);
   EXPECT_GT(faults.repeated, 0);
 }
@@ -430,11 +430,11 @@ TEST(Tiles, ThePlaceOfAPairIsTheLaterBeginning) {
 
 TEST(Tiles, TheFirstAndTheLastTileHaveNoEnd) {
   const std::vector<double> cuts = {1, 1, 2};
-  EXPECT_TRUE(holds(slab_of(0, cuts, 0), -HUGE_VAL));
-  EXPECT_FALSE(holds(slab_of(0, cuts, 0), 1));
-  EXPECT_FALSE(holds(slab_of(0, cuts, 1), 1));  // between equal cuts lies nothing
-  EXPECT_TRUE(holds(slab_of(0, cuts, 2), 1));
-  EXPECT_TRUE(holds(slab_of(0, cuts, 3), 1e308));
+  EXPECT_TRUE(holds(tile_of(0, cuts, 0), -HUGE_VAL));
+  EXPECT_FALSE(holds(tile_of(0, cuts, 0), 1));
+  EXPECT_FALSE(holds(tile_of(0, cuts, 1), 1));  // between equal cuts lies nothing
+  EXPECT_TRUE(holds(tile_of(0, cuts, 2), 1));
+  EXPECT_TRUE(holds(tile_of(0, cuts, 3), 1e308));
 }
 
 }  // namespace

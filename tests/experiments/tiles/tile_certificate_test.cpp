@@ -46,7 +46,8 @@ struct Tiles {
     options.device = "native";
     options.clearance = clearance;
     for (std::size_t k = 1; k <= n; ++k) {
-      runs.push_back(run_tile(whole_source(scene), {.options = options, .tile = {k, n}}, session));
+      runs.push_back(
+          run_tile(whole_source(scene), {.options = options, .number = {k, n}}, session));
       const WholeScene whole = whole_of(k - 1);
       const Certificate made = certificate_of(runs.back().part.scene, runs.back().record, &whole);
       certificates.push_back(parse_certificate(to_text(made), "tile"));
@@ -54,7 +55,7 @@ struct Tiles {
     }
   }
   WholeScene whole_of(std::size_t k) const {
-    return whole_scene(runs[k].census, runs[k].slab, runs[k].part);
+    return whole_scene(runs[k].census, runs[k].tile, runs[k].part);
   }
   CheckResult check(std::size_t k, const Certificate& certificate) const {
     const WholeScene whole = whole_of(k);
