@@ -1,7 +1,9 @@
 // ProximityTrees of near_pairs.h, in a file of this name because search.h includes that header.
 // Each question is a search (core/proximity/scene_trees.h). Searches go on side by side; one that
 // takes long is divided. For the nearest objects, each object asks about the others in the order of
-// the gaps of their parts, and stops at a gap above the k-th least upper bound so far. For all
+// the gaps of their parts, and stops at a gap above the k-th least upper bound so far. Where many
+// parts overlap, each small object asks about all triangles at once first, and then about the few
+// others that this search leaves. For all
 // pairs within a distance, each object is searched with those that follow it, by searches whose
 // bound stays the limit and that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
@@ -10,6 +12,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <queue>
 #include <stdexcept>
 #include <string>
@@ -18,6 +22,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/boxes/join.h"
 #include "core/proximity/scene_trees.h"
 
 namespace farcull {
@@ -106,21 +111,112 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// The others that may be among the k nearest of an object. hints: those that name the object,
-// sorted. all: also others that are as near as the k-th and have higher numbers.
-std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::size_t k,
-                            double limit, std::span<const NearHint> hints, bool all,
-                            SearchMemory& memory, ProximityCounts& counts) {
+// All triangles of a scene as one object. Objects of one leaf ask about them where so many parts of
+// objects overlap that to search with one object after the other would take time with the square of
+// their number.
+struct Crowd {
+  static constexpr std::size_t kOverlaps = 16;  // parts that overlap, for each object
+
+  static bool is_small(const SceneTrees& trees, std::uint32_t object) {
+    return trees.tree(object).leaves == 1;
+  }
+  static bool is(const SceneTrees& trees) {
+    const auto objects = static_cast<std::uint32_t>(trees.scene().objects.size());
+    std::vector<Box> parts;
+    std::vector<std::uint32_t> owners;
+    bool any_small = false;
+    for (std::uint32_t o = 0; o < objects; ++o) {
+      parts.insert(parts.end(), trees.parts(o).begin(), trees.parts(o).end());
+      owners.resize(parts.size(), o);
+      any_small |= is_small(trees, o);
+    }
+    if (!any_small) return false;
+    std::vector<std::uint32_t> items(parts.size());
+    std::iota(items.begin(), items.end(), 0u);
+    const std::size_t most = kOverlaps * objects;
+    return box_join(parts, owners, items, most).size() > most;
+  }
+  Crowd(const Scene& of, unsigned threads)
+      : scene{.name = of.name,
+              .vertices = of.vertices,
+              .triangles = of.triangles,
+              .source_face = {},
+              .objects = {{of.name, 0, static_cast<std::uint32_t>(of.triangles.size()), false}}},
+        trees(scene, threads),
+        owner(owners(of)) {}
+
+  Scene scene;
+  SceneTrees trees;
+  std::vector<std::uint32_t> owner;
+};
+
+// Memory of a thread that looks for nearest objects.
+struct NearestMemory {
+  SearchMemory of_two;
+  std::optional<SearchMemory> of_all;  // once an object has asked about all triangles
+};
+
+// The others of an object that may be among its k nearest, ascending. Lowers the limit to a bound
+// of the k-th distance. ties: as in Others.
+std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& crowd,
+                                       std::uint32_t object, std::size_t k, bool ties,
+                                       double& limit, SearchMemory& memory,
+                                       ProximityCounts& counts) {
+  Others others{.all = &crowd.trees,
+                .scene = trees.scene(),
+                .owner = crowd.owner,
+                .object = object,
+                .k = k,
+                .ties = ties};
+  Search search = begin_search(trees, object, limit, others, memory);
+  while (!search.open.empty()) {
+    go_on(trees, kLeafPairsAtOnce, search, memory);
+    require_room(trees, search);
+  }
+  search.filter();
+  std::vector<std::uint32_t> out;
+  for (const KeptPair& kept : search.kept) {
+    const std::uint32_t other = others.other_of(kept.pair);
+    if (trees.scene().objects[other].first_triangle < others.end) out.push_back(other);
+  }
+  std::ranges::sort(out);
+  out.erase(std::ranges::unique(out).begin(), out.end());
+  limit = search.bound();
+  counts.box_pairs += search.counts.box_pairs;
+  counts.triangle_pairs += search.counts.triangle_pairs;
+  return out;
+}
+
+// The others that may be among the k nearest of an object. crowd: null where the object
+// searches with one other after the other.
+// hints: those that name the object, sorted. all: also others that are as near as the k-th and have
+// higher numbers.
+std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,
+                            std::size_t k, double limit, std::span<const NearHint> hints, bool all,
+                            NearestMemory& both, ProximityCounts& counts) {
+  SearchMemory& memory = both.of_two;
   std::vector<Found> out;
   std::vector<Search> begun = begun_by_hints(trees, hints, limit, memory);
   for (const Search& search : begun) counts.triangle_pairs += search.counts.triangle_pairs;
   limit = std::min(limit, kth_least_upper(begun, k));
   std::vector<double> least;  // the k least upper bounds, as a heap
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
-  Approach approach(trees, object);
+  std::vector<std::uint32_t> near;
+  if (crowd) {
+    if (!both.of_all) both.of_all.emplace();
+    near = others_near(trees, *crowd, object, k, all, limit, *both.of_all, counts);
+  }
+  std::optional<Approach> approach;
+  if (!crowd) approach.emplace(trees, object);
   std::uint32_t other = 0;
-  std::size_t meeting = 0;
-  while (approach.next(near::square_limit(bound()), other)) {
+  std::size_t meeting = 0, next = 0;
+  const auto has_next = [&] {
+    if (approach) return approach->next(near::square_limit(bound()), other);
+    if (next == near.size()) return false;
+    other = near[next++];
+    return true;
+  };
+  while (has_next()) {
     if (other == object) continue;
     const ObjectPair objects = {std::min(object, other), std::max(object, other)};
     const double most = bound();
@@ -173,10 +269,12 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   }
   std::vector<std::vector<Found>> found(objects);
   std::vector<ProximityCounts> parts(objects);
-  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
+  std::unique_ptr<Crowd> crowd;
+  if (Crowd::is(trees)) crowd = std::make_unique<Crowd>(trees.scene(), threads);
+  for_each_with_memory<NearestMemory>(objects, threads, [&](std::size_t o, NearestMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
-    found[o] = found_by(trees, object, k, limit, hints_of[o], all, memory, parts[o]);
+    found[o] = found_by(trees, crowd.get(), object, k, limit, hints_of[o], all, memory, parts[o]);
   });
   std::vector<Found> founds;
   for (std::size_t o = 0; o < objects; ++o) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -208,16 +209,24 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
     fetch(&scene.triangles[out.triangle[k]]);
   }
   for (const std::uint32_t triangle : out.triangle) prefetch(scene, triangle);
-  out.boxes.clear();
   for (std::uint32_t k = 0; k < kWide; ++k) {
-    Box box = Box::empty();
+    const auto& vertices = scene.triangles[out.triangle[k]];
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vec3 p = trees.corner(out.triangle[k], corner);
-      box.add(p);
+      const double* p = scene.vertices[vertices[corner]].data();
       for (std::size_t axis = 0; axis < 3; ++axis)
-        out.corner[3 * corner + axis][k] = p[static_cast<Eigen::Index>(axis)];
+        out.corner[3 * corner + axis][k] = p[axis] * trees.scale();
     }
-    if (k < out.count) out.boxes.set(k, box);
+  }
+  // Loops over columns, which the compiler computes on lanes.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto &p = out.corner[axis], &q = out.corner[3 + axis], &r = out.corner[6 + axis];
+    auto &lo = out.boxes.column[axis], &hi = out.boxes.column[3 + axis];
+    for (std::size_t k = 0; k < kWide; ++k) {
+      lo[k] = std::min(std::min(p[k], q[k]), r[k]);
+      hi[k] = std::max(std::max(p[k], q[k]), r[k]);
+    }
+    std::fill(lo.begin() + out.count, lo.end(), std::numeric_limits<double>::infinity());
+    std::fill(hi.begin() + out.count, hi.end(), -std::numeric_limits<double>::infinity());
   }
 }
 

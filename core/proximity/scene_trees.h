@@ -220,10 +220,43 @@ struct Planes {
   Reaches b;          // the starts of those of objects.b, negated
 };
 
+/// A search for the nearest others of one object compares it with all triangles of the scene at
+/// once, as one object of other trees (SceneTrees::scale() is the same). A search of two objects
+/// takes as long as some hundred pairs of triangles, so that is faster where many small objects
+/// overlap.
+struct Others {
+  const SceneTrees* all;
+  const Scene& scene;
+  std::span<const std::uint32_t> owner;  // per triangle
+  std::uint32_t object;                  // the one that asks
+  std::size_t k;                         // so many others are asked for
+  bool ties;  // also others that are as near as the k-th and have higher numbers
+  /// No triangle from here on is asked about: k others with lower numbers meet the object for
+  /// certain.
+  std::uint32_t end = UINT32_MAX;
+  /// The k least upper bounds of different others, sorted; of equal ones those with low numbers.
+  std::vector<std::pair<double, std::uint32_t>> nearest = {};
+
+  bool is_own(std::uint32_t triangle) const {
+    const Object& own = scene.objects[object];
+    return triangle - own.first_triangle < own.triangle_count;
+  }
+  bool asks_about(std::uint32_t triangle) const { return triangle < end && !is_own(triangle); }
+  std::uint32_t other_of(const TrianglePair& pair) const {
+    return owner[is_own(pair.a) ? pair.b : pair.a];
+  }
+  double upper() const {
+    return nearest.size() < k ? std::numeric_limits<double>::infinity() : nearest.back().first;
+  }
+  /// A pair of the object and another one is at most `upper` apart.
+  void add(const TrianglePair& pair, double upper);
+};
+
 /// A search that has begun.
 struct Search {
   ObjectPair objects;
-  double limit = 0;  // scaled: pairs farther apart are not looked for
+  Others* others = nullptr;  // of objects.a; then objects.b is the one of its trees
+  double limit = 0;          // scaled: pairs farther apart are not looked for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
   /// The first pair so far that meets for certain. Then a pair behind it is no answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
@@ -261,6 +294,10 @@ class SearchMemory {
 /// Begins a search. hint: null, or a pair of triangles that may be near.
 Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
                     const TrianglePair* hint, SearchMemory& memory);
+/// Begins a search for the nearest others of an object that has triangles, to which all pairs are
+/// left whose others can be among them.
+Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
+                    SearchMemory& memory);
 /// Goes on until nothing is open, or `most` pairs of leaves were looked at.
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
 

@@ -1,7 +1,5 @@
 // Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all find
-// the same in the same order. A long search is divided into a fixed number of parts, which begin
-// with the same bound and take nothing from each other; after a while they are joined, and the rest
-// is divided again.
+// the same in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
 #include <hwy/foreach_target.h>
@@ -11,10 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/boxes/lanes-inl.h"
 #include "core/proximity/scene_trees.h"
 #include "core/proximity/triangle_pairs-inl.h"
@@ -34,11 +29,12 @@ class Searcher {
       : trees_(trees),
         search_(search),
         memory_(memory),
-        a_(trees.tree(search.objects.a)),
-        b_(trees.tree(search.objects.b)),
-        self_(search.objects.a == search.objects.b) {
-    Box both = a_.box;
-    both.add(b_.box);
+        others_(search.others),
+        a_{trees, search.objects.a},
+        b_{others_ ? *others_->all : trees, search.objects.b},
+        self_(!others_ && search.objects.a == search.objects.b) {
+    Box both = a_.tree().box;
+    both.add(b_.tree().box);
     origin_ = 0.5 * both.lo + 0.5 * both.hi;
     // A difference is off by u of itself; near::kGap has room for it.
     extent_ = (both.hi - origin_).cwiseMax(origin_ - both.lo);
@@ -47,13 +43,13 @@ class Searcher {
   }
 
   void begin(const TrianglePair* hint) {
-    search_.open.push_back(
-        {0, 0, 0, static_cast<std::uint8_t>(a_.levels), static_cast<std::uint8_t>(b_.levels)});
+    search_.open.push_back({0, 0, 0, static_cast<std::uint8_t>(a_.tree().levels),
+                            static_cast<std::uint8_t>(b_.tree().levels)});
     probing_ = true;  // the search looks at these pairs again later, so they are not kept now
     if (hint != nullptr && counts(hint->a, hint->b)) {
       add_hint(*hint);
       flush();
-    } else if (!self_) {
+    } else if (!self_ && !others_) {
       descend();
     }
     probing_ = false;
@@ -82,19 +78,45 @@ class Searcher {
   }
 
  private:
+  // The tree of an object.
+  struct Side {
+    const SceneTrees& trees;
+    std::uint32_t object;
+
+    const BoxTree<double>& tree() const { return trees.tree(object); }
+    const WideBoxes<double>& children(std::size_t height, std::uint32_t k) const {
+      return trees.blocks()[tree().first[height - 1] + k];
+    }
+    HWY_INLINE OneBox box_of(std::size_t height, std::uint32_t k) const {
+      if (height == static_cast<std::size_t>(tree().levels)) return OneBox(tree().box);
+      return OneBox(trees.blocks()[tree().first[height] + k / kWide], k % kWide);
+    }
+    std::uint32_t least(std::size_t height, std::uint32_t k) const {
+      return trees.least(object, height, k);
+    }
+    // The leaf from the cache; a missing one is loaded first.
+    BlockCorners& load(std::vector<BlockCorners>& memory, std::uint32_t k) const {
+      const std::uint32_t leaf = trees.leaf(object, k);
+      BlockCorners& out = memory[leaf % SearchMemory::kLeaves];
+      if (out.leaf != leaf) load_leaf(trees, leaf, out);
+      return out;
+    }
+  };
+
   // Nodes with lower triangles come first among nodes as near: if the objects meet, the first pair
   // is the answer.
   bool comes_first(const NodePair& x, const NodePair& y) const {
-    const TrianglePair p = least(x), q = least(y);
+    TrianglePair p = least(x), q = least(y);
+    if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // the other object decides
     if (p != q) return p < q;
     return x.a != y.a ? x.a > y.a : x.b > y.b;
   }
   TrianglePair least(const NodePair& at) const {
-    return {trees_.least(search_.objects.a, at.a_height, at.a),
-            trees_.least(search_.objects.b, at.b_height, at.b)};
+    return {a_.least(at.a_height, at.a), b_.least(at.b_height, at.b)};
   }
   // Whether all pairs of the nodes come behind one that meets for certain.
   bool is_behind(const NodePair& at) const {
+    if (others_) return b_.least(at.b_height, at.b) >= others_->end;
     if (search_.first.a == UINT32_MAX) return false;
     return search_.is_behind(lower_bound(at));
   }
@@ -134,8 +156,8 @@ class Searcher {
       expand(at, near::kMostSquare, children_);
       at = *std::ranges::min_element(children_, {}, &NodePair::square);
     }
-    const BlockCorners& a = load(memory_.a, trees_.leaf(search_.objects.a, at.a));
-    const BlockCorners& b = load(memory_.b, trees_.leaf(search_.objects.b, at.b));
+    const BlockCorners& a = a_.load(memory_.a, at.a);
+    const BlockCorners& b = b_.load(memory_.b, at.b);
     double least = std::numeric_limits<double>::infinity();
     std::size_t best_i = 0, best_j = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
@@ -165,8 +187,8 @@ class Searcher {
     if (at.a_height != at.b_height) {
       const bool a = at.a_height > at.b_height;  // the one that is divided
       const WideBoxes<double>& own =
-          a ? children(a_, at.a_height, at.a) : children(b_, at.b_height, at.b);
-      const OneBox box = a ? box_of(b_, at.b_height, at.b) : box_of(a_, at.a_height, at.a);
+          a ? a_.children(at.a_height, at.a) : b_.children(at.b_height, at.b);
+      const OneBox box = a ? b_.box_of(at.b_height, at.b) : a_.box_of(at.a_height, at.a);
       std::uint32_t bits = near_boxes(own, box, limit, squares);
       while (bits != 0) {
         const std::uint32_t k = next_bit(bits);
@@ -176,9 +198,9 @@ class Searcher {
       count_boxes(1);
       return;
     }
-    const WideBoxes<double>& own = children(a_, at.a_height, at.a);
-    const WideBoxes<double>& other = children(b_, at.b_height, at.b);
-    std::uint32_t columns = near_boxes(other, box_of(a_, at.a_height, at.a), limit, squares);
+    const WideBoxes<double>& own = a_.children(at.a_height, at.a);
+    const WideBoxes<double>& other = b_.children(at.b_height, at.b);
+    std::uint32_t columns = near_boxes(other, a_.box_of(at.a_height, at.a), limit, squares);
     count_boxes(1 + static_cast<std::size_t>(std::popcount(columns)));
     while (columns != 0) {
       const std::size_t j = next_bit(columns);
@@ -193,20 +215,14 @@ class Searcher {
   static std::uint32_t child(std::uint32_t node, std::size_t k) {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
-  const WideBoxes<double>& children(const BoxTree<double>& tree, std::size_t height,
-                                    std::uint32_t k) const {
-    return trees_.blocks()[tree.first[height - 1] + k];
-  }
-  HWY_INLINE OneBox box_of(const BoxTree<double>& tree, std::size_t height, std::uint32_t k) const {
-    if (height == static_cast<std::size_t>(tree.levels)) return OneBox(tree.box);
-    return OneBox(trees_.blocks()[tree.first[height] + k / kWide], k % kWide);
-  }
   void count_boxes(std::size_t blocks) { search_.counts.box_pairs += kWide * blocks; }
 
   // Puts the pairs of triangles of two leaves that may be near into the batch.
   HWY_INLINE void compare_leaves(const NodePair& at) {
-    BlockCorners& a = load(memory_.a, trees_.leaf(search_.objects.a, at.a));
-    BlockCorners& b = load(memory_.b, trees_.leaf(search_.objects.b, at.b));
+    BlockCorners& a = a_.load(memory_.a, at.a);
+    BlockCorners& b = b_.load(memory_.b, at.b);
+    const std::uint32_t asked = others_ ? asked_of(b) : 0xffff;
+    if (asked == 0) return;
     // The batch may change the direction while the rows are compared.
     const bool directed = direction_ != 0;
     const double gap_limit = gap_limit_;
@@ -216,8 +232,9 @@ class Searcher {
       if (b.most_extreme - a.most_extreme > gap_limit) return;
     }
     alignas(64) Gaps squares;
-    std::uint32_t rows = near_boxes(a.boxes, box_of(b_, 0, at.b), square_limit_, squares);
-    const std::uint32_t columns = near_boxes(b.boxes, box_of(a_, 0, at.a), square_limit_, squares);
+    std::uint32_t rows = near_boxes(a.boxes, b_.box_of(0, at.b), square_limit_, squares);
+    const std::uint32_t columns =
+        asked & near_boxes(b.boxes, a_.box_of(0, at.a), square_limit_, squares);
     count_boxes(2 + static_cast<std::size_t>(std::popcount(rows)));
     const bool same = self_ && at.a == at.b;
     std::array<std::uint32_t, kWide> near{};  // per row, bits of the columns
@@ -237,39 +254,63 @@ class Searcher {
     }
   }
 
-  // Drops pairs that are farther apart along the normal of one of their triangles than the bound.
-  // Boxes along the axes tell little of slivers and large triangles, and one normal is tried for
-  // all pairs of its triangle at once, which takes less time than to bound two of them.
+  // Bits of the triangles of a leaf of all triangles that are of another object than the one that
+  // asks, and of none behind those that meet it.
+  std::uint32_t asked_of(const BlockCorners& leaf) const {
+    std::uint32_t out = 0;
+    for (std::uint32_t k = 0; k < leaf.count; ++k)
+      out |= std::uint32_t{others_->asks_about(leaf.triangle[k])} << k;
+    return out;
+  }
+
+  // Drops pairs that are farther apart along the normal of one of their triangles than the bound,
+  // or, in the plane of the triangle, across one of its edges. Boxes along the axes tell little of
+  // slivers and large triangles, and one direction is tried for all pairs of its triangle at once,
+  // which takes less time than to bound two of them.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two
     for (std::size_t i = 0; i < kWide; ++i) {
-      if (std::popcount(near[i]) > 1) near[i] &= near_plane(a, i, b);
+      if (std::popcount(near[i]) > 1) near[i] = near_triangle(a, i, b, near[i]);
       twice |= once & near[i];
       once |= near[i];
     }
     while (twice != 0) {
       const std::size_t j = next_bit(twice);
-      const std::uint32_t rows = near_plane(b, j, a);
+      std::uint32_t rows = 0;
+      for (std::size_t i = 0; i < kWide; ++i) rows |= (near[i] >> j & 1u) << i;
+      rows = near_triangle(b, j, a, rows);
       for (std::size_t i = 0; i < kWide; ++i) near[i] &= ~((~rows >> i & 1u) << j);
     }
   }
 
-  // Bits of the triangles of a leaf that are not farther from triangle i of another one than the
-  // bound, by their gap along the normal of that one. The computed normal is a direction like any
-  // other, however far it is off (core/proximity/scene_trees.h); it is scaled to at most 16.
-  HWY_INLINE std::uint32_t near_plane(const BlockCorners& own, std::size_t i,
+  // Those of some triangles of a leaf (bits) that are not shown to be farther from triangle i of
+  // another one than the bound. A computed normal is a direction like any other, however far it is
+  // off (core/proximity/scene_trees.h); all are scaled to at most 16.
+  HWY_INLINE std::uint32_t near_triangle(const BlockCorners& own, std::size_t i,
+                                         const BlockCorners& leaf, std::uint32_t bits) const {
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k)
+      corners[k] = {own.corner[3 * k][i], own.corner[3 * k + 1][i], own.corner[3 * k + 2][i]};
+    const auto& [p, q, r] = corners;
+    const Vec3 normal = 0.125 * (q - p).cross(r - p);
+    bits &= near_along(normal, corners, leaf);
+    for (std::size_t k = 0; k < 3 && std::popcount(bits) > 2; ++k) {
+      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+      bits &= near_along(0.0625 * edge.cross(normal), corners, leaf);
+    }
+    return bits;
+  }
+
+  // Bits of the triangles of a leaf that are not farther from a triangle along d than the bound.
+  HWY_INLINE std::uint32_t near_along(const Vec3& d, const std::array<Vec3, 3>& corners,
                                       const BlockCorners& leaf) const {
-    const auto corner = [&](std::size_t k) {
-      return Vec3(own.corner[3 * k][i], own.corner[3 * k + 1][i], own.corner[3 * k + 2][i]);
-    };
-    const Vec3 p = corner(0), q = corner(1), r = corner(2);
-    const Vec3 d = 0.125 * (q - p).cross(r - p);
     const double squared = d.squaredNorm();
     if (!(squared >= near::kLeastSquare)) return 0xffff;
     const double limit =
         near::gap_limit(search_.bound(), squared, near::kGap * d.cwiseAbs().dot(extent_));
-    const double at_p = d.dot(p - origin_), at_q = d.dot(q - origin_), at_r = d.dot(r - origin_);
+    const auto at = [&](std::size_t k) { return d.dot(corners[k] - origin_); };
+    const double at_p = at(0), at_q = at(1), at_r = at(2);
     const Number least = number(std::min({at_p, at_q, at_r})),
                  most = number(std::max({at_p, at_q, at_r}));
     const Point direction = {number(d[0]), number(d[1]), number(d[2])};
@@ -319,13 +360,6 @@ class Searcher {
     leaf.direction = direction_;
   }
 
-  // The leaf from the cache; a missing one is loaded first.
-  BlockCorners& load(std::vector<BlockCorners>& memory, std::uint32_t leaf) const {
-    BlockCorners& out = memory[leaf % SearchMemory::kLeaves];
-    if (out.leaf != leaf) load_leaf(trees_, leaf, out);
-    return out;
-  }
-
   bool counts(std::uint32_t a, std::uint32_t b) const {
     return !self_ || !share_position(trees_.scene(), a, b);
   }
@@ -366,9 +400,15 @@ class Searcher {
     const double before = search_.upper;
     std::size_t best = kWide;
     for (std::size_t k = 0; k < batch.count; ++k) {
-      if (bounds.upper[k] == 0) search_.first = std::min(search_.first, batch.pairs[k]);
-      if (!(bounds.upper[k] < search_.upper)) continue;
-      search_.upper = bounds.upper[k];
+      if (others_) {
+        others_->add(batch.pairs[k], bounds.upper[k]);
+        if (!(others_->upper() < search_.upper)) continue;
+        search_.upper = others_->upper();
+      } else {
+        if (bounds.upper[k] == 0) search_.first = std::min(search_.first, batch.pairs[k]);
+        if (!(bounds.upper[k] < search_.upper)) continue;
+        search_.upper = bounds.upper[k];
+      }
       best = k;
     }
     if (best < kWide) {
@@ -378,6 +418,8 @@ class Searcher {
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};
+        // It leads away from the object that asks.
+        if (others_ && !others_->is_own(batch.pairs[best].a)) search_.direction *= -1;
         new_direction();
       }
     }
@@ -403,7 +445,7 @@ class Searcher {
     }
     if (search_.kept.size() <= search_.kept_most) return;
     search_.filter();
-    if (2 * search_.kept.size() > search_.kept_most && !search_.everything) {
+    if (2 * search_.kept.size() > search_.kept_most && !search_.everything && !others_) {
       settle(trees_, search_);
       new_bound();
     }
@@ -430,8 +472,8 @@ class Searcher {
   const SceneTrees& trees_;
   Search& search_;
   SearchMemory& memory_;
-  const BoxTree<double>& a_;
-  const BoxTree<double>& b_;
+  Others* others_;
+  Side a_, b_;
   bool self_;
   Vec3 origin_, extent_;
   double square_limit_ = 0, gap_limit_ = 0;
@@ -473,127 +515,18 @@ Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double l
   HWY_DYNAMIC_DISPATCH(begin_search_here)(trees, hint, out, memory);
   return out;
 }
+Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
+                    SearchMemory& memory) {
+  Search out;
+  out.objects = {object, 0};
+  out.limit = limit;
+  out.others = &others;
+  HWY_DYNAMIC_DISPATCH(begin_search_here)(trees, nullptr, out, memory);
+  return out;
+}
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory) {
   if (search.open.empty()) return;
   HWY_DYNAMIC_DISPATCH(go_on_here)(trees, most, search, memory);
-}
-
-void settle(const SceneTrees& trees, Search& search) {
-  if (!trees.settle()) return;
-  std::vector<TrianglePair> pairs;
-  pairs.reserve(search.kept.size());
-  for (const KeptPair& kept : search.kept) pairs.push_back(kept.pair);
-  std::ranges::sort(pairs);
-  const SettledPair settled = trees.settle()(pairs);
-  KeptPair kept = *std::ranges::find(search.kept, settled.pair, &KeptPair::pair);
-  kept.upper =
-      std::min(kept.upper, settled.distance == 0 ? 0 : scaled_limit(trees, settled.distance));
-  search.upper = std::min(search.upper, kept.upper);
-  search.kept.assign(1, kept);
-  search.settled = settled.pair;
-  if (settled.distance == 0) {
-    search.first = std::min(search.first, settled.pair);
-  } else if (!search.is_part && (!search.planes || search.planes->pair != settled.pair)) {
-    const auto back = [&](std::uint32_t triangle) { return -settled.start(triangle); };
-    search.planes = std::make_shared<const Planes>(
-        Planes{settled.pair, Reaches(trees, search.objects.a, settled.reach),
-               Reaches(trees, search.objects.b, back)});
-  }
-}
-
-void Search::filter() {
-  std::erase_if(kept, [this, most = bound()](const KeptPair& k) {
-    return k.lower > most || is_behind(k.pair);
-  });
-}
-
-namespace {
-
-constexpr std::size_t kParts = 32;
-
-// Deals the open pairs to searches of their own, which begin with the bound of this one.
-std::vector<Search> divide(Search& search) {
-  std::vector<Search> out(std::min(kParts, search.open.size()));
-  for (Search& part : out) {
-    part.objects = search.objects;
-    part.limit = search.limit;
-    part.upper = search.upper;
-    part.first = search.first;
-    part.direction = search.direction;
-    part.settled = search.settled;
-    part.planes = search.planes;
-    part.is_part = true;
-    const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
-    if (settled != search.kept.end()) part.kept.push_back(*settled);
-  }
-  // The last one is looked at first, in each part as well.
-  const std::size_t n = search.open.size();
-  for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
-  search.open.clear();
-  return out;
-}
-
-// Adds the pairs that a part found or left open to the search that it came from.
-void join(Search& part, Search& search) {
-  if (part.upper < search.upper) {
-    search.upper = part.upper;
-    search.direction = part.direction;
-  }
-  search.first = std::min(search.first, part.first);
-  search.open.insert(search.open.end(), part.open.begin(), part.open.end());
-  for (const KeptPair& kept : part.kept) {
-    if (kept.pair != search.settled) search.kept.push_back(kept);
-  }
-  search.counts.box_pairs += part.counts.box_pairs;
-  search.counts.triangle_pairs += part.counts.triangle_pairs;
-  part = Search();
-}
-
-}  // namespace
-
-double scaled_limit(const SceneTrees& trees, double within) {
-  // A product that is subnormal is rounded; and the next number is not below the exact one.
-  return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
-}
-
-void require_room(const SceneTrees& trees, const Search& search, std::size_t most) {
-  if (search.kept.size() <= most) return;
-  throw Error(trees.scene().name,
-              "more than " + std::to_string(most) + " pairs of triangles of the objects " +
-                  std::to_string(search.objects.a) + " and " + std::to_string(search.objects.b) +
-                  " may be nearest",
-              "leave one of the objects out, or drop triangles that are there twice");
-}
-
-void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search, std::size_t most) {
-  while (!search.open.empty()) {
-    std::vector<Search> parts = divide(search);
-    for_each_with_memory<SearchMemory>(parts.size(), threads,
-                                       [&](std::size_t k, SearchMemory& memory) {
-                                         go_on(trees, kLeafPairsAtOnce, parts[k], memory);
-                                       });
-    for (Search& part : parts) join(part, search);
-    search.filter();
-    if (2 * search.kept.size() > search.kept_most) settle(trees, search);
-    require_room(trees, search, most);
-  }
-}
-
-NearPairs answer(const SceneTrees& trees, Search& search) {
-  search.filter();
-  search.counts.kept = search.kept.size();
-  NearPairs out;
-  out.objects = search.objects;
-  double upper = std::numeric_limits<double>::infinity();
-  out.pairs.reserve(search.kept.size());
-  for (const KeptPair& k : search.kept) {
-    out.pairs.push_back(k.pair);
-    upper = std::min(upper, k.upper);
-  }
-  std::ranges::sort(out.pairs);
-  // A quotient that is subnormal is rounded.
-  out.upper = std::nextafter(upper / trees.scale(), std::numeric_limits<double>::infinity());
-  return out;
 }
 
 }  // namespace farcull

@@ -183,11 +183,11 @@ std::string fault_of_nearest(const GridScene& grid, std::size_t k, double within
   return "";
 }
 
-GridScene crowd(Random& random, int objects) {
+GridScene crowd(Random& random, int objects, int wide = 24) {
   GridScene grid;
   for (int o = 0; o < objects; ++o) {
     near_lab::Triple<near_lab::Integer> middle;
-    for (auto& x : middle) x = random.below(49) - 24;
+    for (auto& x : middle) x = random.below(2 * wide + 1) - wide;
     add_object(grid, near_lab::random_triangles(random, random.below(5), 3, middle));
   }
   const auto [unit, offset] = near_lab::random_unit_and_offset(random);
@@ -213,6 +213,76 @@ TEST(NearestObjects, AreFoundWithAllThatAreAsNear) {
   }
   EXPECT_GT(culled, scenes / 2);
   EXPECT_GT(caught, scenes / 2);
+}
+
+// Many small objects whose boxes overlap: each asks about all triangles at once. Most meet others.
+TEST(NearestObjects, OfOverlappingObjectsAreFound) {
+  Random random(13);
+  for (int k = 0; k < trials(4); ++k) {
+    const GridScene grid = crowd(random, 150, 1);
+    const std::vector<Box> boxes = object_boxes(grid.scene, triangle_boxes(grid.scene));
+    std::size_t overlapping = 0;
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+      for (std::size_t b = a + 1; b < boxes.size(); ++b) overlapping += overlap(boxes[a], boxes[b]);
+    }
+    ASSERT_GT(overlapping, 16u * boxes.size());  // so that objects do ask about all triangles
+    const auto most = static_cast<std::size_t>(1 + random.below(3));
+    const double within = random.coin() ? kInfinite : random.below(3) * grid.unit;
+    const ProximityTrees trees(grid.scene, 1 + k % 2);
+    for (const bool all : {true, false}) {
+      EXPECT_EQ(
+          fault_of_nearest(grid, most, within,
+                           all ? trees.nearest_objects(most, within)
+                               : trees.nearest_objects(most, within, std::span<const NearHint>()),
+                           all),
+          "")
+          << "scene " << k;
+    }
+  }
+}
+
+// How many searches of all triangles lose the first of the nearest objects. forged: they believe
+// that the object after the one that asks meets it.
+int lost_of_all_triangles(bool forged) {
+  Random random(14);
+  int lost = 0;
+  for (int k = 0; k < 20; ++k) {
+    const GridScene grid = crowd(random, 30, 6);
+    const SceneTrees trees(grid.scene, 1);
+    Scene whole = grid.scene;
+    whole.objects = {{"all", 0, static_cast<std::uint32_t>(whole.triangles.size()), false}};
+    const SceneTrees all(whole, 1);
+    const std::vector<std::uint32_t> owner = owners(grid.scene);
+    for (std::uint32_t o = 0; o + 1 < 30; ++o) {
+      const auto count = [&](std::uint32_t of) { return grid.scene.objects[of].triangle_count; };
+      if (count(o) == 0 || count(o + 1) == 0) continue;
+      Others others{
+          .all = &all, .scene = grid.scene, .owner = owner, .object = o, .k = 1, .ties = false};
+      const auto first = [&](std::uint32_t of) { return grid.scene.objects[of].first_triangle; };
+      if (forged) others.add({first(o), first(o + 1)}, 0);
+      SearchMemory memory;
+      Search search = begin_search(trees, o, kInfinite, others, memory);
+      go_on(trees, SIZE_MAX, search, memory);
+      std::optional<Fraction> least;
+      std::uint32_t nearest = 0;
+      for (std::uint32_t other = 0; other < 30; ++other) {
+        if (other == o) continue;
+        const Truth truth = truth_of(grid, std::min(o, other), std::max(o, other));
+        if (!truth.any || (least && !(truth.squared < *least))) continue;
+        least = truth.squared;
+        nearest = other;
+      }
+      lost += std::ranges::none_of(
+          search.kept, [&](const KeptPair& kept) { return others.other_of(kept.pair) == nearest; });
+    }
+  }
+  return lost;
+}
+TEST(NearestObjects, AmongAllTrianglesTheNearestIsKept) {
+  EXPECT_EQ(lost_of_all_triangles(false), 0);
+}
+TEST(NearestObjectsTwin, AfterAnObjectThatDoesNotMeetTheNearestIsLost) {
+  EXPECT_GT(lost_of_all_triangles(true), 0);
 }
 
 // Hints of all kinds: the nearest pairs, any others, of one object, of objects and triangles that

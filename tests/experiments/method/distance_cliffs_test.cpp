@@ -38,6 +38,25 @@ TEST(DistanceCliffsTwin, ObjectsOfOnePartAreAllCompared) {
   EXPECT_GT(pairs_for_nearest(far_triangles(200, true)), 8u * 200u);
 }
 
+// Slivers side by side along the diagonal of one box, which nearly contains each of them, in
+// another order. Each is an object, with so many copies of it.
+Scene slivers(int count, int copies) {
+  std::vector<std::vector<CliffTriangle>> objects;
+  for (int k = 0; k < count; ++k) {
+    const int at = 37 * k % count;
+    const Vec3 p(at, -at, 0), q = p + Vec3(1e5, 1e5, 1e5);
+    objects.emplace_back(copies, CliffTriangle{p, q, q + Vec3(0.25, 0, 0)});
+  }
+  return reference::scene_of(objects);
+}
+
+TEST(DistanceCliffs, NearestOfSmallObjectsThatOverlapTakesFewPairs) {
+  EXPECT_LT(pairs_for_nearest(slivers(200, 1)), 200u * 60u);
+}
+TEST(DistanceCliffsTwin, ObjectsOfMoreThanOneLeafAreAllCompared) {
+  EXPECT_GT(pairs_for_nearest(slivers(200, 17)), 200u * 100u);
+}
+
 TEST(DistanceCliffs, AnswersAboutDistantTrianglesEqualABruteForce) {
   rational::Draws random(42);
   for (int k = 0; k < trials(25, 10); ++k) {
