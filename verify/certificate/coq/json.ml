@@ -258,6 +258,8 @@ let distances text_of_file =
             "squared", (fun v -> ignore (fraction v)); "features", two (one_of features);
             "inside", or_null (one_of [ "a"; "b"; "none"; "not closed" ]) ]) ] root;
   let query = member "query" root in
-  if member "pairs" query <> String "objects" || member "k" query <> Null
-  then bad "only distances of all objects (--pairs objects) are checked here";
+  (match member "pairs" query, member "k" query, member "within" query with
+   | String "nearest", Number k, _ when k <> "0" -> ()
+   | String "objects", Null, _ | String "all", Null, Number _ -> ()
+   | _ -> bad "k does not go with pairs, or all pairs have no limit");
   root
