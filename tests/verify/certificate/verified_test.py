@@ -473,7 +473,7 @@ MUTANTS = [
     ('dot d (corner a j) <=? h) la', 'h <=? dot d (corner a j)) la'),
     ('h <=? dot d (corner b j)) lb', 'dot d (corner b j) <=? h) lb'),
     ('(x l <=? x h\')', '(x l <? x h\')'),
-    ('(obj a <? obj b) ||', '(obj a <=? obj b) ||'),
+    ('(obj a <? obj b) || ((obj a =? obj b)', '(obj a <=? obj b) || ((obj a =? obj b)'),
     ('own a && (num a <? num b)', 'own a && (num a <=? num b)'),
     ('((obj a <? last b) ||', '((last b <? obj a) ||'),
     ('scaled e d <? scaled e place', 'scaled e d <=? scaled e place'),

@@ -1,4 +1,4 @@
-(** What the checker of certificates proves: the question alone. Nothing here is computed.
+(** What the checker of certificates proves: the question alone, without a way to answer it.
     docs/verified.md explains each definition to readers who do not know Coq. *)
 From Coq Require Import ZArith QArith List Bool.
 Import ListNotations.
@@ -112,8 +112,8 @@ Inductive crossing (p d : vec Q) (t : triangle Q) : Z -> Prop :=
     same (plus p (times r d)) (mix u v w t) ->
     0 < inject_Z k * (volume d (p1 t) (p2 t) + volume d (p2 t) (p3 t) + volume d (p3 t) (p1 t)) ->
     crossing p d t k.
-(** By the sum of its crossings a ray tells whether p is inside a closed mesh. If it meets nothing, p
-    is not inside any mesh. An object is inside with all of its corners. *)
+(** By the sum of its crossings a ray tells whether p is inside a closed mesh. If it meets nothing,
+    p is not inside any mesh. An object is inside with all of its corners. *)
 Definition ray (m : list (triangle Q)) (p : vec Q) (ks : list Z) : Prop :=
   exists d, ~ same (plus p d) p /\ Forall2 (crossing p d) m ks.
 Definition tells (m : list (triangle Q)) (ks : list Z) : Prop :=

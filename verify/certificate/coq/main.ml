@@ -323,7 +323,12 @@ let check_distance_file scene text =
     | _ -> true in
   if other_scene root found then not_proved "the certificate is of another scene"
   else if not (sorted entries) then not_proved "an answer is there twice, or not in order"
-  else match check_distances found.kept question within entries with
+  else
+    (* Of all triangles: in the order in which the checker goes through the pairs. *)
+    let place e = let r = e.nearest in [ r.object_a; r.triangle_a; r.object_b; r.triangle_b ] in
+    let entries = if question <> Of_all then entries
+      else List.sort (fun e e' -> List.compare Z.compare (place e) (place e')) entries in
+    match check_distances found.kept question within entries with
     | Bad_limit -> bad "the limit is negative"
     | Bad_entries -> not_proved "an answer is beyond the limit, or not about nearest objects"
     | Bad_entry e -> not_proved ("this is not the distance of the triangles: " ^ pair e.nearest)
