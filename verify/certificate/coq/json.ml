@@ -220,6 +220,9 @@ let certificate text_of_file =
           "device", (function Null -> () | v -> texts [ "vendor"; "renderer"; "version"; "glsl" ] v);
           "assumptions", every is_text ];
         "evidence", (fun v -> ignore (base64 v)) ]) root;
+  (match tile root with
+   | Some (_, Some from, Some to_) when to_ < from -> bad "tile.to is less than tile.from"
+   | _ -> ());
   root
 
 (* ---- certificates of distances ---- *)
