@@ -138,10 +138,6 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
-      if (arguments.verified && of_distances.pairs != DistanceCertificate::Pairs::objects) {
-        throw Error("--verified", "proves distances of all objects, and no other distances",
-                    "leave it out");
-      }
       const Scene scene = checked_scene(arguments);
       const int status = write_check(
           arguments, scene, check_with(arguments.certificate, std::move(of_distances), scene));

@@ -85,6 +85,45 @@ def random_triangles(draw, count, scale, most):
         yield [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(2, most))]
 
 
+def cube(centre, half, flipped):
+    """The twelve triangles of a cube, each edge there and back; `flipped`: turned inside out."""
+    def corner(*signs):
+        return tuple(c + half * sign for c, sign in zip(centre, signs))
+
+    for axis in range(3):
+        for sign in (-1, 1):
+            def at(u, v):
+                signs = [0, 0, 0]
+                signs[axis], signs[(axis + 1) % 3], signs[(axis + 2) % 3] = sign, u, v
+                return corner(*signs)
+            a, b, c, d = at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)
+            for triangle in ([a, b, c], [a, c, d]):
+                yield triangle[::-1] if (sign < 0) != flipped else triangle
+
+
+def nested_cubes(draw):
+    """Objects of one or two cubes, one around the other or beside it: shells that overlap or are turned inside out, a triangle
+    that is missing, there twice or turned."""
+    scale = draw.choice([1.0, 0.1, 3e-5])
+    for _ in range(draw.randrange(2, 5)):
+        triangles, centre, half = [], [draw.randrange(-1, 2) for _ in range(3)], draw.choice([1, 2, 3, 5, 8, 13])
+        if draw.random() < 0.2:
+            centre[draw.randrange(3)] += 40
+        for _ in range(draw.choice([1, 1, 2])):
+            triangles += cube([scale * c for c in centre], scale * half, draw.random() < 0.3)
+            half = max(half - draw.choice([0.5, 0.75]), 0.25)
+            centre[0] += draw.choice([0, 0, 0.25, 0.5])
+        at = draw.randrange(len(triangles))
+        changed = draw.random()
+        if changed < 0.15:
+            del triangles[at]
+        elif changed < 0.25:
+            triangles.append(triangles[at])
+        elif changed < 0.4:
+            triangles[at] = triangles[at][::-1]
+        yield False, triangles
+
+
 # ---- forged certificates ----
 
 def recount(root, data):
@@ -160,7 +199,7 @@ def spoiled(text):
 
 class Comparison:
     def __init__(self, farcull, checker):
-        self.farcull, self.checker, self.seen, self.wrong = farcull, checker, {}, []
+        self.farcull, self.checker, self.seen, self.words, self.wrong = farcull, checker, {}, {}, []
 
     def both(self, certificate, scene, words, why, tiles=0):
         """tiles: how many certificates there are, with a number in their name; 0: one without."""
@@ -252,7 +291,10 @@ class Comparison:
         scene, words, certificate, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/distances.json', random.Random(number)
         write_words(words, objects)
         within = draw.choice([[], [], ['--within', '0'], ['--within', '0.75'], ['--within', '1e9']])
-        if output([self.farcull, 'distance', scene, '--certificate', certificate, *within])[0]:
+        few = sum(len(triangles) for _, triangles in objects) < 300
+        asked = draw.choice(['objects', 'nearest', 'all' if within and few else 'objects'])
+        many = ['--k', str(draw.randrange(1, 4))] if asked == 'nearest' else []
+        if output([self.farcull, 'distance', scene, '--certificate', certificate, '--pairs', asked, *many, *within])[0]:
             return  # as of a scene that has none
         text = open(certificate, encoding='utf-8').read()
 
@@ -260,12 +302,12 @@ class Comparison:
             with open(certificate, 'w', encoding='utf-8') as out:
                 json.dump(root, out)
             one, two = verdict([self.farcull, 'check', certificate, scene]), verdict([self.checker, certificate, words])
-            self.seen[f'distances {two[1]}'] = self.seen.get(f'distances {two[1]}', 0) + 1
+            self.seen[f'{asked} {two[1]}'] = self.seen.get(f'{asked} {two[1]}', 0) + 1
             if (one[1] == 'proved') == wrong or (two[1] == 'proved') == wrong or two[0] > 1:
                 self.wrong.append(f'{name}, distances, {why} ({scene}, {words})\n  farcull: {one[2][:300]}\n  verified: {two[2][:600]}')
 
         told(json.loads(text), 'as they are', False)
-        if within == [] and number % 4 == 0:
+        if number % 4 == 0:
             said = output([self.farcull, 'check', certificate, scene, '--verified'])
             if said[0] or not re.search('^verified +proved: ', said[1], re.MULTILINE):
                 self.wrong.append(f'check --verified of distances: {said}')
@@ -278,6 +320,22 @@ class Comparison:
             part = Fraction(over, under) + Fraction(change * max(over, 1), draw.choice([1, 2, 2 ** 60]) * under)
             root['distances'][at]['squared'] = f'{part.numerator}/{part.denominator}'
             told(root, f'the square is {part}')
+        root = json.loads(text)
+        entry = root['distances'][at]
+        side, others = draw.randrange(2), len(objects[entry['objects'][0]][1])
+        side = 0 if others > 1 else side
+        others = len(objects[entry['objects'][side]][1])
+        if others > 1:
+            entry['triangles'][side] = (entry['triangles'][side] + draw.randrange(1, others)) % others
+            told(root, 'another triangle')
+        root = json.loads(text)
+        said = [k for k, entry in enumerate(root['distances']) if entry['inside']]
+        if said:
+            entry = root['distances'][draw.choice(said)]
+            self.words[entry['inside']] = self.words.get(entry['inside'], 0) + 1
+            for word in {'a', 'b', 'none', 'not closed'} - {entry['inside']}:
+                entry['inside'] = word
+                told(root, f'{word} is inside')
         root = json.loads(text)
         told({**root, 'distances': root['distances'][:at] + root['distances'][at + 1:]}, 'one is left out')
         told({**root, 'distances': root['distances'][:at + 1] + root['distances'][at:]}, 'one is there twice')
@@ -315,6 +373,9 @@ class Comparison:
                 self.frames(f'{name}, changed', folder, size)
         write_scene(folder, frames[0])
         self.distances(f'random scene {number}', folder, frames[0], number)
+        cubes = list(nested_cubes(draw))
+        write_scene(f'{folder}/cubes', cubes)
+        self.distances(f'cubes {number}', f'{folder}/cubes', cubes, number)
         self.tiles(f'random scene {number}', folder, frames[0], number, clearance if number % 2 == 0 else 0)
 
     def frames(self, name, folder, size):
@@ -391,9 +452,10 @@ def compare(farcull, checker, folder, count):
     for number in range(first, first + count // size):
         comparison.batch(number, size, place)
     print('verified: ' + ', '.join(f'{n} {said}' for said, n in sorted(comparison.seen.items())) +
-          f'; the two checkers disagree about {len(comparison.wrong)}')
+          f'; said to be inside: {comparison.words}; the two checkers disagree about {len(comparison.wrong)}')
     print('\n'.join(comparison.wrong[:5]))
-    return bool(comparison.wrong) or not {'proved', 'refuted', 'not proved', 'status 2'} <= set(comparison.seen)
+    return bool(comparison.wrong) or not ({'proved', 'refuted', 'not proved', 'status 2', 'nearest proved', 'all proved'} <=
+                                          set(comparison.seen) and {'a', 'b', 'none', 'not closed'} <= set(comparison.words))
 
 
 # ---- changes of the checker ----
@@ -411,20 +473,39 @@ MUTANTS = [
     ('dot d (corner a j) <=? h) la', 'h <=? dot d (corner a j)) la'),
     ('h <=? dot d (corner b j)) lb', 'dot d (corner b j) <=? h) lb'),
     ('(x l <=? x h\')', '(x l <? x h\')'),
-    ('(obj a <? obj b) ||', '(obj a <=? obj b) ||'),
+    ('(obj a <? obj b) || ((obj a =? obj b)', '(obj a <=? obj b) || ((obj a =? obj b)'),
     ('own a && (num a <? num b)', 'own a && (num a <=? num b)'),
     ('((obj a <? last b) ||', '((last b <? obj a) ||'),
     ('scaled e d <? scaled e place', 'scaled e d <=? scaled e place'),
     ('scaled e place <=? scaled e d + scaled e reach', 'scaled e place <? scaled e d + scaled e reach'),
     ('(coordinate k (lo a) <? p)', '(coordinate k (lo a) <=? p)'),
     ('negb (both_before e (tile_axis t) p a b)', 'both_before e (tile_axis t) p a b'),
-    ('n * dot d d <=? m * (gap * gap)', 'm * (gap * gap) <=? n * dot d d'),
+    ('if strict then limit <? far else limit <=? far', 'if strict then limit <? far else far <=? limit'),
+    ('if strict then limit <? far else limit <=? far', 'if strict then limit <=? far else limit <=? far'),
     ('m * dot w w <=? n * (r * r)', 'n * (r * r) <=? m * dot w w'),
     ('numerator f (squared e) <=? denominator (squared e) * (d * d)', 'denominator (squared e) * (d * d) <=? numerator f (squared e)'),
-    ('negb (obj a <? obj b) || is_given es a b', 'negb (obj b <? obj a) || is_given es a b'),
-    ('(Z.max 0 n / m) + 1', '(Z.max 0 n / m)')]
-FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Proofs', 'DistanceChecker', 'Distances']
-PROGRAMS = ['Checker', 'DistanceChecker']  # the files that are changed
+    ('negb (obj a <? obj b) || is_given es t a b', 'negb (obj b <? obj a) || is_given es t a b'),
+    ('(Z.max 0 n / m) + 1', '(Z.max 0 n / m)'),
+    ('(num b <? triangle_b r)', '(num b <=? triangle_b r)'),
+    ('snd u <=? snd v', 'snd u <? snd v'),
+    ('rank ps v =? k', 'rank ps v <=? k'),
+    ('rank (partners es o) v <=? k', 'k <=? rank (partners es o) v'),
+    ('negb (last <? other)', '(last <? other)'),
+    ('negb (a =? b) && (is_among', 'negb (a <? b) && (is_among'),
+    ('| [], e :: _ => Some (nearest e)', '| [], e :: _ => None'),
+    ('(0 <? ab) && (0 <? bc)', '(0 <=? ab) && (0 <? bc)'),
+    ('(ca <? 0) && (v <? 0)', '(ca <? 0) && (v <=? 0)'),
+    ('(0 <? dot n c) && (dot n d <=? 0)', '(0 <? dot n c) && (0 <=? dot n d)'),
+    ('(0 <? dot n a) &&', '(0 <=? dot n a) &&'),
+    ('0 <? lowest_along n l h', '0 <=? lowest_along n l h'),
+    ('Nat.even (times_passed a b l + times_passed b a l)', 'Nat.odd (times_passed a b l + times_passed b a l)'),
+    ('Nat.eqb (times_passed a b l)', 'Nat.leb (times_passed a b l)'),
+    ('if good l e then None else Some false', 'if good l e then Some false else None'),
+    ('else if k =? 0 then Some false', 'else if k <=? 0 then Some false'),
+    ('Some i, Some j => negb (i && j)', 'Some i, Some j => (i && j)')]
+FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Scaling', 'Proofs', 'InsideChecker', 'Inside', 'DistanceChecker',
+         'Distances', 'Nearest']
+PROGRAMS = ['Checker', 'InsideChecker', 'DistanceChecker']  # the files that are changed
 
 # Of the passes, and of the statements about one view. Each file, and the files that prove things of it.
 CULLING = {

@@ -220,6 +220,9 @@ let certificate text_of_file =
           "device", (function Null -> () | v -> texts [ "vendor"; "renderer"; "version"; "glsl" ] v);
           "assumptions", every is_text ];
         "evidence", (fun v -> ignore (base64 v)) ]) root;
+  (match tile root with
+   | Some (_, Some from, Some to_) when to_ < from -> bad "tile.to is less than tile.from"
+   | _ -> ());
   root
 
 (* ---- certificates of distances ---- *)
@@ -258,6 +261,8 @@ let distances text_of_file =
             "squared", (fun v -> ignore (fraction v)); "features", two (one_of features);
             "inside", or_null (one_of [ "a"; "b"; "none"; "not closed" ]) ]) ] root;
   let query = member "query" root in
-  if member "pairs" query <> String "objects" || member "k" query <> Null
-  then bad "only distances of all objects (--pairs objects) are checked here";
+  (match member "pairs" query, member "k" query, member "within" query with
+   | String "nearest", Number k, _ when k <> "0" -> ()
+   | String "objects", Null, _ | String "all", Null, Number _ -> ()
+   | _ -> bad "k does not go with pairs, or all pairs have no limit");
   root
