@@ -420,8 +420,8 @@ class Study(unittest.TestCase):
                 self.assertTrue(row['says'] and row['source'] and row['use'])
                 for text in row['says'], row['use']:
                     self.assertEqual(text.count('"') % 2, 0)
-                if ours and not row['promises']:
-                    continue  # CULLIDE's family misses
+                if scene.endswith('/all') or (ours and not row['promises']):
+                    continue  # this suite has no such questions; CULLIDE's family misses
                 self.assertGreater(row['answered'], 300 if scene.startswith('meshes') else PAIRS - 1)
                 self.assertLess(row['missed'], row['asked'] / 10)
                 self.assertEqual(row['missed'] + row['wrong'] if ours else 0, 0)
