@@ -250,7 +250,7 @@ def add_ours(chapter, rows):
             kept.append(name)
             pairs, colliding, meshes = pairs + [asked], colliding + [known], meshes + [meshes_of(of_meshes)]
             questions += total(of_questions, "answered")
-    if kept:
+    if any(pairs) or any(colliding) or questions:
         def most(counts, one, many):
             return ("up to " if min(counts) < max(counts) else "") + counted(max(counts), one, many)
         what = [f"of {most(pairs, 'pair', 'pairs')}"] * any(pairs) + [
@@ -268,7 +268,7 @@ def add_others(chapter, rows, asks):
             wrong.append((bad / asked, f"{name} ({of_all(bad, asked)})"))
         elif asked:
             right.append(name)
-    parts = [f"without a wrong answer were {listed(right)}"] * bool(right)
+    parts = [f"no answer was wrong of {listed(right)}"] * bool(right)
     if wrong:
         parts.insert(0, f"{of_all(len(wrong), len(wrong) + len(right))} libraries and tests gave wrong answers where their "
                      f"documentation promises the answer, most often {max(wrong)[1]}, least often {min(wrong)[1]}")
