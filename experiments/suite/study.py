@@ -42,14 +42,17 @@ def listed_rows(card, listed, answers, differs):
 
 def of_lists(command, card, suite, kind, family, options):
     """The rows of that list of pairs, or of all lists of questions of that kind; and the examples of faults of pairs."""
-    lists = ask.lists_of(card, suite, [kind], family if kind == 'pair' else None)
-    listed = [one for _, _, lines in lists for one in lines]
-    answers, differs = ask.ask_twice(command, [one.question for one in listed], options)
-    rows = listed_rows(card, listed, answers, differs)
+    rows, more = {}, {}
+    for _, _, listed in ask.lists_of(card, suite, [kind], family if kind == 'pair' else None):
+        answers, differs = ask.ask_twice(command, [one.question for one in listed], options)
+        for key, row in listed_rows(card, listed, answers, differs).items():
+            rows.setdefault(key, ask.Row()).add(row)
+        if kind == 'pair':
+            more = examples(command, card, listed, answers, options)
     for row in rows.values() if kind == 'distance' else []:
         row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
         row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # points are no part of the answer of others
-    return rows, examples(command, card, listed, answers, options) if kind == 'pair' else {}
+    return rows, more
 
 
 def of_meshes(command, card, suite, family, options):

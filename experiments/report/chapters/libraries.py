@@ -140,7 +140,7 @@ def trust_table(rows):
         (wrong, asked), silent = faults_of(of, asks), without_answer(of)
         return "" if of.empty else " + ".join(
             [of_all(wrong, asked) if asked else "no answer"] * bool(asked or not silent) +
-            [f"{grouped(silent)} without an answer"] * bool(silent))
+            [f"{grouped(silent)} none"] * bool(silent))
 
     def rate(of):
         wrong, asked = faults_of(of, "pairs")
@@ -157,10 +157,19 @@ def trust_table(rows):
         "Whom to trust for what: wrong answers, of those of which the documentation promises the answer. Pairs: do two "
         "triangles meet? Meshes: which of their pairs meet (missed pairs and pairs that are apart are wrong)? Distance: how far "
         "are two triangles apart (an error of a millionth is wrong)? Self: does a mesh meet itself? Inside: is a point in a "
-        "solid? Clash: do the insides of two solids meet? Empty: it has no function for that",
-        columns(["contestant", "library"], asked + ["ns a pair"], ["made for"]),
-        [[name, of.library.iloc[0], *(cell(of, asks) for asks in asked), ns(of), of.use.iloc[0]]
+        "solid? Clash: do the insides of two solids meet? + none: so many got no answer. "
+        "Empty: it has no function for that",
+        columns(["contestant", "library"], asked + ["ns a pair"]),
+        [[name, of.library.iloc[0], *(cell(of, asks) for asks in asked), ns(of)]
          for name, of in sorted(by(rows, "method"), key=lambda both: rate(both[1]))])
+
+
+def uses_table(rows):
+    known = {}
+    for row in rows.drop_duplicates("method").itertuples():
+        known.setdefault((row.library, row.use), []).append(row.method)
+    return Table("libraries-use", "What each is made for, by its documentation where it is quoted",
+                 columns(["contestants", "made for"], []), [[", ".join(names), use] for (_, use), names in known.items()])
 
 
 def questions_table(rows):
@@ -399,7 +408,7 @@ def fill(chapter, study):
         "`libraries-cases.html` shows pairs to turn in three dimensions, with what each contestant said."]
     add_gaps(chapter, study)
     if len(rows):
-        chapter.tables.append(trust_table(rows))
+        chapter.tables += [trust_table(rows), uses_table(rows)]
         for table in (calls_table(rows), families_table(rows[rows.asks.isin(["pairs", "meshes"])])):
             add_file(chapter, table)
     if len(pairs):
