@@ -32,7 +32,7 @@ farcull_build farcull farcull_contestants
 # Without these packages of npm their contestants are named as missing.
 mkdir -p build/contestants
 npm_packages=(three@0.187.0 three-mesh-bvh@0.9.17 @dimforge/rapier3d-compat@0.21.0 cannon-es@0.20.0
-  manifold-3d@3.5.4)
+  manifold-3d@3.5.4 jolt-physics@1.1.0)
 (cd build/contestants && npm install --no-audit --no-fund "${npm_packages[@]}") ||
   echo "libraries: npm did not install its packages, which are left out" >&2
 
@@ -42,23 +42,10 @@ out=${1:-build/libraries-${commit##* }${quick:+-quick}}
 status=0
 build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
 build/farcull report "$out" || status=$?
-# The questions beyond pairs and meshes (docs/suite.md): one table for all contestants that have a
-# function for them.
-size=small
-((${#quick[@]})) || size=full
-[[ -e $out/suite/suite.txt ]] || build/farcull suite "$out/suite" --size "$size" >/dev/null
-questions=$out/report/tables/libraries-questions.csv
-for contestant in 'ours exact' 'peers fcl-double' 'peers fcl-float' 'peers cgal-aabb' 'cgal cgal-exact' \
-  'cgal cgal-self-intersections' 'node three-mesh-bvh' 'node rapier3d' 'node manifold-3d'; do
-  python3 "$out/suite/ask.py" --only distance,self,inside,clash --csv "$out/rows.csv" \
-    "build/contestants/farcull_contestant_$contestant" || continue
-  if [[ $contestant == ours* ]]; then head -n 1 "$out/rows.csv" >"$questions"; fi
-  tail -n +2 "$out/rows.csv" >>"$questions"
-done
 if ((${#quick[@]} == 0 && status == 0)); then
   farcull_keep_report libraries "Results of the study libraries" "$out/report"
-  cp "$out"/report/tables/libraries-families.csv docs/results/
-  cp "$questions" docs/results/
+  cp "$out"/report/tables/libraries{,-meshes,-kinds,-distances,-calls,-families}.csv docs/results/
+  cp "$out"/report/libraries-cases.html docs/results/
   cp "$out"/report/libraries-examples.txt tests/cases/libraries.txt
 fi
 echo

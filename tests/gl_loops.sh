@@ -43,7 +43,7 @@ if [[ $folder == build-address ]]; then
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
   export ASAN_OPTIONS=detect_leaks=0 # Mesa's leaks would be reported as ours
   "$folder/tests/farcull_fault_tests" --gtest_brief=1
-  "$folder/tests/farcull_gl_tests" --gtest_brief=1 --gtest_filter='-GlLibraryExamples.*'
+  "$folder/tests/farcull_gl_tests" --gtest_brief=1
 fi
 tests=$folder/tests/farcull_gl_tests
 for file in "$tests" $preload; do

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/view/view.h"
 #include "experiments/command/command.h"
-#include "experiments/peers/runner.h"
+#include "experiments/peers/contestants.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
@@ -169,6 +169,8 @@ int StudiesCommand::run() {
   request.folder = out_;
   // Keeps states in files: a step of a fine cloth takes seconds, and several cloths take turns.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
+  // The study "libraries" makes its suite there.
+  ::setenv("FARCULL_SUITE", (out_ + "/suite").c_str(), 0);
   if (suite_) check_files(*suite_, read_suite(*suite_));
   request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
   if (contestants_) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Libraries of npm as contestants (docs/ask.md has the protocol): three-mesh-bvh, rapier, cannon-es
-// and manifold. Each is a function that imports its library and returns its card and its answers.
+// Libraries of npm as contestants (docs/ask.md has the protocol): three-mesh-bvh, rapier, cannon-es,
+// manifold and Jolt. Each is a function that imports its library and returns its card and its answers.
 'use strict';
 
 const fs = require('fs');
@@ -159,9 +159,47 @@ async function manifold() {
   };
 }
 
+// ---- Jolt ----
+// Its JavaScript has no shape of one triangle, and no function of two meshes.
+
+async function jolt() {
+  const { default: init } = await import('jolt-physics');
+  const Jolt = await init(), filter = new Jolt.ShapeFilter(), known = {};
+  const placed = new Jolt.TransformedShape();
+  placed.mShapePositionCOM = new Jolt.RVec3(0, 0, 0);
+  placed.mShapeRotation = Jolt.Quat.prototype.sIdentity();
+  function shape(file) {
+    const { vertices, triangles } = readObj(file), points = new Jolt.VertexList(), faces = new Jolt.IndexedTriangleList();
+    for (let i = 0; i < vertices.length; i += 3) points.push_back(new Jolt.Float3(...vertices.slice(i, i + 3)));
+    for (let i = 0; i < triangles.length; i += 3) faces.push_back(new Jolt.IndexedTriangle(...triangles.slice(i, i + 3), 0));
+    const made = new Jolt.MeshShapeSettings(points, faces, new Jolt.PhysicsMaterialList()).Create();
+    if (made.HasError()) throw new Error(made.GetError().c_str());
+    return made.Get();
+  }
+  return {
+    card: {
+      library: `jolt-physics ${versionOf('jolt-physics')}`,
+      call: 'TransformedShape.CollidePoint() of a MeshShape, not moved or turned; in float, which the coordinates are rounded to',
+      says: '"Check if inPoint is inside any shapes. For this tests all shapes are treated as if they were solid. For a mesh shape, this test will only provide sensible information if the mesh is a closed manifold"',
+      source: 'Jolt/Physics/Collision/TransformedShape.h, CollidePoint()',
+      use: '"games and VR applications"; where a wrong answer about a point does no harm',
+    },
+    inside(file, p) {
+      placed.mShape = known[file] ??= shape(file);
+      const found = new Jolt.CollidePointAnyHitCollisionCollector(), point = new Jolt.RVec3(...p);
+      placed.CollidePoint(point, found, filter);
+      const inside = found.HadHit();
+      Jolt.destroy(found);
+      Jolt.destroy(point);
+      return inside;
+    },
+  };
+}
+
 // ---- the protocol ----
 
-const kContestants = { 'three-mesh-bvh': threeMeshBvh, rapier3d: rapier, 'cannon-es': cannon, 'manifold-3d': manifold };
+const kContestants = { 'three-mesh-bvh': threeMeshBvh, rapier3d: rapier, 'cannon-es': cannon, 'manifold-3d': manifold,
+  'jolt-physics': jolt };
 
 // The lines of an answer, without the number of the question.
 function answer(question, fields, contestant) {

@@ -1,26 +1,21 @@
 // The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes
 // answers. Standard output is kept for the answers: text that a library prints there goes to
-// standard error. Also writes and reads cards (descriptions of contestants, ContestantCard), one
-// line for each field.
+// standard error. Also writes cards (descriptions of contestants, ContestantCard), one line
+// for each field.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
 
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <new>
 #include <optional>
 #include <sstream>
 #include <string_view>
-
-#include "core/base/error.h"
-#include "core/base/text.h"
 
 namespace farcull {
 namespace {
@@ -36,42 +31,6 @@ std::string one_line(std::string text) {
 std::string shortest(double number) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
-std::optional<bool> yes_or_no(const std::string& text) {
-  if (text == "yes") return true;
-  if (text == "no") return false;
-  return {};
-}
-
-/// Sets a field of a card. False: the key is unknown, or the value is not allowed for it.
-bool set(ContestantCard& card, const std::string& key, const std::string& value) {
-  const std::map<std::string, std::string*> texts = {
-      {"name", &card.name},      {"library", &card.library}, {"call", &card.call},
-      {"says", &card.says},      {"source", &card.source},   {"use", &card.use},
-      {"answers", &card.answers}};
-  const std::map<std::string, bool*> flags = {{"degenerate", &card.degenerate},
-                                              {"neighbours", &card.neighbours},
-                                              {"promises", &card.promises}};
-  if (const auto text = texts.find(key); text != texts.end()) {
-    *text->second = value;
-    return !value.empty();
-  }
-  if (const auto flag = flags.find(key); flag != flags.end()) {
-    const std::optional<bool> read = yes_or_no(value);
-    if (read) *flag->second = *read;
-    return read.has_value();
-  }
-  if (key == "means") {
-    card.means = value == "crossing" ? Means::crossing : Means::closed;
-    return value == "crossing" || value == "closed";
-  }
-  if (key == "margin") {
-    const auto margin = parse_number<double>(value);
-    if (margin) card.margin = *margin;
-    return margin.has_value() && *margin >= 0 && std::isfinite(*margin);
-  }
-  return false;
 }
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
@@ -378,22 +337,6 @@ std::string card_text(const ContestantCard& card) {
   add("says", card.says);
   add("source", card.source);
   add("use", card.use);
-  return out;
-}
-
-ContestantCard read_card(std::string_view text, const std::string& where) {
-  ContestantCard out;
-  constexpr const char* kPage = "docs/ask.md has the keys of a card";
-  std::istringstream lines{std::string(text)};
-  long number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::size_t tab = std::min(line.find('\t'), line.size() - 1);
-    if (line.empty() || !set(out, line.substr(0, tab), line.substr(tab + 1)))
-      throw Error(where, "the card says '" + line + "'", kPage, number);
-  }
-  if (out.name.empty() || out.library.empty() || out.answers.empty())
-    throw Error(where, "the card lacks its name, its library, or what it answers", kPage);
   return out;
 }
 

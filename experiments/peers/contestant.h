@@ -45,8 +45,6 @@ struct ContestantCard {
 /// The card as lines KEY TAB VALUE. The keys are the names of the members. `means` is closed or
 /// crossing, and a bool is yes or no.
 std::string card_text(const ContestantCard& card);
-/// The inverse. Throws Error naming `where` and the line.
-ContestantCard read_card(std::string_view text, const std::string& where);
 
 /// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
 /// documentation says that it is not made for the question.

@@ -63,11 +63,14 @@ struct Merged {
 class Model {
  public:
   Model(const Scene& scene, const Object& object, Merged& merged)
-      : first_(object.first_triangle), merged_(merged) {
+      : first_(object.first_triangle), count_(object.triangle_count), merged_(merged) {
     const auto triangles = std::span(scene.triangles).subspan(first_, object.triangle_count);
     const auto [least, most] = vertices_of(scene, object);
     faces_.reserve(triangles.size());
     for (const auto& [a, b, c] : triangles) faces_.push_back({a - least, b - least, c - least});
+    // A mesh of one triangle has no contacts in ODE 0.16.2, and two of them crash it. So it gets
+    // that triangle twice.
+    if (faces_.size() == 1) faces_.push_back(faces_.front());
     data_ = dGeomTriMeshDataCreate();
     dGeomTriMeshDataBuildDouble(data_, scene.vertices[least].data(), sizeof(Vec3),
                                 static_cast<int>(most - least + 1), faces_.data(),
@@ -85,7 +88,9 @@ class Model {
 
   static Model& of(dGeomID geom) { return *static_cast<Model*>(dGeomGetData(geom)); }
   dGeomID geom() const { return geom_; }
-  std::uint32_t triangle(int face) const { return first_ + static_cast<std::uint32_t>(face); }
+  std::uint32_t triangle(int face) const {
+    return first_ + std::min(static_cast<std::uint32_t>(face), count_ - 1);
+  }
 
  private:
   static int note_merged(dGeomID geom, int had, int merged) {
@@ -99,7 +104,7 @@ class Model {
     return merged;
   }
 
-  std::uint32_t first_;
+  std::uint32_t first_, count_;
   Merged& merged_;
   std::vector<std::array<dTriIndex, 3>> faces_;
   dTriMeshDataID data_;
@@ -160,6 +165,7 @@ BenchAnswer collide(const Scene& scene) {
   Contacts contacts(merged);
   for (const auto& [a, b] : meeting(models)) contacts.add(*a, *b, answer.pairs);
   std::sort(answer.pairs.begin(), answer.pairs.end());
+  answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
   answer.candidates_ms = finding.ms();
   answer.candidate_pairs = answer.pairs.size();
   return answer;

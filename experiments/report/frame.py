@@ -151,6 +151,7 @@ class Study:
     points: pd.DataFrame
     all_rows: pd.DataFrame
     constants: dict = field(default_factory=dict)  # numbers of the program, by name
+    folder: str = ""  # of the store
 
     @property
     def rows(self):

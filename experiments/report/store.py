@@ -17,7 +17,7 @@ AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "re
 
 class Store:
     def __init__(self, folder):
-        self.path = f"{folder}/results.sqlite"
+        self.folder, self.path = folder, f"{folder}/results.sqlite"
         name = urllib.parse.quote(str(pathlib.Path(self.path).absolute()))
         # Opened read-write: SQLite first rolls back the unfinished work of a killed program.
         self.database = sqlite3.connect(f"file:{name}?mode=rw", uri=True)
@@ -56,7 +56,7 @@ class Store:
                   for c, t in zip(counts, times)]
         rows = pd.concat([rows, pd.DataFrame(values, rows.index)], axis=1)
         rows["contestant"] = [contestant(row) for row in rows.itertuples()]
-        return Study(name, bool(declared.quick), int(declared.seed), points, rows, constants)
+        return Study(name, bool(declared.quick), int(declared.seed), points, rows, constants, self.folder)
 
 
 def other_devices(folder, first):

@@ -177,8 +177,9 @@ struct SceneCounts {
   FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)
 };
 
-/// Counts of a LibraryPoint (peers/score.h): pairs of triangles. `missed` and `wrong` compare with
-/// closed triangles, `own_` with what the library's documentation promises.
+/// Counts of a LibraryPoint (experiments/suite/study.py). Of pairs and of other questions they are
+/// answers, of meshes colliding pairs. `missed` and `wrong` compare with closed triangles, `own_`
+/// with what the library's documentation promises; of distances all faults are `wrong`.
 struct LibraryCounts {
   std::uint64_t asked = 0, answered = 0, missed = 0, wrong = 0;
   std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
@@ -186,22 +187,22 @@ struct LibraryCounts {
   std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
   std::uint64_t timed = 0;                 // answers whose times `total` adds up
   std::uint64_t twice = 0, differing = 0;  // asked a second time, and the different answers
-  std::uint64_t neighbours_left_out = 0;   // pairs that it is not made for
   bool promises = false;                   // as in RunCounts
   std::string library = {}, means = {}, call = {};  // as on its card
   std::string says = {}, source = {}, use = {};     // as on its card
   std::string reason = {};                          // of the first refusal or death
-  std::string scores = {};                          // by kind and parameter: scores_text()
-  /// IDs of the first pairs of their kind in the family.
-  std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
-  /// Minimized (peers/score.h) from the first pair of its kind for which the documentation promises
-  /// the answer: the line of a pair with ID 0 (suite/writer.h).
+  std::string scores = {};                          // by kind and parameter, as study.py writes it
+  /// Faults of distances (docs/ask.md); the largest relative error.
+  std::optional<std::uint64_t> zero = {}, not_zero = {}, negative = {}, off = {}, points = {},
+                               points_off = {};
+  std::optional<double> worst = {};
+  /// The smallest pair of its kind of fault for which the documentation promises the answer: the
+  /// line of a pair with ID 0 (suite/writer.h).
   std::optional<std::string> example_missed = {}, example_wrong = {}, example_death = {};
   FARCULL_FIELDS(asked, answered, missed, wrong, own_asked, own_missed, own_wrong, refused,
-                 unanswered, crashed, hung, no_memory, not_asked, timed, twice, differing,
-                 neighbours_left_out, promises, library, means, call, says, source, use, reason,
-                 scores, first_missed, first_wrong, first_death, example_missed, example_wrong,
-                 example_death)
+                 unanswered, crashed, hung, no_memory, not_asked, timed, twice, differing, promises,
+                 library, means, call, says, source, use, reason, scores, zero, not_zero, negative,
+                 off, points, points_off, worst, example_missed, example_wrong, example_death)
 };
 
 /// Counts of a NeighbourPoint.

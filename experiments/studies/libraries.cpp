@@ -1,226 +1,191 @@
 // The study "libraries": wrong answers of other libraries, textbook tests and our own methods on a
-// labelled suite. Each contestant runs in processes of its own (peers/runner.h).
+// labelled suite. study.py asks each contestant (peers/contestants.h).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <variant>
 
 #include "core/base/error.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/measure/harness.h"
-#include "experiments/peers/score.h"
+#include "experiments/peers/contestants.h"
 #include "experiments/studies/study.h"
 #include "experiments/suite/writer.h"
 
 namespace farcull {
 namespace {
 
-SuiteSettings settings_of(bool small, std::uint64_t seed) {
-  return {.size = small ? SuiteSize::small : SuiteSize::full, .seed = seed};
-}
+using Json = nlohmann::json;
 
-std::vector<std::string> last_parts(const std::vector<std::string>& paths, bool extension) {
+SuiteSize size_of(bool small) { return small ? SuiteSize::small : SuiteSize::full; }
+
+/// The families of meshes with these names: `cogs` of cogs-1, cogs-2 and so on.
+std::vector<std::string> mesh_families(const std::vector<std::string>& names) {
   std::vector<std::string> out;
-  for (const std::filesystem::path path : paths)
-    out.push_back((extension ? path.stem() : path.filename()).string());
+  for (const std::string& name : names) {
+    const std::size_t end = name.find_last_not_of("0123456789");
+    const bool numbered = end != std::string::npos && end + 1 < name.size() && name[end] == '-';
+    const std::string family = numbered ? name.substr(0, end) : name;
+    if (std::find(out.begin(), out.end(), family) == out.end()) out.push_back(family);
+  }
   return out;
 }
 
-// Adds a point for each chosen contestant and each name.
-void add(const std::vector<std::string>& names, const GridChoice& choice, LibraryPoint point,
-         std::vector<Point>& out) {
-  const std::vector<std::string>& chosen = choice.contestants;
-  for (const std::string& name : names) {
-    for (const KnownContestant& contestant : known_contestants()) {
-      if (!(point.mesh ? contestant.meshes : contestant.pairs)) continue;
-      if (!chosen.empty() &&
-          std::find(chosen.begin(), chosen.end(), contestant.name) == chosen.end())
-        continue;
-      point.contestant = contestant.name;
-      point.family = name;
-      out.emplace_back(point);
-    }
-  }
+std::vector<std::string> last_parts(const std::vector<std::string>& paths) {
+  std::vector<std::string> out;
+  for (const std::filesystem::path path : paths) out.push_back(path.stem().string());
+  return out;
 }
 
-// Lists all contestants of one family together, so that the family is made once.
+// Lists all contestants of one family together.
 std::vector<Point> grid(const GridChoice& choice) {
-  LibraryPoint pairs{.contestant = {},
-                     .family = {},
-                     .small = choice.quick,
-                     .seed = choice.seed,
-                     .suite = choice.suite};
+  LibraryPoint point{.small = choice.quick, .seed = choice.seed, .suite = choice.suite};
   std::vector<std::string> families, meshes;
   if (choice.suite.empty()) {
     for (const PairFamily& family : pair_families()) families.push_back(family.name);
-    meshes = mesh_names(choice.quick ? SuiteSize::small : SuiteSize::full);
+    meshes = mesh_names(size_of(choice.quick));
   } else {
     const SuiteIndex index = read_suite(choice.suite);
-    pairs.suite_name = index.sum.substr(0, 8);
-    families = last_parts(index.pair_files(), true);
-    meshes = last_parts(index.mesh_folders(), false);
+    point.suite_name = index.sum.substr(0, 8);
+    families = last_parts(index.pair_files());
+    meshes = last_parts(index.mesh_folders());
   }
-  LibraryPoint of_meshes = pairs;
-  of_meshes.mesh = true;
   std::vector<Point> out;
-  add(families, choice, pairs, out);
-  add(meshes, choice, of_meshes, out);
-  return out;
-}
-
-// The pairs of a family; the last family is cached.
-const SuitePairs& pairs_of(const LibraryPoint& point) {
-  static std::pair<std::string, SuitePairs> last;
-  const std::string name = key_of(point).scene + fmt::format(", seed {}", point.seed);
-  if (last.first != name) {
-    SuitePairs pairs = point.suite.empty()
-                           ? make_pairs(point.family, settings_of(point.small, point.seed))
-                           : read_pairs(point.suite + "/pairs/" + point.family + ".txt");
-    last = {name, std::move(pairs)};
-  }
-  return last.second;
-}
-
-// A mesh, and a folder with its files as a contestant reads them, which the destructor removes.
-struct MeshFiles {
-  explicit MeshFiles(const LibraryPoint& point)
-      : mesh(point.suite.empty() ? make_mesh(point.family, settings_of(point.small, point.seed))
-                                 : read_mesh(point.suite + "/meshes/" + point.family)) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "farcull-mesh-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr)
-      throw Error(pattern, "cannot be made", "set TMPDIR to a folder that can be written");
-    folder = pattern;
-    for (const SuiteText& text : mesh_texts(mesh)) {
-      std::ofstream file(folder + "/" + text.name, std::ios::binary);
-      file << text.text;
-      if (!file.flush()) {
-        remove();
-        throw Error(folder, "cannot be written", "free space in TMPDIR");
+  const auto add = [&](const std::string& question, const std::vector<std::string>& names) {
+    const std::vector<std::string>& chosen = choice.contestants;
+    point.question = question;
+    for (const std::string& name : names) {
+      point.family = name;
+      for (const KnownContestant& contestant : known_contestants()) {
+        point.contestant = contestant.name;
+        if (answers(contestant, question) &&
+            (chosen.empty() ||
+             std::find(chosen.begin(), chosen.end(), contestant.name) != chosen.end()))
+          out.emplace_back(point);
       }
     }
-  }
-  ~MeshFiles() { remove(); }
-  MeshFiles(const MeshFiles&) = delete;
-  MeshFiles& operator=(const MeshFiles&) = delete;
-
-  SuiteMesh mesh;
-  std::string folder;
-
- private:
-  void remove() const {
-    std::error_code error;
-    std::filesystem::remove_all(folder, error);
-  }
-};
-
-LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& scores) {
-  LibraryCounts out;
-  Score sum;
-  for (const Score& score : scores) add(score, sum);
-  std::tie(out.asked, out.answered, out.missed, out.wrong, out.own_asked, out.own_missed,
-           out.own_wrong, out.refused, out.unanswered, out.crashed, out.hung, out.no_memory,
-           out.not_asked, out.twice, out.differing) = sum.members();
-  out.reason = sum.reason;
-  out.promises = card.promises;
-  out.library = card.library;
-  out.means = card.means == Means::closed ? "closed" : "crossing";
-  out.call = card.call;
-  out.says = card.says;
-  out.source = card.source;
-  out.use = card.use;
-  out.scores = scores_text(scores);
+  };
+  add("pair", families);
+  add("mesh", mesh_families(meshes));
+  for (const char* question : {"distance", "self", "inside", "clash"}) add(question, {"all"});
   return out;
 }
 
-bool missed(const SuitePair& pair, ContestOutcome outcome) {
-  return outcome == ContestOutcome::apart && collides(pair.kind);
-}
-bool wrong(const SuitePair& pair, ContestOutcome outcome) {
-  return outcome == ContestOutcome::meets && !collides(pair.kind);
-}
-
-void add_firsts(const std::vector<SuitePair>& pairs, const std::vector<ContestAnswer>& answers,
-                LibraryCounts& counts) {
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto note = [&](std::optional<std::uint64_t>& first) {
-      if (!first) first = pairs[i].id;
-    };
-    const ContestOutcome outcome = answers[i].outcome;
-    if (is_death(outcome)) note(counts.first_death);
-    if (pairs[i].kind == SuiteKind::unlabelled) continue;
-    if (missed(pairs[i], outcome)) note(counts.first_missed);
-    if (wrong(pairs[i], outcome)) note(counts.first_wrong);
-  }
+/// The folder of the point's suite. A suite that was not given is made in the folder that the
+/// variable FARCULL_SUITE names, unless it is there.
+std::string folder_of(const LibraryPoint& point) {
+  if (!point.suite.empty()) return point.suite;
+  const char* const named = std::getenv("FARCULL_SUITE");
+  if (named == nullptr || *named == '\0')
+    throw Error("FARCULL_SUITE", "names no folder for the suite", "set it");
+  const std::string folder = named;
+  if (!std::filesystem::exists(folder + "/suite.txt"))
+    write_suite(folder, {.size = size_of(point.small), .seed = point.seed});
+  const SuiteIndex index = read_suite(folder);
+  if (index.size != (point.small ? "small" : "full") || index.seed != point.seed)
+    throw Error(folder, "is a suite of another size or seed", "remove it, or use another folder");
+  return folder;
 }
 
-// Minimizes the first fault of each kind on a pair for which the documentation promises the answer.
-void add_examples(const Invited& invited, const ContestLimits& limits,
-                  const std::vector<SuitePair>& pairs, const std::vector<ContestAnswer>& answers,
-                  LibraryCounts& counts) {
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!promised(invited.card, pairs[i])) continue;
-    const ContestOutcome outcome = answers[i].outcome;
-    std::optional<std::string>* const to = is_death(outcome)           ? &counts.example_death
-                                           : missed(pairs[i], outcome) ? &counts.example_missed
-                                           : wrong(pairs[i], outcome)  ? &counts.example_wrong
-                                                                       : nullptr;
-    if (to == nullptr || *to) continue;
-    std::optional<SuitePair> small = minimized(invited, {pairs[i], outcome}, limits);
-    if (!small) continue;
-    small->id = 0;
-    *to = pair_line(*small);
+/// The card of a contestant, asked once; null if its program is not there or gives no card.
+struct Asked {
+  std::string command = {};
+  Json card = {};
+  std::string missing = {};
+};
+
+const Asked& ask_card(const KnownContestant& contestant) {
+  static std::map<std::string, Asked> known;
+  const std::string command = command_of(contestant);
+  Asked& out = known[contestant.name + " " + command];
+  if (!out.command.empty() || !out.missing.empty()) return out;
+  out.command = command;
+  try {
+    if (command.empty())
+      out.missing = contestant.name + ": its program was not built";
+    else
+      out.card = ask_program(command, {"--question", "card"});
+  } catch (const Error& error) {
+    out.missing = contestant.name + ": " + error.reason;
   }
+  if (!out.missing.empty() && !contestant.package.empty())
+    out.missing += " (Debian: " + contestant.package + ")";
+  return out;
 }
 
-PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
-                            const ContestLimits& limits) {
-  std::vector<SuitePair> asked;
-  std::uint64_t left_out = 0;
-  for (const SuitePair& pair : pairs_of(point).pairs) {
-    if (takes(invited.card, pair)) {
-      asked.push_back(pair);
-    } else {
-      ++left_out;
-    }
+/// The line of a pair in a list of the suite, with the kind that the oracles find.
+std::string line_of(const Json& example) {
+  SuitePair pair;
+  pair.parameter = example["parameter"];
+  for (std::size_t i = 0; i < 18; ++i) {
+    (i < 9 ? pair.a : pair.b)[i / 3 % 3][static_cast<Eigen::Index>(i % 3)] =
+        example["numbers"][i].get<double>();
   }
-  const PairsAnswer answer = ask_pairs(invited, asked, limits);
-  LibraryCounts counts = counts_of(invited.card, score_pairs(invited.card, asked, answer));
-  counts.neighbours_left_out = left_out;
-  double ns = 0;
-  for (const ContestAnswer& one : answer.answers) {
-    ns += one.ns;
-    counts.timed += one.outcome == ContestOutcome::apart || one.outcome == ContestOutcome::meets;
-  }
-  add_firsts(asked, answer.answers, counts);
-  add_examples(invited, limits, asked, answer.answers, counts);
-  return {.counts = counts, .times = {.total = ns / 1e6}, .device = "process"};
+  pair.kind = decide(pair, "an example");
+  return pair_line(pair);
+}
+
+/// Sets a field to the value of that name, if there is one.
+template <class T>
+void take(const Json& from, const std::string& name, T& field) {
+  if (from.contains(name)) field = from[name].template get<T>();
+}
+void take(const Json& from, const std::string& name, std::optional<std::uint64_t>& field) {
+  if (from.contains(name)) field = from[name].get<std::uint64_t>();
+}
+
+LibraryCounts counts_of(const Json& found) {
+  LibraryCounts out;
+  const Json &counts = found["counts"], &card = found["card"], &examples = found["examples"];
+  std::string_view names = LibraryCounts::kFieldNames;
+  std::apply(
+      [&](auto&... field) {
+        const auto set = [&](const std::string& name, auto& to) {
+          using Of = std::decay_t<decltype(to)>;
+          if constexpr (std::is_same_v<Of, std::string>)
+            take(card, name, to);
+          else if constexpr (std::is_same_v<Of, std::uint64_t> ||
+                             std::is_same_v<Of, std::optional<std::uint64_t>>)
+            take(counts, name, to);
+        };
+        (set(std::string(take_field_name(names)), field), ...);
+      },
+      out.members());
+  out.promises = card["promises"] == "yes";
+  out.reason = found["reason"];
+  out.scores = found["scores"];
+  if (out.zero) out.worst = found["worst"].get<double>();
+  const auto example = [&](const char* fault, std::optional<std::string>& to) {
+    if (examples.contains(fault)) to = line_of(examples[fault]);
+  };
+  example("missed", out.example_missed);
+  example("wrong", out.example_wrong);
+  example("death", out.example_death);
+  return out;
 }
 
 PointResult measure(const Point& at, Lab& lab) {
   const auto& point = std::get<LibraryPoint>(at);
   // The processes of our own methods read this variable.
   ::setenv("FARCULL_CONTEST_DEVICE", lab.device().c_str(), 1);
-  const Invitation invitation = invite_known(known_contestant(point.contestant));
-  if (!invitation.invited) return {.device = "none", .left_out = invitation.missing};
-  const ContestLimits limits = point.small
-                                   ? ContestLimits{.answer_s = 5, .start_s = 30, .most_deaths = 20}
-                                   : ContestLimits{.answer_s = 30, .start_s = 300};
-  const Invited& invited = *invitation.invited;
-  if (!point.mesh) return ask_about_pairs(point, invited, limits);
-  const MeshFiles files(point);
-  const MeshAnswer answer = ask_mesh(invited, files.mesh, files.folder, limits);
-  return {.counts = counts_of(invited.card, {score_mesh(invited.card, files.mesh, answer)}),
-          .times = {.total = answer.ns / 1e6},
+  const Asked& asked = ask_card(known_contestant(point.contestant));
+  if (!asked.missing.empty()) return {.device = "none", .left_out = asked.missing};
+  const Json found =
+      ask_program(asked.command, {"--suite", folder_of(point), "--question", point.question,
+                                  "--family", point.family, "--limit", point.small ? "5" : "30",
+                                  "--deaths", point.small ? "20" : "100"});
+  return {.counts = counts_of(found),
+          .times = {.total = found["ns"].get<double>() / 1e6},
           .device = "process"};
 }
 
 std::string library(const Point& at) {
-  const KnownContestant& known = known_contestant(std::get<LibraryPoint>(at).contestant);
-  const Invitation invitation = invite_known(known);
-  return invitation.invited ? invitation.invited->card.library : "";
+  const Asked& asked = ask_card(known_contestant(std::get<LibraryPoint>(at).contestant));
+  return asked.missing.empty() ? asked.card["library"].get<std::string>() : "";
 }
 
 }  // namespace

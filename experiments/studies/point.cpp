@@ -124,7 +124,11 @@ PointKey key_of(const LibraryPoint& point) {
   const std::string suite = !point.suite.empty() ? "suite-" + point.suite_name
                             : point.small        ? "small"
                                                  : "full";
-  key.scene = fmt::format("{}/{}/{}", suite, point.mesh ? "meshes" : "pairs", point.family);
+  key.scene = fmt::format("{}/{}/{}", suite,
+                          point.question == "pair"   ? "pairs"
+                          : point.question == "mesh" ? "meshes"
+                                                     : point.question,
+                          point.family);
   key.method = point.contestant;
   key.seed = point.seed;
   return key;

@@ -109,15 +109,16 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/runner.h) and its question: a family of pairs of a suite, or a mesh.
+/// A contestant (peers/contestants.h) and what it is asked: a family of pairs or of meshes of a
+/// suite, or all of its questions of another kind.
 struct LibraryPoint {
-  std::string contestant;
-  std::string family;  // or the name of the mesh
-  bool mesh = false;
-  bool small = false;           // of the small suite; else of the full one
-  std::uint64_t seed = 1;       // of the suite
-  std::string suite = {};       // the folder of a given suite; empty: generated
-  std::string suite_name = {};  // of a given suite: the beginning of its checksum
+  std::string contestant = {};
+  std::string family = {};        // "all" for questions about neither pairs nor meshes
+  std::string question = "pair";  // as in docs/ask.md
+  bool small = false;             // of the small suite; else of the full one
+  std::uint64_t seed = 1;         // of the suite
+  std::string suite = {};         // the folder of a given suite; empty: generated
+  std::string suite_name = {};    // of a given suite: the beginning of its checksum
 };
 
 /// The potential neighbours that a method leaves (measure/neighbour_sets.h).

@@ -29,6 +29,7 @@ LONGEST = 1 << 16  # bytes of a line
 MOST = 1 << 28  # bytes of an answer; one without an end would take all memory
 AGAIN = 16  # every so many questions one is asked again
 OFF = 1e-6  # relative errors of distances and of points above this are counted
+ROUNDED = 2.0 ** -48  # of the largest coordinate: an error below this comes from rounding, and is not counted
 
 
 class Wrong(Exception):
@@ -44,6 +45,7 @@ class Child:
         def limit():
             import resource  # pylint: disable=import-outside-toplevel  # not on Windows
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # it ends even if nobody is left to end it
             resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
         self.errors = tempfile.TemporaryFile()
         posix = os.name == 'posix'
@@ -239,8 +241,25 @@ def exact(triangle):
     return [[Fraction(x) for x in corner] for corner in triangle]
 
 
+def whole(*triangles):
+    """The triangles with whole coordinates: all are multiplied by one power of two, which changes no sign."""
+    ratios = [[[x.as_integer_ratio() for x in corner] for corner in t] for t in triangles]
+    most = max(below for t in ratios for corner in t for _, below in corner)
+    return [[[above * (most // below) for above, below in corner] for corner in t] for t in ratios]
+
+
 def normal(t):
     return cross(minus(t[1], t[0]), minus(t[2], t[0]))
+
+
+def proper(t):
+    """Whether a triangle is no segment and no point. Doubles decide if one term of the normal is far above their rounding."""
+    u, v = minus(t[1], t[0]), minus(t[2], t[0])
+    for i, k in (0, 1), (1, 2), (2, 0):
+        p, q = u[i] * v[k], u[k] * v[i]
+        if abs(p - q) > 1e-12 * (abs(p) + abs(q)) and abs(p - q) > 1e-290:
+            return True
+    return any(normal(whole(t)[0]))
 
 
 def square(v):
@@ -289,13 +308,13 @@ def interval(t, n, origin, along):
     for i in range(3):
         k = (i + 1) % 3
         if side[i] * side[k] < 0:
-            cuts.append(at[i] + (at[k] - at[i]) * side[i] / (side[i] - side[k]))
+            cuts.append(Fraction(at[k] * side[i] - at[i] * side[k], side[i] - side[k]))
     return min(cuts), max(cuts)
 
 
 def crosses(a, b):
     """Whether two triangles cross (docs/suite.md): they share a point that is on no edge of either one."""
-    a, b = exact(a), exact(b)
+    a, b = whole(a, b)
     m, n = normal(a), normal(b)
     along = cross(m, n)
     first, second = interval(a, n, b[0], along), interval(b, m, a[0], along)
@@ -304,11 +323,11 @@ def crosses(a, b):
 
 def promised(card, a, b, label, kind=None):
     """Whether the documentation promises the right answer about two triangles. kind: of a pair of the suite."""
-    if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not all(any(normal(exact(t))) for t in (a, b)):
+    if label and card['means'] == 'crossing':  # triangles that cross are never degenerate
+        return kind == 'crossing' if kind and not kind.startswith('neighbours') else crosses(a, b)
+    if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not (proper(a) and proper(b)):
         return False
-    if not label:
-        return float(card['margin']) == 0 or not within(a, b, card['margin'])
-    return card['means'] == 'closed' or (kind == 'crossing' if kind and not kind.startswith('neighbours') else crosses(a, b))
+    return label or float(card['margin']) == 0 or not within(a, b, card['margin'])
 
 
 # ---- the suite
@@ -341,10 +360,10 @@ class Suite:
             raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
         return text
 
-    def lists(self, folder):
-        """The name and the lines, as words, of each list in a folder."""
+    def lists(self, folder, only=None):
+        """The name and the lines, as words, of each list in a folder, or of one of them."""
         for name in self.files:
-            if re.fullmatch(f'{folder}/[^/]*[.]txt', name):
+            if re.fullmatch(f'{folder}/[^/]*[.]txt', name) and only in (None, name[len(folder) + 1:-4]):
                 lines = self.text(name).split('\n')
                 yield lines[0].split(' ')[2], [line.split() for line in lines[1:] if line and line[0] != '#']
 
@@ -382,59 +401,76 @@ class Row(collections.Counter):
         self['asked'] += answer.outcome != 'not asked'
         self[answer.outcome] += 1
         self['ns'] += answer.ns
+        self['twice'] += differs is not None
         self['differs'] += differs is True
         self.reason = self.reason or answer.reason
+
+    def add(self, row):
+        self.update(row)
+        self.reason, self.worst = self.reason or row.reason, max(self.worst, row.worst)
 
 
 def corners_of(numbers):
     return [[numbers[3 * i + k] for k in range(3)] for i in range(3)]
 
 
-# A line of a list: the question, its label (a kind of contact, yes, no, LOW,HIGH or ?), and its coordinates.
-Listed = collections.namedtuple('Listed', 'question label numbers')
+# A line of a list: its number, its parameter, the question, its label (a kind of contact, yes, no, LOW,HIGH or ?), and its
+# coordinates.
+Listed = collections.namedtuple('Listed', 'number parameter question label numbers')
 
 
-def lists_of(card, suite):
-    """The kind, the family and the lines of each list of questions."""
-    for family, lines in suite.lists('pairs'):
-        listed = []
-        for _, _, shared, label, *words in lines:
-            if shared == '-' or card['neighbours'] == 'yes':
-                numbers = [float.fromhex(word) for word in words]
-                listed.append(Listed(Question('pair', [shared, *map(repr, numbers)]), label, numbers))
-        yield 'pair', family, listed
-    for family, lines in suite.lists('questions'):
+def pairs_of(card, lines):
+    for number_, parameter, shared, label, *words in lines:
+        if shared == '-' or card['neighbours'] == 'yes':
+            numbers = [float.fromhex(word) for word in words]
+            yield Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)]), label, numbers)
+
+
+def questions_of(kind, suite, lines):
+    paths = {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
+    for number_, parameter, _, label, *words in (words for words in lines if words[2] == kind):
+        numbers = [float.fromhex(word) for word in words[paths:]]
+        fields = [*map(suite.path, words[:paths]), *map(repr, numbers)]
+        yield Listed(number_, parameter, Question(kind, fields), label, numbers)
+
+
+def lists_of(card, suite, kinds, only=None):
+    """The kind, the family and the lines of each list of questions, or of the list `only`."""
+    for family, lines in suite.lists('pairs', only) if 'pair' in kinds else []:
+        yield 'pair', family, [*pairs_of(card, lines)]
+    families = {}  # of questions about meshes, each of which has a list
+    for family, lines in suite.lists('questions', only) if {*kinds} & {*KINDS[2:]} else []:
+        families.setdefault(family, []).extend(lines)
+    for family, lines in families.items():
         for kind in KINDS[2:]:
-            listed, paths = [], {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
-            for _, _, _, label, *words in (words for words in lines if words[2] == kind):
-                numbers = [float.fromhex(word) for word in words[paths:]]
-                fields = [*map(suite.path, words[:paths]), *map(repr, numbers)]
-                listed.append(Listed(Question(kind, fields), label, numbers))
-            yield kind, family, listed
+            if kind in kinds:
+                yield kind, family, [*questions_of(kind, suite, lines)]
 
 
 def score(card, listed, value, row):
-    question, label, numbers = listed
+    _, _, question, label, numbers = listed
     right = label not in ('no', 'apart', 'neighbours-apart')
     if question.kind == 'distance':
         score_distance(label, numbers, value, row)
-    elif value != right:
-        fault = 'missed' if right else 'wrong'
+        return
+    fault = 'missed' if right else 'wrong'
+    own = question.kind == 'pair' and promised(card, corners_of(numbers), corners_of(numbers[9:]), right, label)
+    row['own asked'] += own
+    if value != right:
         row[fault] += 1
-        if question.kind == 'pair':
-            row['own ' + fault] += promised(card, corners_of(numbers), corners_of(numbers[9:]), right, label)
+        row['own ' + fault] += own
 
 
 def score_distance(label, numbers, value, row):
     low, high = (float.fromhex(word) for word in label.split(','))
-    distance, points = value[0], value[1:]
-    row['zero'] += distance == 0 < low
-    row['not zero'] += distance > 0 == high
-    row['negative'] += distance < 0
-    if distance > 0 and high > 0:  # low is 0 if the distance is below all doubles
-        error = max(low - distance, distance - high, 0) / (low or high)
-        row['off'] += error > OFF
-        row.worst = max(row.worst, error)
+    distance, points, error = value[0], value[1:], max(low - value[0], value[0] - high, 0)
+    if error > ROUNDED * max(map(abs, numbers)):
+        row['zero'] += distance == 0
+        row['not zero'] += distance > 0 == high
+        row['negative'] += distance < 0
+        if distance > 0 and high > 0:  # low is 0 if the distance is below all doubles
+            row['off'] += error / (low or high) > OFF
+            row.worst = max(row.worst, error / (low or high))
     triangles = [corners_of(numbers), corners_of(numbers[9:])]
     size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
     near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)  # or as near as doubles are
@@ -455,26 +491,28 @@ def score_mesh(card, objects, rows, reported, row):
     truth = {((a, i), (b, j)) for a, i, b, j, common in rows if counts or common == 0}
     row['colliding'] += len(truth)
     row['reported'] += len(found)
+    def own(pairs, label):
+        return sum(promised(card, *(objects[o][t][1] for o, t in pair), label) for pair in pairs)
     for fault, pairs in ('missed', truth - found), ('wrong', found - truth):
         row[fault] += len(pairs)
-        row['own ' + fault] += sum(promised(card, *(objects[o][t][1] for o, t in pair), fault == 'missed') for pair in pairs)
+        row['own ' + fault] += own(pairs, fault == 'missed')
+    row['own asked'] += row['own missed'] + own(truth & found, True)
 
 
-def ask_meshes(command, card, suite, options):
-    for family, names in suite.meshes().items():
-        meshes = [suite.objects(name) for name in names]
-        questions = [Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
-                     for name, (paths, _) in zip(names, meshes)]
-        row = Row()
-        for name, (_, objects), answer, differs in zip(names, meshes, *ask_twice(command, questions, options)):
-            pairs = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []]
-            if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
-                answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
-            row.take(answer, differs)
-            if answer.outcome == 'answered' and name + '/pairs.csv' in suite.files:
-                lines = suite.text(name + '/pairs.csv').split('\n')[1:-1]
-                score_mesh(card, objects, [[int(cell) for cell in line.split(',')] for line in lines], pairs, row)
-        yield family, row
+def ask_family(command, card, suite, names, options):
+    """A row for each mesh of a family; one process is asked about all."""
+    meshes = [suite.objects(name) for name in names]
+    questions = [Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
+                 for name, (paths, _) in zip(names, meshes)]
+    for name, (_, objects), answer, differs in zip(names, meshes, *ask_twice(command, questions, options)):
+        pairs, row = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []], Row()
+        if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
+            answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
+        row.take(answer, differs)
+        if answer.outcome == 'answered' and name + '/pairs.csv' in suite.files:
+            lines = suite.text(name + '/pairs.csv').split('\n')[1:-1]
+            score_mesh(card, objects, [[int(cell) for cell in line.split(',')] for line in lines], pairs, row)
+        yield row
 
 
 # ---- tables
@@ -497,17 +535,15 @@ def cells_of(kind, name, row):
 def table_of(kind, rows):
     """The rows of one kind of question, by family, and their sum, as aligned text."""
     total = Row()
-    total.worst = max(row.worst for row in rows.values())
     for row in rows.values():
-        total.update(row)
+        total.add(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
     lines = [head] + [cells_of(kind, name, row) for name, row in [*rows.items(), ('all', total)]]
     kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # without outcomes that never came
     widths = [max(len(line[i]) for line in lines) for i in kept]
     text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
                      for line in lines)
-    first = next((row.reason for row in rows.values() if row.reason), '')
-    return f'{TITLES[kind]}\n{text}\n' + (f'the first reason of a refusal or a death: {first}\n' if first else '')
+    return f'{TITLES[kind]}\n{text}\n' + (f'the first reason of a refusal or a death: {total.reason}\n' if total.reason else '')
 
 
 def write_csv(path, name, rows):
@@ -525,16 +561,16 @@ def measure(command, options):
     card = card_of(command, ask(command, [Question('card', [])], options)[0][0])
     asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
     rows = {kind: {} for kind in KINDS}
-    for kind, family, listed in lists_of(card, suite):
-        if kind not in asked or not listed:
-            continue
-        row = rows[kind].setdefault(family, Row())
+    for kind, family, listed in lists_of(card, suite, asked):
         for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
+            row = rows[kind].setdefault(family, Row())
             row.take(answer, differs)
             if answer.outcome == 'answered' and one.label != '?':
                 score(card, one, answer.value, row)
-    if 'mesh' in asked:
-        rows['mesh'] = dict(ask_meshes(command, card, suite, options))
+    for family, names in suite.meshes().items() if 'mesh' in asked else []:
+        row = rows['mesh'].setdefault(family, Row())
+        for one in ask_family(command, card, suite, names, options):
+            row.add(one)
     print(f"{card['name']}{', ' + card['library'] if card['library'] else ''}, asked about the suite {suite.sum[:8]}; "
           f"own: as its documentation promises, {card['means']}\n")
     print('\n'.join(table_of(kind, rows[kind]) for kind in KINDS if rows[kind]), end='')

@@ -1,30 +1,37 @@
-"""Pairs that each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs and meshes.
+"""What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs, meshes and questions.
 
 Counts of pairs of triangles and of pairs of meshes are never added: the first are questions, each with its answer, the
 second are the parts of one answer about a mesh.
 """
+import os
 from dataclasses import dataclass
 
 from frame import *  # noqa: F403: a chapter uses most of it
 from tables import table_csv
 
-# The counts of a score, in the order of peers/score.cpp.
+# The counts of a part of a row, in the order of experiments/suite/study.py.
 SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
 FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
+QUESTIONS = ["distance", "self", "inside", "clash"]
 
 
 # ---- rows and their sums
 
 def with_families(rows):
-    """The rows with the columns family (`pairs/random` for `small/pairs/random`) and pairs (False: of meshes), and the
-    columns of text without gaps."""
-    return rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], pairs=rows.scene.str.match(
-        "[^/]*/pairs/"), **{
+    """The rows with the columns family (`pairs/random` for `small/pairs/random`) and asks (`pairs`, `meshes` or one of
+    QUESTIONS), and the columns of text without gaps."""
+    return rows.assign(family=[scene.partition("/")[2] for scene in rows.scene],
+                       asks=[scene.split("/")[1] for scene in rows.scene], **{
         name: [text(row, name) for row in rows.itertuples()]
         for name in ("library", "means", "call", "says", "source", "use", "scores")})
+
+
+def meshes_of(rows):
+    """How many meshes the rows have, each with a part of its own in `scores`."""
+    return sum(len(row.scores.split(";")) for row in rows.itertuples() if row.scores)
 
 
 def totals(rows, *names):
@@ -55,17 +62,21 @@ def answers(rows, pairs, own):
     return missed, asked, false, asked if pairs else asked - missed + false
 
 
-def rates_of_kinds(rows):
-    """Wrong answers per million by contestant and kind, from the scores of the rows."""
+def parts_of(rows):
+    """The parts of the rows, by contestant, parameter and kind of contact."""
     out = []
     for row in rows.itertuples():
         for score in row.scores.split(";") if row.scores else []:
             words = score.partition("|")[0].split()
             if "|" not in score or len(words) != len(SCORE) + 3:
                 raise Damaged(f"'{score}' is no score of this version of farcull")
-            out.append([row.method, words[1], *map(int, words[2:-1])])
-    counts = pd.DataFrame(out, columns=["contestant", "kind", *SCORE]).astype({name: int for name in SCORE})
-    sums = counts.groupby(["contestant", "kind"]).sum()
+            out.append([row.method, *words[:2], *map(int, words[2:-1])])
+    return pd.DataFrame(out, columns=["contestant", "parameter", "kind", *SCORE]).astype({name: int for name in SCORE})
+
+
+def rates_of_kinds(rows):
+    """Wrong answers per million by contestant and kind."""
+    sums = parts_of(rows).drop(columns="parameter").groupby(["contestant", "kind"]).sum()
     return {row.Index: per_million(row.missed + row.wrong, row.answered) for row in sums.itertuples()}
 
 
@@ -113,6 +124,68 @@ def kinds_table(rows):
         [[name] + [rates.get((name, kind), "-") for kind in KINDS] for name in rows.method.unique()])
 
 
+def faults_of(rows, asks):
+    """How many answers were wrong where the documentation promises the answer, and of how many."""
+    of = rows[rows.asks == asks]
+    if asks in ("pairs", "meshes"):
+        missed, asked, false, reported = answers(of, asks == "pairs", True)
+        return missed + false, asked if asks == "pairs" else asked + false
+    return totals(of, "missed", "wrong"), total(of, "answered")
+
+
+def trust_table(rows):
+    """A row for each contestant, those that err least on pairs first."""
+    def cell(of, asks):
+        of = of[of.asks == asks]
+        (wrong, asked), silent = faults_of(of, asks), without_answer(of)
+        return "" if of.empty else " + ".join(
+            [of_all(wrong, asked) if asked else "no answer"] * bool(asked or not silent) +
+            [f"{grouped(silent)} none"] * bool(silent))
+
+    def rate(of):
+        wrong, asked = faults_of(of, "pairs")
+        return (not (of.library == "farcull").all(), wrong / asked if asked else 1)
+
+    def ns(of):
+        of = of[of.asks == "pairs"]
+        timed = total(of, "timed")
+        return rounded(1e6 * column(of, "total_ms").sum() / timed) if timed else ""
+
+    asked = [asks for asks in ["pairs", "meshes", *QUESTIONS] if (rows.asks == asks).any()]
+    return Table(
+        "libraries-trust",
+        "Whom to trust for what: wrong answers, of those of which the documentation promises the answer. Pairs: do two "
+        "triangles meet? Meshes: which of their pairs meet (missed pairs and pairs that are apart are wrong)? Distance: how far "
+        "are two triangles apart (an error of a millionth is wrong)? Self: does a mesh meet itself? Inside: is a point in a "
+        "solid? Clash: do the insides of two solids meet? + none: so many got no answer. "
+        "Empty: it has no function for that",
+        columns(["contestant", "library"], asked + ["ns a pair"]),
+        [[name, of.library.iloc[0], *(cell(of, asks) for asks in asked), ns(of)]
+         for name, of in sorted(by(rows, "method"), key=lambda both: rate(both[1]))])
+
+
+def uses_table(rows):
+    known = {}
+    for row in rows.drop_duplicates("method").itertuples():
+        known.setdefault((row.library, row.use), []).append(row.method)
+    return Table("libraries-use", "What each is made for, by its documentation where it is quoted",
+                 columns(["contestants", "made for"], []), [[", ".join(names), use] for (_, use), names in known.items()])
+
+
+def questions_table(rows):
+    """The faults of distances one by one."""
+    names = {"zero": "zero", "not zero": "not_zero", "negative": "negative", "off": "off", "points": "points",
+             "points off": "points_off"}
+    return Table(
+        "libraries-distances",
+        "Distances of two triangles: 0 though they are apart; above 0 though they meet; negative; with a relative error above "
+        "a millionth; the largest relative error; the points that were given, and those that lie off their triangle or their "
+        "distance by more than a millionth",
+        columns(["contestant"], ["answered", *names, "largest error"]),
+        [[name, grouped(total(of, "answered")), *(grouped(total(of, key)) for key in names.values()),
+          rounded(column(of, "worst").max())] for name, of in by(rows, "method")])
+
+
 def calls_table(rows):
     names = ["method", "library", "call", "says", "source", "use"]
     return Table(
@@ -123,11 +196,10 @@ def calls_table(rows):
 
 
 def families_table(rows):
-    rows = rows.assign(family=rows.family.str.replace(r"^(meshes/.*)-\d+$", r"\1", regex=True))
     families = list(rows.family.unique())
 
     def cell(of):
-        pairs = of.pairs.any()
+        pairs = (of.asks == "pairs").any()
         asked, said = (total(of, "asked"), total(of, "answered")) if pairs else (10**6, 10**6)
         return "-" if of.empty or asked == 0 else " / ".join(
             [per_million(total(of, name), said) for name in ("missed", "wrong")] +
@@ -164,43 +236,53 @@ def time_figure(rows):
 # ---- findings
 
 def add_ours(chapter, rows):
-    """Adds each method of farcull that promises. A wrong answer breaks the promise, and so does no answer."""
+    """Adds the methods of farcull that promise. A wrong answer breaks the promise, and so does no answer."""
+    kept, pairs, colliding, meshes, questions = [], [], [], [], 0
     for name, of in by(promising(rows), "method"):
-        pairs, meshes = of[of.pairs], of[~of.pairs]
-        missed, asked, wrong, _ = answers(pairs, True, False)
-        lost, colliding, false, reported = answers(meshes, False, False)
-        answered = sum(without_answer(meshes[meshes.index == at]) == 0 for at in meshes.index)
-        many, silent = counted(answered, "mesh", "meshes"), without_answer(of)
+        silent = without_answer(of)
+        of_pairs, of_meshes = of[of.asks == "pairs"], of[of.asks == "meshes"]
+        of_questions = of[~of.asks.isin(["pairs", "meshes"])]
+        missed, asked, wrong, _ = answers(of_pairs, True, False)
+        lost, known, false, reported = answers(of_meshes, False, False)
+        many = counted(meshes_of(of_meshes), "mesh", "meshes")
+        off = totals(of_questions, "missed", "wrong")
         for bad, what in ((missed, f"of {grouped(asked)} pairs missed"),
                           (wrong, f"of {grouped(asked)} pairs reported wrongly"),
-                          (lost, f"of the {grouped(colliding)} colliding pairs of {many} missed"),
-                          (false, f"of the {grouped(reported)} pairs reported of {many} are apart")):
+                          (lost, f"of the {grouped(known)} colliding pairs of {many} missed"),
+                          (false, f"of the {grouped(reported)} pairs reported of {many} are apart"),
+                          (off, f"of {grouped(total(of_questions, 'answered'))} other questions answered wrongly")):
             if bad:
                 chapter.find_broken(f"{name}: {grouped(bad)} {what}, and it promises none.")
         if silent:
             chapter.find_broken(f"{name} has no answer to {counted(silent, 'question', 'questions')}.")
-        if asked + colliding and not missed + wrong + lost + false + silent:
-            what = [f"of {counted(asked, 'pair', 'pairs')}"] * bool(asked) + [
-                f"of the {counted(colliding, 'colliding pair', 'colliding pairs')} of {many}"] * bool(colliding)
-            chapter.find(f"{name} missed none and reported none wrongly {', and '.join(what)}.")
+        if not missed + wrong + lost + false + off + silent:
+            kept.append(name)
+            pairs, colliding, meshes = pairs + [asked], colliding + [known], meshes + [meshes_of(of_meshes)]
+            questions += total(of_questions, "answered")
+    if any(pairs) or any(colliding) or questions:
+        def most(counts, one, many):
+            return ("up to " if min(counts) < max(counts) else "") + counted(max(counts), one, many)
+        what = [f"of {most(pairs, 'pair', 'pairs')}"] * any(pairs) + [
+            f"of the {most(colliding, 'colliding pair', 'colliding pairs')} of {most(meshes, 'mesh', 'meshes')}"] * any(
+                colliding) + [f"of {counted(questions, 'other question', 'other questions')}"] * bool(questions)
+        chapter.find(f"{listed(kept)} missed none and reported none wrongly {listed(what)}.")
 
 
-def add_others(chapter, rows, pairs):
-    """Adds which libraries and tests are right by their own documentation; of the others those that err most and least."""
-    right, wrong, what = [], [], "pairs of triangles" if pairs else "meshes"
-    for name, of in by(rows[rows.library != "farcull"], "method"):
-        missed, asked, false, reported = answers(of, pairs, True)
-        words = of_all(missed + false, asked) if pairs else \
-            f"{of_all(missed, asked)} missed, {of_all(false, reported)} false"
-        if missed + false:
-            wrong.append(((missed + false) / (asked if pairs else asked + false), f"{name} ({words})"))
+def add_others(chapter, rows, asks):
+    """Adds which libraries and tests are right by their own documentation, and those that err most and least."""
+    right, wrong, what = [], [], "pairs of triangles" if asks == "pairs" else asks
+    for name, of in by(rows[(rows.library != "farcull") & (rows.asks == asks)], "method"):
+        bad, asked = faults_of(of, asks)
+        if bad:
+            wrong.append((bad / asked, f"{name} ({of_all(bad, asked)})"))
         elif asked:
             right.append(name)
-    if right:
-        chapter.find(f"Of {what}, these gave no wrong answer by their own documentation: {listed(right)}.")
+    parts = [f"no answer was wrong of {listed(right)}"] * bool(right)
     if wrong:
-        chapter.find(f"Of {what}, {of_all(len(wrong), len(wrong) + len(right))} libraries and tests gave wrong answers where "
-                     f"their documentation promises the answer: most often {max(wrong)[1]}, least often {min(wrong)[1]}.")
+        parts.insert(0, f"{of_all(len(wrong), len(wrong) + len(right))} libraries and tests gave wrong answers where their "
+                     f"documentation promises the answer, most often {max(wrong)[1]}, least often {min(wrong)[1]}")
+    if parts:
+        chapter.find(f"Of {what}, {'; '.join(parts)}.")
 
 
 # ---- the smallest pair of each kind of fault of each library, as a table and in the format of the suite
@@ -243,45 +325,98 @@ def examples_of(rows):
 
 def add_examples(chapter, rows):
     """rows: those about pairs of triangles, of contestants that are not ours. Adds nothing where they hold no example.
-    Raises ValueError where an example is no pair."""
+    Raises ValueError where an example is no pair. Returns the examples."""
     examples = examples_of(rows)
-    if not examples:
-        return
-    chapter.tables.append(Table(
-        "libraries-examples",
-        "The smallest pair of each kind of fault, of pairs of which the documentation promises the answer: how its "
-        "triangles meet, the corners of the first, then those of the second",
-        columns(["contestant", "fault", "family", "kind", "coordinates"], []),
-        [[one.contestant, one.fault, one.family, one.kind, one.words] for one in examples]))
-    chapter.files["libraries-examples.txt"] = (
-        "farcull-pairs 1 libraries-examples\n# Pairs at which libraries err, minimized: whose fault, which, and the "
-        "family that the pair was made from.\n" + "".join(
-            f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
-            for number, one in enumerate(examples)))
+    if examples:
+        add_file(chapter, Table(
+            "libraries-examples", "", columns(["contestant", "fault", "family", "kind", "coordinates"], []),
+            [[one.contestant, one.fault, one.family, one.kind, one.words] for one in examples]))
+        chapter.files["libraries-examples.txt"] = (
+            "farcull-pairs 1 libraries-examples\n# Pairs at which libraries err, minimized: whose fault, which, and the "
+            "family that the pair was made from.\n" + "".join(
+                f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
+                for number, one in enumerate(examples)))
+    return examples
+
+
+# ---- the page of cases: pairs in three dimensions, with what each contestant said
+
+def said_of(part, label):
+    """What a contestant said of one pair."""
+    if part.answered:
+        return "meets" if (label != "apart") != bool(part.missed + part.wrong) else "apart"
+    return next((name.replace("_", " ") for name in ("refused", "unanswered", "crashed", "hung", "no_memory")
+                 if getattr(part, name)), "not asked")
+
+
+def reported_cases(rows, folder):
+    """The cases of public trackers: the comments above each pair, its label and corners, and the answers."""
+    path, notes, out = f"{folder}/suite/pairs/reported.txt", {}, []
+    parts = parts_of(rows[rows.family == "pairs/reported"])
+    if not os.path.exists(path) or parts.empty:
+        return []
+    with open(path, encoding="utf-8") as file:
+        for line in file.read().split("\n")[1:]:
+            words = line.split()
+            if line.startswith("# "):
+                key, _, value = line[2:].partition(": ")
+                notes[key] = value
+            elif words:
+                label = "apart" if words[3] in ("apart", "neighbours-apart") else "meets"
+                of = parts[parts.parameter.astype(float) == float(words[1])]
+                out.append({**{key: notes.get(key, "") for key in ("source", "expected", "why")}, "kind": words[3],
+                            "exact": label, "corners": [float.fromhex(word) for word in words[4:]],
+                            "said": {part.contestant: said_of(part, label) for part in of.itertuples()}})
+                notes = {}
+    return out
+
+
+def add_cases(chapter, rows, examples, folder):
+    cases = reported_cases(rows, folder) + [
+        {"source": f"{one.contestant}, {one.family}", "expected": "", "kind": one.kind,
+         "why": "The smallest pair of this fault that the study found.",
+         "exact": "apart" if one.kind.endswith("apart") else "meets", "corners": list(one.corners.flatten()),
+         "said": {one.contestant: {"missed": "apart", "false": "meets", "death": "crashed"}[one.fault]}} for one in examples]
+    if cases:
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "cases.html"), encoding="utf-8") as file:
+            data = json.dumps(cases, separators=(",", ":")).replace("<", "\\u003c")
+            chapter.files["libraries-cases.html"] = file.read().replace("CASES", data)
+
+
+def add_file(chapter, table):
+    """A table that is too wide for the page."""
+    chapter.files[f"tables/{table.name}.csv"] = table_csv(table)
 
 
 def fill(chapter, study):
     rows = with_families(study.rows)
-    pairs, meshes = rows[rows.pairs], rows[~rows.pairs]
+    pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
     add_ours(chapter, rows)
     for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions
         if of.library.nunique() > 1:
             chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
-    add_others(chapter, pairs, True)
-    add_others(chapter, meshes, False)
+    for asks in ("pairs", "meshes"):
+        add_others(chapter, rows, asks)
     chapter.limits = [
         "The families are made to be hard. A rate here is no rate on the scenes of a user: the table says which "
         "questions a contestant gets wrong, not how often they come.",
-        "Where the documentation of a library does not say whether touching counts, it is measured first by the pairs "
-        "that cross or are apart. Where it does not take degenerate triangles, they are left out of that measure.",
+        "Where the documentation of a library does not say whether touching counts, only pairs that cross or are apart count. "
+        "Where it does not take degenerate triangles, they are left out.",
         "The time of a pair includes what the call needs, such as the making of a mesh of one triangle; a library made "
-        "for meshes looks slow on pairs."]
+        "for meshes looks slow on pairs.",
+        "How each was called, what its documentation says, and all rates by kind and family are in `tables/libraries-*.csv`. "
+        "`libraries-cases.html` shows pairs to turn in three dimensions, with what each contestant said."]
     add_gaps(chapter, study)
-    if len(pairs):
-        chapter.tables = [overview(pairs, True), kinds_table(pairs)]
-        add_examples(chapter, pairs[pairs.library != "farcull"])
-        chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
-    chapter.tables += [overview(meshes, False)] * bool(len(meshes))
     if len(rows):
-        chapter.tables.append(calls_table(rows))
-        chapter.files["tables/libraries-families.csv"] = table_csv(families_table(rows))
+        chapter.tables += [trust_table(rows), uses_table(rows)]
+        for table in (calls_table(rows), families_table(rows[rows.asks.isin(["pairs", "meshes"])])):
+            add_file(chapter, table)
+    if len(pairs):
+        for table in (overview(pairs, True), kinds_table(pairs)):
+            add_file(chapter, table)
+        chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
+        add_cases(chapter, pairs, add_examples(chapter, pairs[pairs.library != "farcull"]), study.folder)
+    if len(meshes):
+        add_file(chapter, overview(meshes, False))
+    if len(distances):
+        add_file(chapter, questions_table(distances))

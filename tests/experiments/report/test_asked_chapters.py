@@ -1,7 +1,12 @@
 """The chapters of proximity and libraries on rows that were made up."""
+import csv
+import importlib
+import io
+
 import pytest
 
-from made_up import chapter_of, figure, findings, row, table
+from made_up import chapter_of, figure, findings, row, study_of, table
+from frame import Chapter
 
 
 # ---- proximity
@@ -110,7 +115,8 @@ def of_mesh(ours=False, **more):
     colliding pairs, 5 of the missed and 20 of those apart."""
     bad = {"missed": 10, "wrong": 30, "own_missed": 5, "own_wrong": 20}
     return {"asked": 100, "answered": 100, "own_asked": 50, **({name: 0 for name in bad} if ours else bad),
-            "promises": ours, "library": "farcull" if ours else "x 1", "means": "crossing", **more}
+            "promises": ours, "library": "farcull" if ours else "x 1", "means": "crossing", "scores": f"0 mesh{' 0' * 16}|",
+            **more}
 
 
 def libraries(*asked_of):
@@ -121,9 +127,8 @@ def libraries(*asked_of):
 
 
 def cells(chapter, name):
-    """The cells of the first row by column, the last of equal names."""
-    found = next(table for table in chapter.tables if table.name == name)
-    return dict(zip((column for column, _ in found.columns), found.rows[0]))
+    """The cells of the first row of a file by column, the last of equal names."""
+    return dict(zip(*list(csv.reader(io.StringIO(chapter.files[f"tables/{name}.csv"])))[:2]))
 
 
 def test_rates_of_libraries_are_of_what_was_answered():
@@ -153,16 +158,17 @@ def test_false_alarms_of_meshes_are_a_part_of_what_was_reported():
             "colliding": "100", "reported": "120",       # 100 - 10 + 30
             "missed": "100,000", "false": "250,000",     # 30 of 120, and not of 100
             "missed, own": "100,000", "false, own": "307,692"}  # 5 of 50, 20 of 65
-    assert "theirs (5 of 50 missed, 20 of 65 false)" in findings(chapter)
-    assert "theirs (5 of 50 missed, 1,000 of 1,045 false)" in findings(libraries(("theirs", of_mesh(own_wrong=1000))))
+    # 5 missed and 20 false, of 50 that collide and 20 that do not.
+    assert "theirs (25 of 70)" in findings(chapter)
+    assert "theirs (1,005 of 1,050)" in findings(libraries(("theirs", of_mesh(own_wrong=1000))))
     # Without one colliding pair of which it promises the answer, it may still err.
-    assert "theirs (0 of 0 missed, 20 of 20 false)" in findings(libraries(("theirs", of_mesh(own_asked=0, own_missed=0))))
+    assert "theirs (20 of 20)" in findings(libraries(("theirs", of_mesh(own_asked=0, own_missed=0))))
 
 
 def test_pairs_and_pairs_of_meshes_are_not_added():
     ours = [("far", of_pairs(True)), ("far", of_mesh(True)), ("far", of_mesh(True))]
     said = findings(libraries(*ours))
-    assert "far missed none and reported none wrongly of 500 pairs, and of the 200 colliding pairs of 2 meshes." in said
+    assert "far missed none and reported none wrongly of 500 pairs and of the 200 colliding pairs of 2 meshes." in said
     assert "700" not in said
     broken = findings(libraries(*ours, ("far", of_mesh(True, missed=3, wrong=4))))
     assert "BROKEN: far: 3 of the 300 colliding pairs of 3 meshes missed, and it promises none." in broken
@@ -173,8 +179,8 @@ def test_contestants_are_sorted_into_those_that_err_or_do_not():
     said = findings(libraries(
         ("good", of_pairs()), ("bad", of_pairs(missed=5)), ("worse", of_pairs(missed=9, differing=3, twice=34)),
         ("dead", of_pairs(crashed=1, hung=1)), ("cullide", of_pairs(library="farcull", missed=7))))
-    for part in ("gave no wrong answer by their own documentation: good and dead.",
-                 "2 of 4 libraries and tests gave wrong", "most often worse (9 of 500), least often bad (5 of 500)."):
+    for part in ("no answer was wrong of good and dead.",
+                 "2 of 4 libraries and tests gave wrong", "most often worse (9 of 500), least often bad (5 of 500);"):
         assert part in said
     assert "more than one version" not in said
     assert "The rows of theirs are of more than one version: x 1 and x 2." in findings(
@@ -184,14 +190,46 @@ def test_contestants_are_sorted_into_those_that_err_or_do_not():
 def test_examples_are_a_table_and_a_file_of_the_suite():
     chapter = libraries(("theirs", of_pairs(missed=5, example_missed=PAIR)), ("others", of_pairs()),
                         ("cullide", of_pairs(library="farcull", missed=5, example_missed=PAIR)))
-    assert table(chapter, "libraries-examples") == [[
+    assert [*cells(chapter, "libraries-examples").values()] == [
         "theirs", "missed", "pairs/random", "crossing",
-        "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]]
+        "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]
+    assert '"exact":"meets"' in chapter.files["libraries-cases.html"]
     assert chapter.files["libraries-examples.txt"].splitlines()[2:] == ["# theirs missed pairs/random", PAIR]
     for wrong in ("0 0 - crossing 1 2 3", PAIR.replace("crossing", "guess"), PAIR + " 0x1p+0",
                   PAIR.replace("0x0.0p+0", "nan", 1)):
         with pytest.raises(ValueError, match="the example of liars is no pair"):
             libraries(("liars", of_pairs(example_missed=wrong)))
+
+
+def test_the_table_says_whom_to_trust_for_what():
+    chapter = chapter_of("libraries", [
+        row("small/pairs/random", "theirs", of_pairs(missed=5), 1.0), row("small/pairs/random", "far-pairs", of_pairs(True), 1.0),
+        row("small/distance/all", "theirs", {"asked": 9, "answered": 7, "wrong": 2, "refused": 2, "library": "x 1", "zero": 2}, 1.0)])
+    found = next(table for table in chapter.tables if table.name == "libraries-trust")
+    assert [name for name, _ in found.columns] == ["contestant", "library", "pairs", "distance", "ns a pair"]
+    assert [line[:4] for line in found.rows] == [["far-pairs", "farcull", "0 of 500", ""],
+                                                 ["theirs", "x 1", "5 of 500 + 500 none", "2 of 7 + 2 none"]]
+    assert cells(chapter, "libraries-distances")["zero"] == "2"
+
+
+def test_a_wrong_distance_of_ours_is_broken():
+    wrong = {"asked": 9, "answered": 9, "wrong": 1, "promises": True, "library": "farcull"}
+    said = findings(chapter_of("libraries", [row("small/distance/all", "exact", wrong, 1.0)]))
+    assert said.startswith("BROKEN: exact: 1 of 9 other questions answered wrongly")
+
+
+def test_the_page_of_cases_has_what_each_contestant_said(tmp_path):
+    (tmp_path / "suite/pairs").mkdir(parents=True)
+    (tmp_path / "suite/pairs/reported.txt").write_text(
+        "farcull-pairs 1 reported\n# source: a/b#1\n# expected: They meet.\n# why: A line.\n" + PAIR.replace("0 0", "0 7", 1) + "\n")
+    scores = f"7 crossing 1 1 1{' 0' * 12} 5|"
+    study = study_of("libraries", [row("small/pairs/reported", "theirs", of_pairs(missed=1, scores=scores), 1.0)])
+    study.folder = str(tmp_path)
+    chapter = Chapter("libraries", "title", "question?", "command")
+    importlib.import_module("chapters.libraries").fill(chapter, study)
+    page = chapter.files["libraries-cases.html"]
+    for part in '"source":"a/b#1"', '"exact":"meets"', '"said":{"theirs":"apart"}', "A line.":
+        assert part in page
 
 
 def test_libraries_are_rows_from_the_best_to_the_worst():

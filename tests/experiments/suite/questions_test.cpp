@@ -46,6 +46,25 @@ TEST(SuiteQuestions, AreMadeOfAMeshWithBothLabels) {
   EXPECT_EQ(labels_of(questions_of(two_cubes(1), 1), clash)["no"], 1);
 }
 
+// The pairs and questions at which libraries err (tests/cases).
+TEST(SuiteQuestions, OfCasesHaveTheLabelsThatBothOraclesFind) {
+  const std::string folder = std::string(FARCULL_TEST_DIR) + "/cases/";
+  const SuitePairs pairs = read_pairs(folder + "libraries.txt");
+  EXPECT_GE(pairs.pairs.size(), 15u);
+  for (const SuitePair& pair : pairs.pairs)
+    EXPECT_EQ(to_string(decide(pair, "an example")), to_string(pair.kind)) << "line " << pair.line;
+  SuiteQuestions questions = read_questions(folder + "questions.txt");
+  EXPECT_EQ(questions.questions.size(), 4u);
+  check_questions(questions, folder, "questions.txt");
+  // The twin: no label may be another one.
+  for (SuiteQuestion& question : questions.questions) {
+    const std::string right = question.label;
+    question.label = right == "yes" ? "no" : "0x0p+0,0x0p+0";
+    EXPECT_THROW(check_questions(questions, folder, "questions.txt"), Error) << question.id;
+    question.label = right;
+  }
+}
+
 TEST(SuiteQuestions, ADistanceIsBetweenTwoNeighbours) {
   const SuitePairs pairs = parse_pairs(lab::good_pairs(), "few");
   const SuiteQuestions made = questions_of(pairs);

@@ -1,0 +1,35 @@
+// The contestants that the study "libraries" knows. They are asked as anybody's program is, by
+// experiments/suite/ask.py (docs/ask.md); experiments/suite/study.py says what the study keeps.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace farcull {
+
+/// A contestant that the study knows, whether this build has it or not.
+struct KnownContestant {
+  std::string name = {};     // as its card says
+  std::string program = {};  // farcull_contestant_PROGRAM
+  std::string package = {};  // the package that it needs; empty: none
+  std::string answers = {};  // the questions that it is asked, such as "pair mesh"
+};
+
+/// The contestants in the order of tables, the same in every build.
+const std::vector<KnownContestant>& known_contestants();
+/// The contestant with this name. Throws Error if there is none.
+const KnownContestant& known_contestant(const std::string& name);
+/// Whether the contestant is asked questions of this kind.
+bool answers(const KnownContestant& contestant, const std::string& question);
+
+/// The command line of the contestant's program, which is in the folder that the variable
+/// FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program. Empty: it was
+/// not built.
+std::string command_of(const KnownContestant& contestant);
+
+/// What study.py prints with these options about the program that a command line starts. Throws
+/// Error with the reason if it fails.
+nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options);
+
+}  // namespace farcull

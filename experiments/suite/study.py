@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+"""What the study `libraries` keeps of one contestant and one part of a suite. ask.py, which lies beside this file, asks.
+
+    study.py --suite DIR --question KIND --family NAME COMMAND    prints an object of JSON, in the names of LibraryCounts
+                                                                  (experiments/studies/counts.h), and examples of faults
+    study.py --question card COMMAND                              prints the card
+
+A mesh NAME stands for all meshes NAME-1, NAME-2 .. of the suite, which one process is asked about. `self`, `inside`,
+`clash` and `distance` need no family: all of a suite are asked. If it cannot be done, the reason is printed, with status 2.
+"""
+import argparse
+import json
+import math
+import re
+import shlex
+import sys
+
+import ask
+
+DEATHS = ['crashed', 'hung', 'no memory']
+SCORE = ['asked', 'answered', 'missed', 'wrong', 'own asked', 'own missed', 'own wrong', 'refused', 'unanswered', 'crashed',
+         'hung', 'no memory', 'not asked', 'twice', 'differs']  # of a part of the rows, as the report reads it
+DISTANCES = ['zero', 'not zero', 'negative', 'off', 'points', 'points off']  # faults of distances and of their points
+ROUNDS = 4  # of a search for a simpler pair
+
+
+# ---- rows
+
+def listed_rows(card, listed, answers, differs):
+    """A row for each parameter and kind of label, in the order of the questions."""
+    rows = {}
+    for one, answer, again in zip(listed, answers, differs):
+        kind = one.label if one.question.kind == 'pair' else one.question.kind
+        row = rows.setdefault((one.parameter, kind), ask.Row())
+        row.take(answer, again)
+        row['timed'] += answer.outcome == 'answered'
+        if answer.outcome == 'answered' and one.label != '?':
+            ask.score(card, one, answer.value, row)
+        row['answered'] -= answer.outcome == 'answered' and one.label == '?'
+    return rows
+
+
+def of_lists(command, card, suite, kind, family, options):
+    """The rows of that list of pairs, or of all lists of questions of that kind; and the examples of faults of pairs."""
+    rows, more = {}, {}
+    for _, _, listed in ask.lists_of(card, suite, [kind], family if kind == 'pair' else None):
+        answers, differs = ask.ask_twice(command, [one.question for one in listed], options)
+        for key, row in listed_rows(card, listed, answers, differs).items():
+            rows.setdefault(key, ask.Row()).add(row)
+        if kind == 'pair':
+            more = examples(command, card, listed, answers, options)
+    for row in rows.values() if kind == 'distance' else []:
+        row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
+        row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # points are no part of the answer of others
+    return rows, more
+
+
+def of_meshes(command, card, suite, family, options):
+    """A row for each mesh of the family. What a mesh counts are its colliding pairs."""
+    rows = {}
+    names = sorted((name for of in suite.meshes().values() for name in of if
+                    re.sub('-[0-9]+$', '', name.rpartition('/')[2]) == family),
+                   key=lambda name: [int(n) for n in re.findall('[0-9]+$', name)])
+    for name, row in zip(names, ask.ask_family(command, card, suite, names, options)):
+        row['asked'] = row['answered'] = row['colliding']
+        rows[suite.properties(name)['parameter'], 'mesh', name] = row  # frames may have the same parameter
+    return rows
+
+
+def scores_text(rows):
+    """The rows as one line: PARAMETER KIND COUNTS NS|REASON, with `;` between them."""
+    return ';'.join(' '.join([parameter, kind, *(str(row[name]) for name in SCORE), repr(row['ns'])]) + '|' +
+                    re.sub('[;|\\s]+', ' ', row.reason) for (parameter, kind, *_), row in rows.items())
+
+
+# ---- the smallest pair of each kind of fault
+
+def decimal(x):
+    return re.sub('[.]0$|(?<=[0-9])[.]0(?=e)', '', repr(x + 0.0))
+
+
+def cost(numbers):
+    return sum(len(decimal(x)) for x in numbers)
+
+
+def to_bits(x, bits):
+    fraction, exponent = math.frexp(x)
+    return math.ldexp(round(math.ldexp(fraction, bits)), exponent - bits)
+
+
+def to_digits(x, digits):
+    return float(f'{x:.{digits - 1}e}') if digits else 0.0
+
+
+def simpler(numbers):
+    """Pairs with fewer characters: rounded to bits, digits and whole numbers, moved to a corner, with one coordinate rounded."""
+    most = math.frexp(max(map(abs, numbers)))[1]
+    changes = [lambda x, n=n: to_bits(x, n) for n in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)]
+    changes += [lambda x, n=n: to_digits(x, n) for n in range(1, 17)]
+    changes += [lambda x, n=n: float(round(math.ldexp(x, n - most))) for n in range(1, 31)]
+    changes += [lambda x: math.ldexp(x, -most)]
+    found = [[change(x) for x in numbers] for change in changes]
+    found += [[x - numbers[3 * corner + i % 3] for i, x in enumerate(numbers)] for corner in range(6)]
+    found += [[*numbers[:i], to_digits(numbers[i], n), *numbers[i + 1:]] for i in range(18) for n in (0, 1, 2, 3, 5, 8)]
+    found = {tuple(x + 0.0 for x in one) for one in found if all(map(math.isfinite, one))}
+    return sorted((one for one in found if cost(one) < cost(numbers)), key=lambda one: (cost(one), one))
+
+
+def meets(a, b):
+    """Whether two closed triangles have a point in common, exactly."""
+    for s, t in (a, b), (b, a):
+        s, t = ask.whole(s, t)
+        n = ask.normal(t)
+        side = [ask.dot(n, ask.minus(p, t[0])) for p in s]
+        if min(side) > 0 or max(side) < 0:
+            return False
+    return ask.crosses(a, b) or ask.within(a, b, 0)
+
+
+def is_like(card, label, numbers):
+    """Whether a simpler pair meets if the first one does, and the documentation promises the answer about it too."""
+    a, b = ask.corners_of(numbers), ask.corners_of(numbers[9:])
+    return meets(a, b) == label and ask.promised(card, a, b, label)
+
+
+def simplest(command, card, numbers, label, fault, options):
+    """A pair with the same fault and fewer characters, which is the only one that a process is asked about; None if the
+    fault depends on what was asked before. Each round asks about all simpler pairs in one process."""
+    def err(pairs):
+        questions = [ask.Question('pair', ['-', *map(repr, pair)]) for pair in pairs]
+        return [(answer.outcome, answer.value) == fault for answer in ask.ask(command, questions, options)[0]]
+
+    found, deadly = [numbers], fault[0] in DEATHS
+    for _ in range(ROUNDS):
+        tried = simpler(found[-1])[:4 if deadly else None]  # each death costs a process, a hang its whole limit
+        better = next((pair for pair, errs in zip(tried, err(tried)) if errs and is_like(card, label, pair)), None)
+        if not better:
+            break
+        found.append(better)
+    return next((pair for pair in (found[-1], numbers) if all(err([pair])[0] for _ in range(2))), None)
+
+
+def examples(command, card, listed, answers, options):
+    """For each fault the pair with the fewest characters at which the contestant has it, of those of which its
+    documentation promises the answer, made simpler. Triangles that share corners are left out."""
+    first = {}
+    for one, answer in sorted(zip(listed, answers), key=lambda both: cost(both[0].numbers)):
+        right = one.label not in ('apart', 'neighbours-apart')
+        name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
+        if (name in first or one.label == '?' or one.question.fields[0] != '-' or (answer.outcome, answer.value) in (
+                ('answered', right), ('refused', None), ('unanswered', None), ('not asked', None))):
+            continue
+        if ask.promised(card, ask.corners_of(one.numbers), ask.corners_of(one.numbers[9:]), right, one.label):
+            first[name] = one, simplest(command, card, one.numbers, right, (answer.outcome, answer.value), options)
+    return {name: {'parameter': float(one.parameter), 'numbers': list(pair)} for name, (one, pair) in first.items() if pair}
+
+
+# ---- the command
+
+def main(arguments):
+    parser = argparse.ArgumentParser()
+    parser.add_argument('command', metavar='COMMAND')
+    parser.add_argument('--suite', metavar='DIR')
+    parser.add_argument('--question', required=True, choices=['card', *ask.KINDS])
+    parser.add_argument('--family', metavar='NAME')
+    parser.add_argument('--limit', type=float, default=5)
+    parser.add_argument('--memory', type=int, default=4096)
+    parser.add_argument('--deaths', type=int, default=20)
+    options = parser.parse_args(arguments)
+    command = shlex.split(options.command)
+    try:
+        card = ask.card_of(command, ask.ask(command, [ask.Question('card', [])], options)[0][0])
+        if options.question == 'card':
+            out = card
+        else:
+            suite, more = ask.Suite(options.suite), {}
+            if options.question == 'mesh':
+                rows = of_meshes(command, card, suite, options.family, options)
+            else:
+                rows, more = of_lists(command, card, suite, options.question, options.family, options)
+            total = ask.Row()
+            for row in rows.values():
+                total.add(row)
+            names = [*SCORE, 'timed', *(DISTANCES if options.question == 'distance' else [])]
+            out = {'counts': {name.replace(' ', '_').replace('differs', 'differing'): total[name] for name in names},
+                   'ns': total['ns'], 'worst': total.worst, 'reason': total.reason, 'scores': scores_text(rows),
+                   'card': card, 'examples': more}
+    except (ask.Wrong, ValueError, OSError) as error:
+        print(error)
+        return 2
+    print(json.dumps(out))
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,36 @@
+// The Python that runs the parts of the program that are written in it.
+#pragma once
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+
+namespace farcull {
+
+/// FARCULL_PYTHON, else Debian's Python, which sees the packages of Debian, else the one in PATH.
+inline std::string python() {
+  const char* const named = std::getenv("FARCULL_PYTHON");
+  constexpr const char* kUsual = "/usr/bin/python3";
+  return named != nullptr && *named != '\0' ? named
+         : ::access(kUsual, X_OK) == 0      ? kUsual
+                                            : "python3";
+}
+
+/// Replaces this process by Python with these arguments. Throws Error with `remedy` if there is
+/// none.
+[[noreturn]] inline void become_python(std::vector<std::string> words, const std::string& remedy) {
+  words.insert(words.begin(), python());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execvp(arguments.front(), arguments.data());
+  throw Error(words.front(), std::string("cannot be run: ") + std::strerror(errno), remedy);
+}
+
+}  // namespace farcull
