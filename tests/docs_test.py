@@ -168,6 +168,9 @@ def check_kit():
     recipe = read('docs/Containerfile')
     yield from (f'docs/Containerfile: {path} is not there' for path in re.findall(r'(?:experiments|docs)/[\w./-]+', recipe)
                 if not os.path.exists(path))
+    setup = read('experiments/setup.sh')
+    yield from (f'docs/Containerfile: setup.sh has no {name}' for name in re.findall(r'\bfarcull_\w+', recipe)
+                if f'\n{name}() {{' not in setup)
     yield from (f'docs/Containerfile: has no {word}' for word in ('FROM', 'RUN', 'ENTRYPOINT')
                 if not re.search(f'^{word} ', recipe, re.MULTILINE))
     for page in 'docs/claims.md', 'docs/results/README.md', 'docs/paper.md', 'docs/dataset.md':
@@ -228,6 +231,7 @@ BROKEN = [
     ('a page that is gone, in codemeta', 'docs/codemeta.json', 'docs/building.md', 'docs/build.md', 'buildInstructions names'),
     ('a script that is gone, in the recipe', 'docs/Containerfile', 'experiments/meshes.sh', 'experiments/mesh.sh',
      'mesh.sh is not there'),
+    ('a function that is gone, in the recipe', 'docs/Containerfile', 'farcull_setup', 'farcull_packages', 'setup.sh has no farcull_p'),
     ('a script that is gone, in a claim', 'docs/claims.md', 'tests/mutants.sh', 'tests/mutant.sh', 'mutant.sh is not there'),
     ('a claim without minutes', 'docs/claims.md', r'\| 110 \|', '| hours |', 'lacks a cell: The tests notice faults'),
     ('a figure that no chapter draws', 'docs/claims.md', 'figure error-time,', 'figure errors,', 'no chapter has errors'),

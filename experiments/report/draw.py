@@ -265,7 +265,7 @@ class Drawer:
         # Emphasised series first: they are thick, so a series with the same values stays visible above.
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
-            ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center", va="center", color="#666666")
+            ax.text(0.5, 0.5, "no valid measurement", transform=ax.transAxes, ha="center", va="center", color="#666666")
         lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 

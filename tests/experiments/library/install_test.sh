@@ -78,6 +78,9 @@ if command -v dpkg-shlibdeps >/dev/null; then
   for package in libgmp-dev libmpfr-dev libhwy-dev pkg-config 'libc6 '; do
     [[ $depends == *"$package"* ]] || fail "the package does not depend on $package: $depends"
   done
+  # apt installs what is recommended too: the Python of reports would bring 250 packages and 1.6 GB.
+  recommends=$(dpkg-deb -f "${deb[0]}" Recommends)
+  [[ $recommends != *python3* ]] || fail "the package recommends $recommends"
   [[ -s $work/tree/usr/share/doc/farcull/copyright ]] || fail 'the package has no copyright file'
 fi
 echo "install_test: the example was built by CMake and by pkg-config"
