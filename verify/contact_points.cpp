@@ -1,6 +1,6 @@
 // Computes the points that two triangles share, rounded to the nearest doubles. Numbers with about
 // 106 bits and bounds of their errors decide most roundings (verify/wide.h); integers decide the
-// rest. Which points these are is known from signs of determinants (verify/contact.cpp).
+// rest. Which points these are is known from signs of determinants (verify/contact_meeting.cpp).
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -3,17 +3,13 @@
 // point is constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h; CGAL
 // is used only for signs of determinants of input points, which Epick decides exactly
 // (verify/exact.cpp says why).
-#include "verify/contact.h"
+#include "verify/contact_meeting.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "core/base/parallel.h"
-#include "verify/contact_meeting.h"
 #include "verify/filter_scalars.h"
 
 namespace farcull {
@@ -217,35 +213,6 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
   out.places[1] = end == 0 ? either(v, s) : end > 0 ? s : v;
   out.count = 2;
   return out;
-}
-
-bool penetrate(const Corners& a, const Corners& b) {
-  // Relative interiors of triangles in different planes meet iff some point is on no edge.
-  return contact_kind(a, b) == ContactKind::crossing;
-}
-
-ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
-                             unsigned threads) {
-  for (const TrianglePair& pair : pairs) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
-      throw std::logic_error("count_contacts: a pair names a triangle that the scene lacks");
-    }
-    if (pair.a == pair.b) throw std::logic_error("count_contacts: a pair of one triangle");
-  }
-  constexpr std::size_t kLeast = 1024;  // pairs per thread, enough to pay for it
-  const std::size_t chunks = chunks_for(pairs.size(), kLeast, std::max(threads, 1u));
-  std::vector<std::uint64_t> penetrating(chunks, 0);
-  for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::uint64_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      count += penetrate(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
-    }
-    penetrating[chunk] = count;
-  });
-  ContactCounts counts;
-  for (const std::uint64_t count : penetrating) counts.penetrating += count;
-  counts.touching = pairs.size() - counts.penetrating;
-  return counts;
 }
 
 }  // namespace farcull
