@@ -33,7 +33,7 @@ $ cp parts/a.obj cad/left/Gehäuse.OBJ
 $ cp parts/b.obj cad/right/Gehäuse.obj
 $ cp parts/c.obj "cad/right/100% c;3.obj"
 cad/left/bolt.step << ISO-10303-21;
-bad a part in a format that is not read | bolt.step: .*STEP | clash cad
+bad a part in a format that is not read | cad.left.bolt.step: is STEP | clash cad
 $ cp parts/d.obj cad/right/bolt.obj
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 """, clearance=['-1', 'nan', 'inf', 'x', ''], word=['clear', 'clashes'])
