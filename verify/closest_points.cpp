@@ -13,6 +13,7 @@
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
 #include "verify/planes_between.h"
+#include "verify/scaled.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -65,7 +66,7 @@ using closest::find;
 using closest::Found;
 using Integer = mpz_class;
 using Vector = closest::Vector<Integer>;
-using Corners = closest::Corners<Integer>;
+using Corners = Scaled::Corners;
 
 constexpr unsigned kAll = 7;
 
@@ -76,55 +77,6 @@ constexpr std::array<Feature, 7> kFeatures = {{{FeatureKind::vertex, 0},
                                                {FeatureKind::edge, 1},
                                                {FeatureKind::edge, 2},
                                                {FeatureKind::face, 0}}};
-
-/// The exponent of the lowest bit of x that is 1. Precondition: x is not 0.
-int lowest_bit(double x) {
-  int exponent = 0;
-  const auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
-  return exponent - 53 + __builtin_ctzll(static_cast<std::uint64_t>(digits));
-}
-
-/// Two triangles as integers, times 2^exponent.
-struct Scaled {
-  Corners a, b;
-  int exponent = 0;
-
-  Scaled(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
-    int least = 2000;
-    double most = 0;
-    for (const auto* corners : {&s, &t}) {
-      for (const Vec3& p : *corners) {
-        for (const double x : p) {
-          if (x != 0) least = std::min(least, lowest_bit(x));
-          most = std::max(most, std::abs(x));
-        }
-      }
-    }
-    if (most == 0) least = 0;
-    exponent = least;
-    const bool in_doubles = std::isfinite(std::ldexp(most, -least));
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        a[i][k] = integer(s[i][k], in_doubles);
-        b[i][k] = integer(t[i][k], in_doubles);
-      }
-    }
-  }
-
- private:
-  Integer integer(double x, bool in_doubles) const {
-    if (in_doubles) return Integer(std::ldexp(x, -exponent));
-    int of_x = 0;
-    Integer out(std::ldexp(std::frexp(x, &of_x), 53));
-    const int up = of_x - 53 - exponent;
-    if (up >= 0) {
-      out <<= static_cast<mp_bitcnt_t>(up);
-    } else {
-      out >>= static_cast<mp_bitcnt_t>(-up);  // zeros alone are lost
-    }
-    return out;
-  }
-};
 
 /// An answer not yet rounded.
 struct Answer {
@@ -314,19 +266,6 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
 }
 
 namespace {
-
-/// x times 2^-least, which is an integer.
-Integer integer_of(double x, int least) {
-  int exponent = 0;
-  Integer out(std::ldexp(std::frexp(x, &exponent), 53));
-  const int up = exponent - 53 - least;
-  if (up >= 0) {
-    out <<= static_cast<mp_bitcnt_t>(up);
-  } else {
-    out >>= static_cast<mp_bitcnt_t>(-up);  // zeros alone are lost
-  }
-  return out;
-}
 
 /// Whether m times 2^exponent is a double.
 bool is_double(const Integer& m, long exponent) {

@@ -87,16 +87,11 @@ struct ContactShape {
   bool operator==(const ContactShape&) const = default;
 };
 
-/// The exact kind, by signs of determinants alone; empty if a triangle is a segment or a point, or
-/// may be one by rounding. Symmetric; the order of corners does not matter.
-std::optional<ContactKind> kind_by_signs(const std::array<Vec3, 3>& a,
-                                         const std::array<Vec3, 3>& b);
-
-/// The exact kind: that of kind_by_signs(), or else of contact_shape().
+/// The exact kind. Symmetric; the order of corners does not matter.
 ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The exact kind and common points (only `ends` are rounded), in integers alone. Symmetric; the
-/// order of corners does not matter.
+/// The exact kind and common points; only `ends` are rounded. Symmetric; the order of corners does
+/// not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The corners of the common polygon in turn, each coordinate rounded once to the nearest double;

@@ -1,4 +1,4 @@
-// The predicates about two triangles by CGAL. Only this and contact.cpp include CGAL, which
+// The predicates about two triangles by CGAL. Only this and contact_meeting.cpp include CGAL, which
 // compiles slowly; both include its kernel alone, which is under the LGPL.
 //
 // Epick decides exactly here, for these reasons, read from the headers of CGAL 5.5.1 (the tests

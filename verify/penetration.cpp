@@ -323,15 +323,21 @@ double depth_in(const Solid& solid, const Vec3& p) {
   bool odd = false;
   for (const Corners& t : solid.triangles) {
     squared = std::min(squared, squared_to(t, p));
-    // The ray along the first axis.
-    const auto side = [&](int i) {
+    // The ray along the first axis. One that meets an edge is moved a little along y, and by far
+    // less along z: the middle of a box often has the diagonals of its faces before it.
+    std::array<double, 3> side{};
+    int left = 0, right = 0;
+    for (int i = 0; i < 3; ++i) {
       const Vec3 u = t[i] - p, v = t[(i + 1) % 3] - p;
-      return u.y() * v.z() - u.z() * v.y();
-    };
-    const double s = side(0), q = side(1), r = side(2);
-    if (!((s > 0 && q > 0 && r > 0) || (s < 0 && q < 0 && r < 0))) continue;
-    if (q * (t[0].x() - p.x()) / s + r * (t[1].x() - p.x()) / s + (t[2].x() - p.x()) > 0)
-      odd = !odd;
+      side[i] = u.y() * v.z() - u.z() * v.y();
+      const double moved = side[i] != 0 ? side[i] : u.z() != v.z() ? u.z() - v.z() : v.y() - u.y();
+      left += moved > 0;
+      right += moved < 0;
+    }
+    if (left != 3 && right != 3) continue;
+    const double height =
+        side[1] * (t[0].x() - p.x()) + side[2] * (t[1].x() - p.x()) + side[0] * (t[2].x() - p.x());
+    if (left == 3 ? height > 0 : height < 0) odd = !odd;
   }
   return (odd ? 1 : -1) * std::sqrt(squared);
 }

@@ -15,6 +15,7 @@
 #include "experiments/picture/clash_page.h"
 #include "experiments/record/clash.h"
 #include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
@@ -39,11 +40,35 @@ constexpr const char* kExamples =
     "  touch      they meet, and it is proved that they do not overlap\n"
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
+    "All coordinates are taken as the files have them, so all parts have to be in one unit.\n"
     "depth: bounds of the shortest way by which one part has to move so that closed parts no\n"
     "longer overlap; the true one lies between. curve: length of the curve in which the\n"
     "surfaces cross. docs/clash.md has the columns and the proofs.\n\n"
     "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
     "not examined, since a part has no triangles. 2: the input or an option is wrong.";
+
+constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
+
+// Reads the parts. A mesh without triangles becomes a part without triangles, behind the others.
+Scene read_parts(SceneArguments files) {
+  std::vector<std::string> empty;
+  for (;;) {
+    try {
+      Scene scene = read_scene(files);
+      const auto end = static_cast<std::uint32_t>(scene.triangles.size());
+      for (const std::string& file : empty)
+        scene.objects.push_back(
+            {.name = clean_name(file), .first_triangle = end, .triangle_count = 0});
+      return scene;
+    } catch (const Error& error) {
+      const auto at = std::ranges::find(files.names, error.where);
+      if (error.reason != kNoTriangles || at == files.names.end() || files.names.size() < 2) throw;
+      empty.push_back(*at);
+      files.names.erase(at);
+      take_reading_notes();  // the next attempt repeats them
+    }
+  }
+}
 
 class ClashCommand {
  public:
@@ -62,7 +87,8 @@ class ClashCommand {
 CLI::App* ClashCommand::add_to(CLI::App& app) {
   return add_command(
       app, "clash", "which parts clash, touch or are too near, one row for each pair",
-      scene_rows(scene_, "PARTS", "a folder of mesh files; or " + std::string(kSceneHelp)) +
+      scene_rows(scene_, "PARTS",
+                 "a folder of mesh files, with the folders in it; or\n" + std::string(kSceneHelp)) +
           Rows{
               {"--clearance", &clearance_, "D",
                "parts at this distance or less are near, in world\nunits; default 0"},
@@ -81,7 +107,8 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
       kExamples);
 }
 
-// The arguments, with the mesh files of a folder in place of the folder.
+// The arguments, with the mesh files of a folder and of the folders in it in place of the folder. A
+// file in a format that is not read is an error, unless the same part is there as a mesh.
 SceneArguments ClashCommand::parts() const {
   SceneArguments out = scene_;
   out.names.clear();
@@ -90,13 +117,21 @@ SceneArguments ClashCommand::parts() const {
       out.names.push_back(part);
       continue;
     }
-    std::vector<std::string> files;
-    for (const auto& entry : fs::directory_iterator(part)) {
-      if (has_mesh_extension(entry.path().string())) files.push_back(entry.path().string());
+    std::vector<std::string> files, others;
+    for (const auto& entry : fs::recursive_directory_iterator(part)) {
+      const std::string name = entry.path().string();
+      if (entry.is_regular_file()) (has_mesh_extension(name) ? files : others).push_back(name);
     }
     if (files.empty())
       throw Error(part, "the folder has no mesh files", "name a folder with meshes, or the files");
     std::ranges::sort(files);
+    for (const std::string& other : others) {
+      const auto same = [&](const std::string& file) {
+        return mesh_stem(file) == mesh_stem(other);
+      };
+      const std::optional<Error> foreign = foreign_name(other);
+      if (foreign && std::ranges::none_of(files, same)) throw *foreign;
+    }
     out.names.insert(out.names.end(), files.begin(), files.end());
   }
   return out;
@@ -130,7 +165,7 @@ int ClashCommand::run() const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  Scene scene = read_scene(files);
+  Scene scene = read_parts(files);
   for (Object& object : scene.objects) object.self = false;
   options.ignored = ignored_objects(scene, ignored_names(ignore_, ignore_file_));
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());

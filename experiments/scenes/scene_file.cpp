@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -403,6 +404,20 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
+// The name of each file without its extension; with its folder, where another file is called alike.
+std::vector<std::string> object_names(const std::vector<std::string>& paths) {
+  std::map<std::string, std::set<std::string>> called;  // the files with a name
+  for (const std::string& path : paths) called[mesh_stem(path)].insert(path);
+  std::vector<std::string> out;
+  for (const std::string& path : paths) {
+    const std::string stem = mesh_stem(path);
+    const std::string folder = std::filesystem::path(path).parent_path().filename().string();
+    const bool alone = called[stem].size() == 1 || folder.empty();
+    out.push_back(path == "-" ? "stdin" : alone ? stem : folder + "/" + stem);
+  }
+  return out;
+}
+
 // A scene of mesh files. Checks every extension first, so that a bad last argument is refused
 // before minutes of reading. `added` is called after each file.
 SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes,
@@ -414,15 +429,13 @@ SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& m
     }
     if (path != "-") mesh_format(path);
   }
-  const auto stem = [](const std::string& path) {
-    return path == "-" ? std::string("stdin") : mesh_stem(path);
-  };
-  std::string name = stem(paths[0]);
-  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
+  const std::vector<std::string> names = object_names(paths);
+  std::string name = names[0];
+  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + names[i];
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
   SceneBuilder builder(clean_name(name + meshes.note()), paths[0]);
-  for (const std::string& path : paths) {
-    builder.add(meshes.get(path), stem(path));
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    builder.add(meshes.get(paths[i]), names[i]);
     if (added) added(builder);
   }
   return builder;

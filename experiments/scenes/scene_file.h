@@ -76,7 +76,7 @@ struct SceneArguments {
 
 /// The scene that the arguments name. Their names are one of
 /// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz), each an object named by its
-///   file without extension;
+///   file without extension, and with its folder if another file is called alike;
 /// - one built-in scene, perhaps with suffixes (builtin/scenes.h);
 /// - one scene file, JSON:
 ///     {"name": "two-bunnies", "objects": [

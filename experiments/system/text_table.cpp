@@ -10,16 +10,26 @@
 
 namespace farcull {
 
+namespace {
+
+// The number of characters of a text in UTF-8: each has one byte that does not go on with another.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](unsigned char c) { return (c & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
 std::string Table::text() const {
   std::vector<std::size_t> widths(alignment_.size(), 0);
   for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
   }
   std::string out;
   for (const auto& row : rows_) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(widths[i] - row[i].size(), ' ');
+      const std::string pad(widths[i] - width_of(row[i]), ' ');
       if (widths[i] == 0) continue;
       if (!line.empty()) line += "  ";
       line += alignment_[i] == 'l' ? row[i] + pad : pad + row[i];

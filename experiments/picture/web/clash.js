@@ -5,7 +5,7 @@ const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
 const digits = new Intl.NumberFormat("en");
 const MOST_LISTED = 1000;
-const state = { row: -1, search: "", ghosts: true, theme: "" };
+const state = { row: -1, search: "", ghosts: true, through: false, theme: "" };
 let view = null, curves = null, ends = null;
 
 const nameOf = (object) => about.frames[0].objects[object][0];
@@ -28,8 +28,15 @@ function factsOf(row) {
   }
   if (row.curve > 0) out.push(`curve ${length(row.curve)}`);
   if (row.distance !== null) out.push(`distance ${length(row.distance)}`);
-  if (row.what) out.push(row.what);
+  if (row.what) out.push(row.verdict === "clash" || row.verdict === "touch" ? `${row.what} (pairs of triangles)` : row.what);
   return out.join("; ");
+}
+
+// "9 clash, 1 near", without ignored pairs.
+function countsOf(rows) {
+  const counts = new Map();
+  for (const row of rows.filter((r) => !r.ignored)) counts.set(row.verdict, (counts.get(row.verdict) ?? 0) + 1);
+  return [...counts].map(([verdict, n]) => `${digits.format(n)} ${verdict}`).join(", ");
 }
 
 const textOf = (row) => `${row.verdict} ${nameOf(row.a)} ${nameOf(row.b)}`.toLowerCase();
@@ -61,7 +68,7 @@ function showLegend() {
     return item;
   };
   const css = (c) => `rgb(${c.join(", ")})`;
-  const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
+  const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown"), line(css(about.colours.objects[0]), "the other parts")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
   if (row && row.curve > 0) items.push(line("#dc005a", "the surfaces cross"));
   byId("legend").replaceChildren(...items);
   byId("legend").hidden = items.length === 0;
@@ -72,11 +79,12 @@ function showLegend() {
 const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object].getSize(new THREE.Vector3()).length());
 
 // Without a chosen pair the parts that clash with another one, or lie in one, have the first colour.
-// The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen.
+// The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen;
+// of others the larger one is, if the reader wants to see through it.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
-  const inside = row && (row.verdict === "contained" || row.verdict === "unknown");
+  const inside = row && (state.through || row.verdict === "contained" || row.verdict === "unknown");
   const bad = new Set(about.rows.filter((r) => !r.ignored && r.verdict !== "touch" && r.verdict !== "near").flatMap((r) => [r.a, r.b]));
   frame.objects.forEach(([, first, count], o) => {
     const solid = row === undefined || o === row.a || o === row.b;
@@ -207,6 +215,7 @@ function connect() {
   const on = (id, event, act) => byId(id).addEventListener(event, act);
   on("search", "input", (e) => { state.search = e.target.value.trim().toLowerCase(); showRows(); });
   on("ghosts", "change", (e) => { state.ghosts = e.target.checked; showParts(); });
+  on("through", "change", (e) => { state.through = e.target.checked; showParts(); });
   on("explode", "input", (e) => {
     byId("explode-value").textContent = `${e.target.value} %`;
     if (!view) return;
@@ -224,8 +233,8 @@ function connect() {
 async function start() {
   document.title = `${about.title}: clashes by farcull`;
   byId("title").textContent = about.title;
-  byId("headline").textContent = `${digits.format(about.examined)} of ${digits.format(about.asked)} pairs of parts examined; ` +
-    (about.clean ? "clean" : `${digits.format(about.rows.length)} not clear`);
+  byId("headline").textContent = `${digits.format(about.examined)} of ${digits.format(about.asked)} pairs of parts examined` +
+    ["", about.clean ? "clean" : countsOf(about.rows)].filter((part, k) => k === 0 || part).join("; ");
   byId("about").textContent = `farcull ${about.commit.slice(0, 10)}.`;
   byId("licence-text").textContent = byId("three-licence").textContent.trim();
   showRows();

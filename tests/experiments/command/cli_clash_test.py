@@ -26,7 +26,14 @@ bad a folder without meshes | nothing: the folder has no mesh files | clash noth
 bad clearance '{clearance}' | --clearance: | clash parts --clearance {clearance}
 bad fail on {word} | --fail-on: '{word}' is no verdict; give none, or some of | clash parts --fail-on {word}
 bad ignored | --ignore: | clash parts --ignore a:none
-bad a part without triangles | empty.off: the mesh has no triangles | clash parts/a.obj empty.off
+bad only parts without triangles | empty.off: the mesh has no triangles | clash empty.off
+$ mkdir -p cad/left cad/right
+$ cp parts/a.obj cad/left/Gehäuse.OBJ
+$ cp parts/b.obj cad/right/Gehäuse.obj
+$ cp parts/c.obj "cad/right/100% c;3.obj"
+cad/left/bolt.step << ISO-10303-21;
+bad a part in a format that is not read | cad.left.bolt.step: is STEP | clash cad
+$ cp parts/d.obj cad/right/bolt.obj
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 """, clearance=['-1', 'nan', 'inf', 'x', ''], word=['clear', 'clashes'])
 
@@ -47,6 +54,9 @@ list.txt << # allowed; a:b
 0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
 1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
+1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]
+1 columns fit letters of two bytes | clash cad --touching report | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
+1 a part without triangles | clash parts/a.obj empty.off parts/c.obj | ^examined   1 of 3 pairs of parts$ | ^not examined: empty.off has no triangles$ | ! clean
 1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["least"] <= 1 <= d["most"] < 1.0001, d'
 """)

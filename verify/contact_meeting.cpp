@@ -3,16 +3,13 @@
 // point is constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h; CGAL
 // is used only for signs of determinants of input points, which Epick decides exactly
 // (verify/exact.cpp says why).
-#include "verify/contact.h"
+#include "verify/contact_meeting.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "core/base/parallel.h"
 #include "verify/filter_scalars.h"
 
 namespace farcull {
@@ -20,20 +17,6 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-/// The axis along which the normal of the triangle is surely not 0, so that it is no segment; empty
-/// if doubles leave a doubt.
-std::optional<int> sure_axis(const Corners& t) {
-  const filters::Normal normal =
-      filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
-  const auto sure = [](double value, double terms) {
-    return std::abs(value) > FilterBounds::side * terms + FilterBounds::absolute;
-  };
-  if (sure(normal.n.x, normal.m.x)) return 0;
-  if (sure(normal.n.y, normal.m.y)) return 1;
-  if (sure(normal.n.z, normal.m.z)) return 2;
-  return std::nullopt;
-}
 
 /// Exact signs of determinants of the corners of two triangles. Numbers 0 to 2 are the corners of
 /// a, 3 to 5 those of b. Doubles decide most of them. A determinant of which each term has a factor
@@ -74,6 +57,15 @@ class Signs {
     return CGAL::orientation(point(p, u, v), point(q, u, v), point(r, u, v));
   }
 
+  /// The first axis along which the normal of the triangle whose first corner is `first` is not 0;
+  /// empty if the triangle is a segment or a point.
+  std::optional<int> axis_of(int first) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (turn(axis, first, first + 1, first + 2) != 0) return axis;
+    }
+    return std::nullopt;
+  }
+
   /// Whether corner k lies in the closed triangle whose first corner is `first`. Precondition: it
   /// lies in its plane, whose normal is not 0 along the axis.
   bool holds(int first, int axis, int k) const {
@@ -95,9 +87,10 @@ class Signs {
   const Corners& b_;
 };
 
-/// The kind of two triangles in one plane. Each corner of what they have in common is a corner of
-/// one of them, or lies inside an edge of each. In the second case they share more than a point.
-ContactKind kind_in_plane(const Signs& signs, int axis) {
+/// The meeting of two triangles in one plane. Each corner of what they share is a corner of one of
+/// them, or lies inside an edge of each; in the second case they share a polygon. If they share a
+/// segment, it has only its two ends of such corners.
+Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
   int turns[2][3][3];  // of edge i of one triangle and corner k of the other
   for (int t = 0; t < 2; ++t) {
@@ -107,27 +100,38 @@ ContactKind kind_in_plane(const Signs& signs, int axis) {
             signs.turn(axis, kFirst[t] + i, kFirst[t] + (i + 1) % 3, kFirst[1 - t] + k);
     }
   }
+  Meeting out;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
+      const int end = 3 + (k + 1) % 3;
       if (turns[0][i][k] * turns[0][i][(k + 1) % 3] < 0 &&
           turns[1][k][i] * turns[1][k][(i + 1) % 3] < 0)
-        return ContactKind::coplanar;
+        out.places[out.count++] = {i, (i + 1) % 3, {3 + k, end, end}, axis, 1u << i | 8u << k};
     }
   }
-  std::vector<Vec3> common;
   std::array<int, 2> held = {0, 0};
   for (int t = 0; t < 2; ++t) {
     for (int k = 0; k < 3; ++k) {
       const auto [least, most] = std::minmax({turns[t][0][k], turns[t][1][k], turns[t][2][k], 0});
       if (least < 0 && most > 0) continue;
-      ++held[static_cast<std::size_t>(t)];
-      const Vec3& p = signs.corner(kFirst[1 - t] + k);
-      if (std::find(common.begin(), common.end(), p) == common.end()) common.push_back(p);
+      ++held[t];
+      const int corner = kFirst[1 - t] + k;
+      unsigned lines = (1u << k | 1u << (k + 2) % 3) << kFirst[1 - t];
+      for (int i = 0; i < 3; ++i) lines |= (turns[t][i][k] == 0 ? 1u << i : 0u) << kFirst[t];
+      int same = 0;
+      while (same < out.count && (out.places[same].from != out.places[same].to ||
+                                  signs.corner(out.places[same].from) != signs.corner(corner)))
+        ++same;
+      if (same == out.count) out.places[out.count++] = {corner, corner};
+      out.places[same].lines |= lines;
     }
   }
-  if (common.empty()) return ContactKind::apart;
-  if (common.size() == 1) return ContactKind::touch_vertex;
-  return held[0] == 3 && held[1] == 3 ? ContactKind::equal : ContactKind::coplanar;
+  out.dimension = std::min(out.count, 3) - 1;
+  if (out.count == 1) out.kind = ContactKind::touch_vertex;
+  if (out.count > 1) {
+    out.kind = held[0] == 3 && held[1] == 3 ? ContactKind::equal : ContactKind::coplanar;
+  }
+  return out;
 }
 
 }  // namespace
@@ -146,18 +150,21 @@ ContactKind kind_in_plane(const Signs& signs, int axis) {
 // For k > 0: u < v and t < s, so the segments have more than a point in common iff u < s and t < v:
 // iff the first two orientations are negative. They have one point in common iff u = s or t = v:
 // iff one of these is 0. For k < 0 all inequalities are reversed, with the same result.
-std::optional<ContactKind> kind_by_signs(const Corners& a, const Corners& b) {
-  const std::optional<int> axis_a = sure_axis(a), axis_b = sure_axis(b);
-  if (!axis_a || !axis_b) return std::nullopt;
+// The ends of a common segment are, for k > 0, the larger one of u and t, and the smaller one of v
+// and s; for k < 0 conversely. orientation(p1, q1, p2, r2) has the sign of -k (t - u): if it is
+// positive, the one end is u, else t. orientation(p1, r1, p2, q2) has the sign of -k (s - v): if it
+// is positive, the other end is s, else v.
+std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool places) {
   const Signs signs(a, b);
+  const std::optional<int> axis_a = signs.axis_of(0), axis_b = signs.axis_of(3);
+  if (!axis_a || !axis_b) return std::nullopt;
   std::array<std::array<int, 3>, 2> side{};  // of the corners of a, and of those of b
   for (const int t : {1, 0}) {
     const int plane = t == 1 ? 0 : 3;
     for (int k = 0; k < 3; ++k) side[t][k] = signs.side(plane, plane + 1, plane + 2, 3 - plane + k);
-    if (side[t][0] != 0 && side[t][0] == side[t][1] && side[t][1] == side[t][2])
-      return ContactKind::apart;
+    if (side[t][0] != 0 && side[t][0] == side[t][1] && side[t][1] == side[t][2]) return Meeting{};
   }
-  if (side[0] == std::array<int, 3>{}) return kind_in_plane(signs, *axis_a);
+  if (side[0] == std::array<int, 3>{}) return meeting_in_plane(signs, *axis_a);
   std::array<std::array<int, 3>, 2> order{};  // of the corners, the one that is alone first
   for (int t = 0; t < 2; ++t) {
     int alone = -1, on = 0;
@@ -169,9 +176,9 @@ std::optional<ContactKind> kind_by_signs(const Corners& a, const Corners& b) {
       }
     }
     if (alone < 0) {  // it meets the other's plane in the corner `on` alone
-      return signs.holds(t == 0 ? 3 : 0, t == 0 ? *axis_b : *axis_a, 3 * t + on)
-                 ? ContactKind::touch_vertex
-                 : ContactKind::apart;
+      const int corner = 3 * t + on;
+      if (!signs.holds(t == 0 ? 3 : 0, t == 0 ? *axis_b : *axis_a, corner)) return Meeting{};
+      return Meeting{ContactKind::touch_vertex, 0, 1, {{{corner, corner}}}};
     }
     order[t] = {alone, (alone + 1) % 3, (alone + 2) % 3};
   }
@@ -183,44 +190,29 @@ std::optional<ContactKind> kind_by_signs(const Corners& a, const Corners& b) {
   const auto& [p2, q2, r2] = order[1];
   const int first = signs.side(p1, q1, 3 + p2, 3 + q2);
   const int second = signs.side(p1, r1, 3 + r2, 3 + p2);
-  if (first > 0 || second > 0) return ContactKind::apart;
+  if (first > 0 || second > 0) return Meeting{};
+  // Where the edge of triangle t from its lone corner to another one meets the other's plane.
+  const auto place = [&](int t, int to) -> Place {
+    if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
+    return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
+  };
+  // One of two places that are the same point, as a corner if it is one.
+  const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
+  const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {
-    const bool corner =
-        first == 0 ? side[0][q1] == 0 || side[1][q2] == 0 : side[0][r1] == 0 || side[1][r2] == 0;
-    return corner ? ContactKind::touch_vertex : ContactKind::touch_edge;
+    const Place at = first == 0 ? either(u, s) : either(v, t);
+    return Meeting{
+        at.from == at.to ? ContactKind::touch_vertex : ContactKind::touch_edge, 0, 1, {at}};
   }
   const bool edge =
       (side[0][q1] == 0 && side[0][r1] == 0) || (side[1][q2] == 0 && side[1][r2] == 0);
-  return edge ? ContactKind::touch_face : ContactKind::crossing;
-}
-
-bool penetrate(const Corners& a, const Corners& b) {
-  // Relative interiors of triangles in different planes meet iff some point is on no edge.
-  return contact_kind(a, b) == ContactKind::crossing;
-}
-
-ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
-                             unsigned threads) {
-  for (const TrianglePair& pair : pairs) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
-      throw std::logic_error("count_contacts: a pair names a triangle that the scene lacks");
-    }
-    if (pair.a == pair.b) throw std::logic_error("count_contacts: a pair of one triangle");
-  }
-  constexpr std::size_t kLeast = 1024;  // pairs per thread, enough to pay for it
-  const std::size_t chunks = chunks_for(pairs.size(), kLeast, std::max(threads, 1u));
-  std::vector<std::uint64_t> penetrating(chunks, 0);
-  for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::uint64_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      count += penetrate(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
-    }
-    penetrating[chunk] = count;
-  });
-  ContactCounts counts;
-  for (const std::uint64_t count : penetrating) counts.penetrating += count;
-  counts.touching = pairs.size() - counts.penetrating;
-  return counts;
+  Meeting out{edge ? ContactKind::touch_face : ContactKind::crossing, 1};
+  if (!places) return out;
+  const int begin = signs.side(p1, q1, 3 + p2, 3 + r2), end = signs.side(p1, r1, 3 + p2, 3 + q2);
+  out.places[0] = begin == 0 ? either(u, t) : begin > 0 ? u : t;
+  out.places[1] = end == 0 ? either(v, s) : end > 0 ? s : v;
+  out.count = 2;
+  return out;
 }
 
 }  // namespace farcull

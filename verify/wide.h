@@ -1,0 +1,118 @@
+// Numbers with about 106 bits, each with a bound of its error, and the test whether such a number
+// is known well enough to round it (Dekker, A Floating-Point Technique for Extending the Available
+// Precision, 1971; Ziv, Fast Evaluation of Elementary Mathematical Functions with Correctly Rounded
+// Last Bit, 1991). For verify/contact_points.cpp alone.
+//
+// u = 2^-53. Products, quotients and sums are rounded to nearest: off by at most u times the
+// result. exact_sum() and exact_product() give the rest as well, so they lose nothing. Where all
+// rests are 0, as for coordinates of few digits, the error is 0.
+//
+// A bound is a sum of terms >= 0 that meets at most 12 roundings. So the computed one is at least
+// (1 - u)^12 times the exact one, and Bounds::factor makes up for that. It also makes up for
+// a factor 1 + u, since |hi + lo| <= (1 + u) |hi|.
+//
+// Underflow. Precondition: the numbers that one begins with are sums of two doubles that are 0 or
+// in [2^-100, 2^100], and a value is a product of at most four of them, or a sum of such. Sums and
+// differences are multiples of 2^-152, and products of four are multiples of 2^-608; no rounding
+// changes that. An error above 0 is u times such a product at least, so nothing underflows before
+// a division. A quotient of values of four and of three factors is 0 or above 2^-916. It may
+// underflow in its low part and in its bound, by 2^-1070 in all: the term kUnderflow covers this.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace farcull::wide {
+
+/// The last factor of each bound. It is a type, so that a test can show that smaller bounds give
+/// wrong answers.
+struct Bounds {
+  static constexpr double factor = 1 + 0x1p-48;
+};
+constexpr double kUnit = 0x1p-53;
+constexpr double kUnderflow = 0x1p-140;  // relative to the quotient
+constexpr double kLeast = 0x1p-100, kMost = 0x1p100;
+
+struct Parts {
+  double hi, lo;  // hi is the double nearest to hi + lo
+};
+
+inline Parts exact_sum(double x, double y) {
+  const double sum = x + y, of_y = sum - x;
+  return {sum, (x - (sum - of_y)) + (y - of_y)};
+}
+
+inline Parts exact_product(double x, double y) {
+  const auto halves = [](double z) {
+    const double scaled = 0x8000001p0 * z, high = scaled - (scaled - z);
+    return Parts{high, z - high};
+  };
+  const double product = x * y;
+  const auto [x_hi, x_lo] = halves(x);
+  const auto [y_hi, y_lo] = halves(y);
+  return {product, ((x_hi * y_hi - product) + x_hi * y_lo + x_lo * y_hi) + x_lo * y_lo};
+}
+
+/// The number differs from hi + lo by `error` at most; hi is the double nearest to hi + lo.
+template <class B>
+struct Number {
+  double hi = 0, lo = 0, error = 0;
+  Number() = default;
+  Number(double x) : hi(x) {}
+  Number(Parts first, double low, double error_of_low) {
+    const double rest = first.lo + low;
+    if (low != 0) error_of_low += kUnit * std::abs(rest);
+    const auto [sum, left] = exact_sum(first.hi, rest);
+    hi = sum;
+    lo = left;
+    error = error_of_low * B::factor;
+  }
+  bool is_zero() const { return hi == 0 && error == 0; }
+};
+
+template <class B>
+Number<B> operator+(const Number<B>& a, const Number<B>& b) {
+  const double low = a.lo + b.lo;
+  return {exact_sum(a.hi, b.hi), low, a.error + b.error + kUnit * std::abs(low)};
+}
+
+template <class B>
+Number<B> operator-(const Number<B>& a, const Number<B>& b) {
+  const double low = a.lo - b.lo;
+  return {exact_sum(a.hi, -b.hi), low, a.error + b.error + kUnit * std::abs(low)};
+}
+
+template <class B>
+Number<B> operator*(const Number<B>& a, const Number<B>& b) {
+  const double first = a.hi * b.lo, second = a.lo * b.hi, low = first + second;
+  const double rounding = std::abs(first) + std::abs(second) + std::abs(low);
+  return {exact_product(a.hi, b.hi), low,
+          std::abs(a.hi) * b.error + std::abs(b.hi) * a.error + a.error * b.error +
+              std::abs(a.lo * b.lo) + kUnit * rounding};
+}
+
+/// Let q be the first quotient and r = a - q b. Then a / b - q = r / b, and the second quotient is
+/// r.hi / b.hi. With b = b.hi + d, the two differ by (r - r.hi - d r.hi / b.hi) / b.
+template <class B>
+Number<B> operator/(const Number<B>& a, const Number<B>& b) {
+  const double first = a.hi / b.hi;
+  const Number<B> rest = a - Number<B>(first) * b;
+  const double second = rest.hi / b.hi, size = std::abs(b.hi), off = std::abs(b.lo) + b.error;
+  if (!(off < size / 2)) return {{0, 0}, 0, std::numeric_limits<double>::infinity()};
+  const double left = std::abs(rest.lo) + rest.error + std::abs(second) * off;
+  return {exact_sum(first, second), 0,
+          2 * left / size + kUnit * std::abs(second) + kUnderflow * std::abs(first)};
+}
+
+/// The double nearest to the number, never -0.0; empty if two are possible. Rounding is monotone,
+/// so all numbers between two that are rounded to hi are rounded to hi. The sums with `error` round
+/// as well: by u |lo| + u error at most, which the larger error covers.
+template <class B>
+std::optional<double> nearest(const Number<B>& x) {
+  const double error = x.error * B::factor + 4 * kUnit * std::abs(x.lo);
+  if (x.hi + (x.lo + error) != x.hi || x.hi + (x.lo - error) != x.hi) return std::nullopt;
+  return x.hi + 0.0;
+}
+
+}  // namespace farcull::wide
