@@ -12,10 +12,10 @@
 #include "core/canvas/canvas.h"
 #include "core/view/regions.h"
 #include "experiments/command/command.h"
-#include "experiments/system/python.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
+#include "experiments/system/python.h"
 
 namespace farcull {
 namespace {

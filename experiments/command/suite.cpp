@@ -6,9 +6,9 @@
 #include "core/base/text.h"
 #include "embedded/ask_py.h"
 #include "experiments/command/command.h"
-#include "experiments/system/python.h"
 #include "experiments/suite/writer.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/python.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {

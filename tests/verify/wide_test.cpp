@@ -35,7 +35,7 @@ std::array<N, 2> where_met(const Given& given) {
   return {N(N(N(given[1][0]) * s) - N(N(given[0][0]) * t)), N(s - t)};
 }
 
-double rounded(const Q& q) { return rounded_quotient(q.get_num(), q.get_den(), 0); }
+double nearest_double(const Q& q) { return rounded_quotient(q.get_num(), q.get_den(), 0); }
 
 struct Small {  // the twin: no bound
   static constexpr double factor = 0;
@@ -53,7 +53,7 @@ void judge(const Given& given, Score& score) {
   if (!found) {
     ++score.unknown;
   } else {
-    ++(*found == rounded(exact[0] / exact[1]) ? score.right : score.wrong);
+    ++(*found == nearest_double(exact[0] / exact[1]) ? score.right : score.wrong);
   }
 }
 

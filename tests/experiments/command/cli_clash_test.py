@@ -55,7 +55,7 @@ list.txt << # allowed; a:b
 1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
 1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]
-1 columns fit letters of two bytes | clash cad --touching report | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
+1 columns fit letters of two bytes | clash cad --fail-on clash,contained,unknown,touch | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
 1 a part without triangles | clash parts/a.obj empty.off parts/c.obj | ^examined   1 of 3 pairs of parts$ | ^not examined: empty.off has no triangles$ | ! clean
 1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["least"] <= 1 <= d["most"] < 1.0001, d'
