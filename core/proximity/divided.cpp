@@ -1,6 +1,5 @@
-// What a search keeps and answers, and long searches, which are divided into a fixed number of
-// parts. These begin with the same bound and take nothing from each other; after a while they are
-// joined, and the rest is divided again.
+// Divides long searches into a fixed number of parts. These begin with the same bound and take
+// nothing from each other; after a while they are joined, and the rest is divided again.
 #include <algorithm>
 #include <limits>
 #include <memory>

@@ -1,11 +1,10 @@
-// ProximityTrees of near_pairs.h, in a file of this name because search.h includes that header.
-// Each question is a search (core/proximity/scene_trees.h). Searches go on side by side; one that
-// takes long is divided. For the nearest objects, each object asks about the others in the order of
-// the gaps of their parts, and stops at a gap above the k-th least upper bound so far. Where many
-// parts overlap, each small object asks about all triangles at once first, and then about the few
-// others that this search leaves. For all
-// pairs within a distance, each object is searched with those that follow it, by searches whose
-// bound stays the limit and that stop often, to count the pairs of all of them.
+// ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h). Searches
+// go on side by side; one that takes long is divided. For the nearest objects, each object asks
+// about the others in the order of the gaps of their parts, and stops at a gap above the k-th least
+// upper bound so far. Where many parts overlap, each small object asks about all triangles at once
+// first, and then about the few others that this search leaves. For all pairs within a distance,
+// each object is searched with those that follow it, by searches whose bound stays the limit and
+// that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>

@@ -156,7 +156,6 @@ int ClashCommand::run() const {
   ClashOptions options;
   if (clearance_) options.clearance = parse_clearance(*clearance_);
   const std::vector<ClashVerdict> failing = this->failing();
-  const bool touches = std::ranges::find(failing, ClashVerdict::touch) != failing.end();
   check_scene(scene_.names);
   const SceneArguments files = parts();
   std::vector<NamedFile> inputs = scene_files(files.names);
@@ -177,10 +176,10 @@ int ClashCommand::run() const {
   terminal.clear();
   const std::string unit = unit_.value_or("");
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));
-  if (outputs.json) write_json(clash_json(scene, record, unit, touches), *outputs.json);
+  if (outputs.json) write_json(clash_json(scene, record, unit, failing), *outputs.json);
   if (outputs.page) write_output(*outputs.page, clash_page(scene, record, unit));
   if (!outputs.to_stdout())
-    write_output("-", clash_text(scene, record, {.touches = touches, .unit = unit}));
+    write_output("-", clash_text(scene, record, {.failing = failing, .unit = unit}));
   const bool fails =
       std::ranges::any_of(failing, [&](ClashVerdict v) { return record.count(v) > 0; }) ||
       (record.examined < record.asked && fail_on_ != "none");

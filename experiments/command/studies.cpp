@@ -170,7 +170,7 @@ int StudiesCommand::run() {
   // Keeps states in files: a step of a fine cloth takes seconds, and several cloths take turns.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   // The study "libraries" makes its suite there.
-  ::setenv("FARCULL_SUITE", (out_ + "/suite").c_str(), 0);
+  ::setenv("FARCULL_MADE_SUITE", (out_ + "/suite").c_str(), 1);
   if (suite_) check_files(*suite_, read_suite(*suite_));
   request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
   if (contestants_) {

@@ -15,6 +15,7 @@
 #include "embedded/ask_py.h"
 #include "embedded/study_py.h"
 #include "experiments/system/python.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -61,12 +62,6 @@ std::vector<KnownContestant> make_list() {
   return all;
 }
 
-std::string shell_word(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
 /// study.py imports ask.py, which is handed to it as its first argument.
 constexpr const char* kImport =
     "import sys, types\nsys.modules['ask'] = ask = types.ModuleType('ask')\n"
@@ -104,7 +99,7 @@ std::string command_of(const KnownContestant& contestant) {
           ? named
           : std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "contestants";
   const std::string path = folder + "/farcull_contestant_" + contestant.program;
-  return ::access(path.c_str(), X_OK) == 0 ? shell_word(path) + " " + contestant.name : "";
+  return ::access(path.c_str(), X_OK) == 0 ? quoted(path) + " " + contestant.name : "";
 }
 
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options) {
@@ -113,7 +108,7 @@ nlohmann::json ask_program(const std::string& command, const std::vector<std::st
   words.insert(words.end(), options.begin(), options.end());
   words.insert(words.end(), {"--", command});
   std::string line = "exec";
-  for (const std::string& word : words) line += " " + shell_word(word);
+  for (const std::string& word : words) line += " " + quoted(word);
   std::string text;
   int status = -1;
   if (FILE* const pipe = ::popen(line.c_str(), "re")) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
@@ -52,8 +53,9 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
   Table out("lllrrrll");
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
+  const bool touches = std::ranges::count(table.failing, ClashVerdict::touch) > 0;
   for (const ClashRow& row : record.rows) {
-    if (row.verdict == ClashVerdict::touch && !table.touches && !row.ignored) continue;
+    if (row.verdict == ClashVerdict::touch && !touches && !row.ignored) continue;
     if (++all > kRowsShown) continue;
     out.add({to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
              name_of(scene, row.objects.a), name_of(scene, row.objects.b), depth_text(row),
@@ -125,10 +127,11 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
   }
 }
 
-bool is_clean(const ClashRecord& record, bool touches) {
-  return record.examined == record.asked && record.count(ClashVerdict::clash) == 0 &&
-         record.count(ClashVerdict::contained) == 0 && record.count(ClashVerdict::unknown) == 0 &&
-         !(touches && record.count(ClashVerdict::touch) > 0);
+bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing) {
+  const auto none = [&](ClashVerdict verdict) { return record.count(verdict) == 0; };
+  return record.examined == record.asked && none(ClashVerdict::clash) &&
+         none(ClashVerdict::contained) && none(ClashVerdict::unknown) &&
+         std::ranges::all_of(failing, none);
 }
 
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
@@ -137,7 +140,7 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
                   counted(scene.triangles.size(), "triangle", "triangles"));
   out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
                      counted(record.asked, "pair", "pairs"),
-                     is_clean(record, table.touches) ? ": clean" : "");
+                     is_clean(record, table.failing) ? ": clean" : "");
   out += "verdicts   " + counts_text(record) + "\n";
   if (record.ignored > 0) {
     out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),
@@ -173,7 +176,7 @@ std::string clash_csv(const Scene& scene, const ClashRecord& record) {
 }
 
 Json clash_json(const Scene& scene, const ClashRecord& record, const std::string& unit,
-                bool touches) {
+                const std::vector<ClashVerdict>& failing) {
   Json verdicts = Json::object();
   for (const ClashVerdict verdict : kClashVerdicts)
     verdicts[to_string(verdict)] = record.count(verdict);
@@ -184,7 +187,7 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const std::string
           {"clearance", record.options.clearance},
           {"asked", record.asked},
           {"examined", record.examined},
-          {"clean", is_clean(record, touches)},
+          {"clean", is_clean(record, failing)},
           {"verdicts", verdicts},
           {"ignored", record.ignored},
           {"ignored_meet", record.ignored_meet},

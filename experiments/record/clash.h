@@ -3,14 +3,15 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "experiments/method/clash.h"
 
 namespace farcull {
 
 struct ClashTable {
-  bool touches = false;   // list pairs that touch, too
-  std::string unit = {};  // of the lengths, such as "mm"; empty: not said
+  std::vector<ClashVerdict> failing = {};  // with touch, pairs that touch are listed, too
+  std::string unit = {};                   // of the lengths, such as "mm"; empty: not said
 };
 
 /// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
@@ -20,14 +21,15 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
 /// What a row says beyond its verdict, such as the kinds of contact.
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
-/// Whether no pair is a clash, contained or unknown, and every pair that was asked for was
-/// examined; with `touches` no pair touches either.
-bool is_clean(const ClashRecord& record, bool touches = false);
+/// Whether no pair is a clash, contained, unknown or one of `failing`, and every pair that was
+/// asked for was examined.
+bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
 
 /// A row for each pair that is not clear; numbers with all digits.
 std::string clash_csv(const Scene& scene, const ClashRecord& record);
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
-                                  const std::string& unit, bool touches = false);
+                                  const std::string& unit,
+                                  const std::vector<ClashVerdict>& failing = {});
 
 }  // namespace farcull

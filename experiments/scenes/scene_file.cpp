@@ -13,7 +13,6 @@
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -449,37 +448,6 @@ void stream_meshes(const std::vector<std::string>& paths, MeshCache& meshes, con
   });
 }
 
-// The fewest letters to insert, delete or replace that make one word of the other.
-std::size_t letters_apart(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t before = std::exchange(row[0], i + 1);
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t changed = before + (a[i] != b[k]);
-      before = row[k + 1];
-      row[k + 1] = std::min({changed, before + 1, row[k] + 1});
-    }
-  }
-  return row.back();
-}
-
-// "did you mean two-spheres? " for a name that differs little from one; else "correct the name; ".
-std::string likely_name(const std::string& name) {
-  constexpr std::size_t kLongest = 40, kFew = 2;
-  std::string best;
-  std::size_t least = kFew + 1;
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    if (name.size() > kLongest) break;
-    const std::size_t apart = letters_apart(name, scene.name);
-    if (apart < least && apart < name.size() / 2) {
-      least = apart;
-      best = scene.name;
-    }
-  }
-  return best.empty() ? "correct the name; " : "did you mean " + best + "? ";
-}
-
 MeshReading reading_of(const SceneArguments& arguments) {
   MeshReading out{.weld = arguments.weld.value_or(""), .format = {}};
   if (arguments.weld) parse_weld(*arguments.weld);
@@ -501,6 +469,12 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
   }
   if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
   if (name == "-" || has_mesh_extension(name)) return scene_of_meshes(arguments, meshes).finish();
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) {
+    throw Error(name, "is a folder",
+                "name its files, as in " + (std::filesystem::path(name) / "*.stl").string() +
+                    "; farcull clash takes the folder itself");
+  }
   if (const std::optional<Error> foreign = foreign_mesh(name)) throw *foreign;
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
@@ -606,7 +580,7 @@ void require_known(const std::string& name) {
   std::error_code error;
   if (name.find('%') != std::string::npos || std::filesystem::exists(name, error)) return;
   throw Error(name, "no built-in scene has this name, and there is no such file",
-              "see farcull scenes for the names");
+              likely_name(name) + "farcull scenes lists the built-in scenes");
 }
 
 }  // namespace farcull

@@ -76,12 +76,12 @@ std::vector<Point> grid(const GridChoice& choice) {
 }
 
 /// The folder of the point's suite. A suite that was not given is made in the folder that the
-/// variable FARCULL_SUITE names, unless it is there.
+/// variable FARCULL_MADE_SUITE names, unless it is there.
 std::string folder_of(const LibraryPoint& point) {
   if (!point.suite.empty()) return point.suite;
-  const char* const named = std::getenv("FARCULL_SUITE");
+  const char* const named = std::getenv("FARCULL_MADE_SUITE");
   if (named == nullptr || *named == '\0')
-    throw Error("FARCULL_SUITE", "names no folder for the suite", "set it");
+    throw Error("FARCULL_MADE_SUITE", "names no folder for the suite", "set it");
   const std::string folder = named;
   if (!std::filesystem::exists(folder + "/suite.txt"))
     write_suite(folder, {.size = size_of(point.small), .seed = point.seed});

@@ -615,7 +615,7 @@ def main(arguments):
     parser.add_argument('--suite', metavar='DIR', default=here, help='the folder of the suite; default: that of this file')
     parser.add_argument('--check', action='store_true', help='only compare the answers to a few questions with the grammar')
     parser.add_argument('--only', metavar='KINDS', type=lambda text: text.split(','), help=f"of {','.join(KINDS)}")
-    for name, value, what in ('limit', 5.0, 'seconds for an answer, ten times as many for meshes'), \
+    for name, value, what in ('limit', 5.0, 'seconds for an answer, ten times as many for questions with a path'), \
             ('memory', 4096, 'MiB of a process'), ('deaths', 20, 'after so many in a family its rest is not asked'):
         parser.add_argument('--' + name, metavar='N', type=type(value), default=value, help=f'{what}; default {value:g}')
     parser.add_argument('--csv', metavar='FILE', help='also write all rows to this file')

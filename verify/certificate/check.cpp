@@ -110,9 +110,11 @@ std::vector<std::string> unattested_of(const Certificate::Run& run) {
   std::vector<std::string> out;
   out.push_back("that the method was " + run.method);
   out.push_back("which pairs the run kept: bit 6 of a byte says so, and nothing proves it");
-  out.push_back("that the resolution was " + std::to_string(run.resolution) + " px");
-  out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
-  out.push_back("the offset and its radius");
+  if (run.resolution > 0) {
+    out.push_back("that the resolution was " + std::to_string(run.resolution) + " px");
+    out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
+    out.push_back("the offset and its radius");
+  }
   out.push_back(run.device ? "the device, " + run.device->renderer : "that no device was used");
   out.push_back("the assumptions about the device, on which the proof does not rely");
   out.push_back("any time");

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -226,6 +227,39 @@ const BuiltinScene* find_builtin_scene(const std::string& name) {
   return found == scenes.end() ? nullptr : &*found;
 }
 
+namespace {
+// The fewest letters to insert, delete or replace that make one word of the other.
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t before = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t changed = before + (a[i] != b[k]);
+      before = row[k + 1];
+      row[k + 1] = std::min({changed, before + 1, row[k] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string likely_name(const std::string& name) {
+  constexpr std::size_t kLongest = 40, kFew = 2;
+  std::string best;
+  std::size_t least = kFew + 1;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (name.size() > kLongest) break;
+    const std::size_t apart = letters_apart(name, scene.name);
+    if (apart < least && apart < name.size() / 2) {
+      least = apart;
+      best = scene.name;
+    }
+  }
+  return best.empty() ? "correct the name; " : "did you mean " + best + "? ";
+}
+
 bool is_builtin_scene(const std::string& name) { return find_builtin_scene(name) != nullptr; }
 
 std::optional<std::uint64_t> builtin_seed(const std::string& name) {
@@ -238,7 +272,8 @@ std::optional<std::uint64_t> builtin_seed(const std::string& name) {
 SceneRequest parse_scene_name(const std::string& name) {
   SceneRequest out{.entry = find_builtin_scene(name), .parameters = {}, .suffixes = {}};
   if (out.entry == nullptr)
-    throw Error(name, "no built-in scene has this name", "see farcull scenes for the names");
+    throw Error(name, "no built-in scene has this name",
+                likely_name(name) + "farcull scenes lists the built-in scenes");
   out.parameters = parameters_of(*out.entry, name);
   for (std::size_t at = std::min(name.find('@'), name.size()); at < name.size();) {
     const std::size_t end = std::min(name.find('@', at + 1), name.size());

@@ -127,6 +127,9 @@ std::vector<BuiltinScene> packaged_scenes();
 const BuiltinScene* find_builtin_scene(const std::string& name);
 /// Whether the name up to its first ':' or '@' is that of a built-in scene.
 bool is_builtin_scene(const std::string& name);
+/// "did you mean two-spheres? " for a name that differs little from that of a built-in scene; else
+/// "correct the name; ".
+std::string likely_name(const std::string& name);
 
 /// The parts of a name: NAME[:SIZE[:SECOND]][@SUFFIX...], as in crowd:3000:0.2@far. The suffix
 /// @seedN draws a scene with the seed N in place of its own.
