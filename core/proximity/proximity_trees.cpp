@@ -1,10 +1,10 @@
-// ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h). Searches
-// go on side by side; one that takes long is divided. For the nearest objects, each object asks
-// about the others in the order of the gaps of their parts, and stops at a gap above the k-th least
-// upper bound so far. Where many parts overlap, each small object asks about all triangles at once
-// first, and then about the few others that this search leaves. For all pairs within a distance,
-// each object is searched with those that follow it, by searches whose bound stays the limit and
-// that stop often, to count the pairs of all of them.
+// ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
+// Searches go on side by side; one that takes long is divided. For the nearest objects, each object
+// asks about the others in the order of the gaps of their parts, and stops at a gap above the k-th
+// least upper bound so far. Where many parts overlap, each small object asks about all triangles at
+// once first, and then about the few others that this search leaves. For all pairs within a
+// distance, each object is searched with those that follow it, by searches whose bound stays the
+// limit and that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -273,7 +273,8 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   for_each_with_memory<NearestMemory>(objects, threads, [&](std::size_t o, NearestMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
-    found[o] = found_by(trees, crowd.get(), object, k, limit, hints_of[o], all, memory, parts[o]);
+    const Crowd* const asked = Crowd::is_small(trees, object) ? crowd.get() : nullptr;
+    found[o] = found_by(trees, asked, object, k, limit, hints_of[o], all, memory, parts[o]);
   });
   std::vector<Found> founds;
   for (std::size_t o = 0; o < objects; ++o) {

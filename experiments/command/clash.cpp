@@ -120,7 +120,11 @@ SceneArguments ClashCommand::parts() const {
     std::vector<std::string> files, others;
     for (const auto& entry : fs::recursive_directory_iterator(part)) {
       const std::string name = entry.path().string();
-      if (entry.is_regular_file()) (has_mesh_extension(name) ? files : others).push_back(name);
+      const bool file = entry.is_regular_file();
+      if (!file && (entry.is_symlink() || !entry.is_directory()))
+        throw Error(name, "is neither a file nor a folder, or a link to a folder",
+                    "take it out, and name a folder that is meant as well");
+      if (file) (has_mesh_extension(name) ? files : others).push_back(name);
     }
     if (files.empty())
       throw Error(part, "the folder has no mesh files", "name a folder with meshes, or the files");

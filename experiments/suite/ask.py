@@ -24,7 +24,7 @@ from fractions import Fraction
 
 KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
 QUICK = ('pair', 'distance')  # kinds without a path
-AHEAD = 32  # quick questions that are sent before their answers; so few fit into a pipe, and writing never waits
+AHEAD = 32  # quick questions that are sent before their answers
 LONGEST = 1 << 16  # bytes of a line
 MOST = 1 << 28  # bytes of an answer; one without an end would take all memory
 AGAIN = 16  # every so many questions one is asked again
@@ -51,8 +51,9 @@ class Child:
         posix = os.name == 'posix'
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
                                         start_new_session=posix, preexec_fn=limit if posix else None)
-        self.lines = queue.Queue(1 << 18)
+        self.lines, self.texts = queue.Queue(1 << 18), queue.SimpleQueue()
         threading.Thread(target=self.read, daemon=True).start()
+        threading.Thread(target=self.write, daemon=True).start()
 
     def read(self):
         with self.process.stdout as file:
@@ -62,14 +63,18 @@ class Child:
                     return
         self.lines.put('')
 
+    def write(self):
+        """Writes what was sent. A process that does not read makes this thread wait, and no other."""
+        with contextlib.suppress(OSError), self.process.stdin as file:
+            for text in iter(self.texts.get, ''):
+                file.write(text.encode())
+                file.flush()
+
     def send(self, text):
-        with contextlib.suppress(OSError):  # it may read no longer
-            self.process.stdin.write(text.encode())
-            self.process.stdin.flush()
+        self.texts.put(text)
 
     def end_input(self):
-        with contextlib.suppress(OSError):
-            self.process.stdin.close()
+        self.texts.put('')
 
     def end(self, seconds):
         """How the process ended, after it was given some time, and why: an outcome and a reason."""

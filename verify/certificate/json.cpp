@@ -67,6 +67,8 @@ bool JsonSyntax::leave() {
 }
 
 Json JsonReader::parse(std::string_view text, std::uint64_t most_values) const {
+  if (text.find('\0') != text.npos)
+    fail("is not JSON, which has no byte 0");  // the parser would stop there
   JsonSyntax syntax(most_values);
   if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);
   return Json::parse(text.begin(), text.end());

@@ -47,6 +47,9 @@ rows(r"""
 0 fail on near | clash parts --fail-on near | ^clash
 1 near | clash parts --fail-on near --clearance 2 --unit mm | ^near +b +c .* 2 | depth .mm.
 1 near is not clean where it fails | clash parts/b.obj parts/c.obj --fail-on near --clearance 2 | ^examined   1 of 1 pair of parts$ | ! clean
+$ ln -s ../parts cad/more
+bad a link to a folder | cad/more: is neither a file nor a folder, or a link to a folder | clash cad
+$ rm cad/more
 0 near is clean where it does not fail | clash parts/b.obj parts/c.obj --clearance 2 | ^examined   1 of 1 pair of parts: clean$
 bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; farcull clash takes | run parts
 0 beyond the clearance | clash parts --fail-on near --clearance 1.9999 | ! ^near

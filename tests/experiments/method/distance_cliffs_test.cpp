@@ -1,6 +1,10 @@
 // Inputs that were slow: objects whose triangles lie far apart, and many objects of which few are
 // within the distance. The work is counted. Each count has a twin that exceeds it.
 #include "experiments/method/distances.h"
+
+#include <cmath>
+#include <numbers>
+
 #include "tests/experiments/method/distance_truth.h"
 #include "tests/lab/test.h"
 
@@ -52,6 +56,27 @@ Scene slivers(int count, int copies) {
 
 TEST(DistanceCliffs, NearestOfSmallObjectsThatOverlapTakesFewPairs) {
   EXPECT_LT(pairs_for_nearest(slivers(200, 1)), 200u * 60u);
+}
+// Two cones tip to tip, of which each triangle is as near to all of the other one, and far from
+// them small triangles that overlap. The cones do not ask about all triangles of the scene at once:
+// their ties would be that many pairs.
+TEST(DistanceCliffs, NearestOfLargeObjectsAmongSmallOnesTakesFewPairs) {
+  constexpr int kSides = 200, kSmall = 60;
+  std::vector<std::vector<CliffTriangle>> objects(2);
+  for (int cone = 0; cone < 2; ++cone) {
+    const Vec3 tip(0, 0, cone);
+    const auto rim = [&](int i) {
+      const double turn = 2 * std::numbers::pi * (i % kSides) / kSides;
+      return Vec3(std::cos(turn), std::sin(turn), 3 * cone - 1);
+    };
+    for (int i = 0; i < kSides; ++i) objects[cone].push_back({tip, rim(i), rim(i + 1)});
+  }
+  for (int k = 0; k < kSmall; ++k) {
+    const Vec3 p(100, 0, k);
+    objects.push_back({{p, p + Vec3(9, 9 + k, 9), p + Vec3(0, 9, 99)}});
+  }
+  EXPECT_LT(pairs_for_nearest(reference::scene_of(objects)),
+            16u * 2 * kSides + kSmall * kSmall);  // a leaf for each triangle, and all small ones
 }
 TEST(DistanceCliffsTwin, ObjectsOfMoreThanOneLeafAreAllCompared) {
   EXPECT_GT(pairs_for_nearest(slivers(200, 17)), 200u * 100u);

@@ -309,6 +309,12 @@ class Ask(unittest.TestCase):
             self.assertEqual(module.ask_from(fast, mesh, 0, [None], 10, 0),
                              (0, ('crashed', 'wrote too long an answer: 0\tpair\t0\t0\t0\t1')))
 
+    def test_one_that_does_not_read_does_not_stop_who_asks(self):
+        start = time.monotonic()
+        with contextlib.closing(module.Child(['sleep', '60'], argparse.Namespace(memory=4096))) as child:
+            child.send('x' * (1 << 20))  # more than a pipe holds
+        self.assertLess(time.monotonic() - start, 30)
+
     def test_an_interrupt_ends_the_contestant(self):
         with subprocess.Popen(['python3', 'suite/ask.py', '--only', 'pair', 'python3 faulty.py stops'],
                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as asks:

@@ -409,6 +409,7 @@ TEST(CertificateText, RefusesWhatIsNoJson) {
   expect_refused(changed_text("\"name\"", "\"\xed\xa0\x80\""), "not JSON");  // half a surrogate
   expect_refused(changed_text("\"name\"", "1e999"), "not JSON");
   expect_refused(to_text(spheres().certificate) + "{}", "not JSON");
+  expect_refused(to_text(spheres().certificate) + std::string(1, '\0') + "{}", "not JSON");
   expect_refused(to_text(spheres().certificate).substr(0, 700), "not JSON");
   expect_refused("\"" + std::string(100'000, 'x'), "not JSON");
   expect_refused(std::string(1'000'000, '['), "nested deeper");
