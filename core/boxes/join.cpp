@@ -3,8 +3,9 @@
 // leaves stand one owner after the other, and an item is compared with later owners alone.
 //
 // Trees of blocks are asked about one block after the other. Triangles stand in lanes of sixteen
-// boxes as floats; boxes that touch in floats are compared again in doubles. Only comparisons
-// decide, so every instruction set gives the same pairs in the same order.
+// boxes as floats, which are compared with each other; boxes that touch in floats are compared
+// again in doubles. Only comparisons decide, so every instruction set gives the same pairs in the
+// same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -133,10 +134,8 @@ void pair_blocks_here(const BlockTrees& trees, std::uint32_t a, std::uint32_t b,
 
 void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
                          std::span<const LanePair> pairs, BlockFindings& out) {
-  constexpr std::size_t kRoom = 17 * 16;
-  // No more than needed, since new memory is cleared.
-  const std::size_t many = std::clamp<std::size_t>(pairs.size(), 64, 4096);
-  std::vector<TrianglePair> certain(many + kRoom), perhaps(many + kRoom);
+  constexpr std::size_t kRoom = 17 * 16, kFlush = 4096;
+  std::vector<TrianglePair> certain(kFlush + kRoom), perhaps(kFlush + kRoom);
   TrianglePair *next = certain.data(), *next_perhaps = perhaps.data();
   const auto flush = [](std::vector<TrianglePair>& from, TrianglePair*& end, std::size_t least,
                         std::vector<TrianglePair>& to) {
@@ -149,8 +148,8 @@ void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> ve
     Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
                drops ? &vertices[pair.b] : nullptr)
         .write(next, next_perhaps);
-    flush(certain, next, many, out.pairs);
-    flush(perhaps, next_perhaps, many, out.perhaps);
+    flush(certain, next, kFlush, out.pairs);
+    flush(perhaps, next_perhaps, kFlush, out.perhaps);
   }
   flush(certain, next, 0, out.pairs);
   flush(perhaps, next_perhaps, 0, out.perhaps);
@@ -488,7 +487,7 @@ struct Lanes {
 template <class Work>
 void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
                       std::span<const std::uint32_t> some, unsigned threads, const Work& work) {
-  for_chunks(some.size(), chunks_for(some.size(), 512, threads),
+  for_chunks(some.size(), chunks_for(some.size(), 128, threads),
              [&](std::size_t, std::size_t begin, std::size_t end) {
                for (std::size_t k = begin; k < end; ++k) {
                  std::array<std::uint32_t, kWide> triangles;
@@ -542,10 +541,11 @@ std::uint64_t give_findings(
     const Scene& scene, std::size_t count, double clearance, unsigned threads,
     const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
     const TakePairs& take) {
-  constexpr std::size_t kPortion = 64, kLeastOfThread = 256;
+  constexpr std::size_t kLeastOfThread = 64;
+  const std::size_t portion = std::clamp(count / 16, kLeastOfThread, kAtOnce);
   return give_portions<BlockFindings>(
-      count, std::clamp(count / 16, kPortion, kAtOnce), chunks_for(count, kLeastOfThread, threads),
-      take, [&](std::size_t begin, std::size_t end, BlockFindings& findings, const auto& flush) {
+      count, portion, chunks_for(count, kLeastOfThread, threads), take,
+      [&](std::size_t begin, std::size_t end, BlockFindings& findings, const auto& flush) {
         find(begin, end, findings);
         for (const TrianglePair& pair : findings.perhaps) {
           if (boxes_meet(scene, pair, half_of(clearance))) findings.pairs.push_back(pair);

@@ -122,8 +122,7 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
   const double half = half_of(clearance);
   const std::size_t n = out.ranges.size();
   out.boxes.resize(n);
-  // Less takes no longer than to wake a thread.
-  for_chunks(n, chunks_for(n, 1024, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) out.boxes[k] = block_box(scene, out.ranges[k], half);
   });
   out.objects.resize(objects);

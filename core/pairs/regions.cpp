@@ -249,9 +249,7 @@ std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks,
   std::vector<std::atomic<std::size_t>> found(meetings.size());
   std::atomic<std::size_t> sum = 0;
   const std::size_t most_of_all = most_pairs(blocks);
-  std::size_t work = 0;  // blocks to look for; a few take no longer than to wake a thread
-  for (const MeetingPart& part : parts) work += part.to - part.from;
-  const std::size_t chunks = std::min(parts.size(), chunks_for(work, 1024, threads));
+  const std::size_t chunks = chunks_for(parts.size(), 1, threads);
   std::atomic<std::size_t> next = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
     MeetingPart scratch;  // so that a part has room for its own pairs only
