@@ -324,7 +324,7 @@ class Checker {
       if (listed != nullptr) entry = listed - listed_.data();
       boxes.ask(objects[0], objects[1], length->above);
       std::vector<TrianglePair> pairs;
-      for (bool more = true; more;) {
+      for (bool more = true; more && !proof_.nearer();) {
         pairs.clear();
         more = boxes.next(pairs, kBlock);
         report_.result().decided += pairs.size();

@@ -53,12 +53,14 @@ void FarProof::decide() {
              [&](std::size_t, std::size_t begin, std::size_t end) {
                for (std::size_t i = begin; i < end; ++i) fails[i] = !holds(jobs_[i]);
              });
+  const auto is_before = [](const Job& job, const std::optional<Job>& first) {
+    return !first || std::pair(job.question, job.pair) < std::pair(first->question, first->pair);
+  };
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
-    if (fails[i] == 0) continue;
-    const Job& job = jobs_[i];
-    std::optional<Job>& first = is_nearer(job) ? nearer_ : as_near_;
-    if (!first || std::pair(job.question, job.pair) < std::pair(first->question, first->pair))
-      first = job;
+    // Behind a pair that refutes the certificate no other one is asked for.
+    if (fails[i] == 0 || !is_before(jobs_[i], nearer_)) continue;
+    std::optional<Job>& first = is_nearer(jobs_[i]) ? nearer_ : as_near_;
+    if (is_before(jobs_[i], first)) first = jobs_[i];
   }
   jobs_.clear();
 }

@@ -51,7 +51,7 @@ class FarProof {
   /// jobs with an entry whose pair is exactly as near as the pair of the entry (as_near()).
   const std::optional<Job>& nearer() const { return nearer_; }
   /// The first decided job whose pair is not far enough, but exactly as near as the pair of its
-  /// entry.
+  /// entry. Jobs behind nearer() are left out.
   const std::optional<Job>& as_near() const { return as_near_; }
 
  private:

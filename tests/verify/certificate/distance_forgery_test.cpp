@@ -284,6 +284,19 @@ TEST(DistanceCertificate, ForgeriesOfFiftyKindsAreNotProved) {
   EXPECT_GE(forger.kinds(), 50u);
 }
 
+// Of 250,000 pairs that all refute it, the first ones suffice.
+TEST(DistanceCertificate, IsRefutedByTheFirstPairsThatAreTooNear) {
+  const reference::Triangle t = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  const std::vector<reference::Triangle> many(500, t);
+  const Scene scene = reference::scene_of({many, many});
+  const DistanceCertificate none{
+      .scene = key_of(scene), .pairs = Pairs::objects, .within = 1, .distances = {}};
+  const DistanceCheck result = distance_case::check(none, scene);
+  EXPECT_EQ(result.verdict, Verdict::refuted);
+  EXPECT_EQ(result.squared, "0/1");
+  EXPECT_LT(result.decided, 100'000u);
+}
+
 // The scene changes under a certificate, which is given the new scene's hash.
 TEST(DistanceCertificate, ANearerPairInTheSceneIsNamedWithItsDistance) {
   Scene scene = make_scene();
