@@ -9,6 +9,7 @@ A mesh NAME stands for all meshes NAME-1, NAME-2 .. of the suite, which one proc
 `clash` and `distance` need no family: all of a suite are asked. If it cannot be done, the reason is printed, with status 2.
 """
 import argparse
+import gc
 import json
 import math
 import re
@@ -76,7 +77,8 @@ def scores_text(rows):
 # ---- the smallest pair of each kind of fault
 
 def decimal(x):
-    return re.sub('[.]0$|(?<=[0-9])[.]0(?=e)', '', repr(x + 0.0))
+    text = repr(x + 0.0)
+    return text[:-2] if text[-2:] == '.0' else text.replace('.0e', 'e')
 
 
 def cost(numbers):
@@ -143,12 +145,15 @@ def simplest(command, card, numbers, label, fault, options):
 def examples(command, card, listed, answers, options):
     """For each fault the pair with the fewest characters at which the contestant has it, of those of which its
     documentation promises the answer, made simpler. Triangles that share corners are left out."""
-    first = {}
-    for one, answer in sorted(zip(listed, answers), key=lambda both: cost(both[0].numbers)):
+    first, faults = {}, []
+    for one, answer in zip(listed, answers):
         right = one.label not in ('apart', 'neighbours-apart')
-        name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
-        if (name in first or one.label == '?' or one.question.fields[0] != '-' or (answer.outcome, answer.value) in (
-                ('answered', right), ('refused', None), ('unanswered', None), ('not asked', None))):
+        if one.label != '?' and one.question.fields[0] == '-' and (answer.outcome, answer.value) not in (
+                ('answered', right), ('refused', None), ('unanswered', None), ('not asked', None)):
+            name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
+            faults.append((cost(one.numbers), len(faults), name, right, one, answer))
+    for _, _, name, right, one, answer in sorted(faults, key=lambda fault: fault[:2]):
+        if name in first:
             continue
         if ask.promised(card, ask.corners_of(one.numbers), ask.corners_of(one.numbers[9:]), right, one.label):
             first[name] = one, simplest(command, card, one.numbers, right, (answer.outcome, answer.value), options)
@@ -168,6 +173,7 @@ def main(arguments):
     parser.add_argument('--deaths', type=int, default=20)
     options = parser.parse_args(arguments)
     command = shlex.split(options.command)
+    gc.disable()  # a tenth of the time, since there are millions of objects and no circles of them
     try:
         card = ask.card_of(command, ask.ask(command, [ask.Question('card', [])], options)[0][0])
         if options.question == 'card':

