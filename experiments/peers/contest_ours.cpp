@@ -92,42 +92,22 @@ std::vector<TrianglePair> pairs_by_library(const Scene& scene) {
 
 using Finder = std::function<std::vector<TrianglePair>(const Scene&)>;
 
-/// The scene as one object, since S-CULLIDE tests triangles of one object.
-Scene as_one_object(Scene scene) {
-  scene.objects = {{.name = "0",
-                    .first_triangle = 0,
-                    .triangle_count = static_cast<std::uint32_t>(scene.triangles.size()),
-                    .self = true}};
-  return scene;
-}
-
-Contestant contestant(ContestantCard card, const Finder& find, bool one_object = false) {
+Contestant contestant(ContestantCard card, const Finder& find) {
   card.library = "farcull";
   card.source = "docs/methods.md and docs/reliability.md";
   return {.card = std::move(card),
-          .pair =
-              [=](const SuitePair& pair) {
-                const Scene scene = scene_of(pair);
-                return !find(one_object ? as_one_object(scene) : scene).empty();
-              },
-          .mesh =
-              [=](const Scene& scene) {
-                if (one_object && (scene.objects.size() != 1 || !scene.objects.front().self))
-                  throw Refusal("S-CULLIDE tests one object against itself");
-                return find(scene);
-              }};
+          .pair = [=](const SuitePair& pair) { return !find(scene_of(pair)).empty(); },
+          .mesh = find};
 }
 
 Contestant of_method(Method method, const std::string& says, const std::string& use) {
-  const bool exact = !culls(method);
-  return contestant(
-      {.name = to_string(method),
-       .neighbours = tests_self(method),
-       .promises = exact || promises(RunOptions{.method = method}),
-       .call = "farcull run --method " + to_string(method) + " --device " + device(),
-       .says = says,
-       .use = use},
-      [method](const Scene& scene) { return pairs_by(method, scene); }, tests_self_alone(method));
+  return contestant({.name = to_string(method),
+                     .neighbours = tests_self(method),
+                     .promises = !culls(method) || promises(RunOptions{.method = method}),
+                     .call = "farcull run --method " + to_string(method) + " --device " + device(),
+                     .says = says,
+                     .use = use},
+                    [method](const Scene& scene) { return pairs_by(method, scene); });
 }
 
 /// Whether the insides of two objects overlap, as `farcull clash` says it.
@@ -177,15 +157,10 @@ int main(int argc, char** argv) {
   using namespace farcull;
   ::setenv("LP_NUM_THREADS", "0", 0);  // as farcull does (docs/drivers.md)
   const char* const reliable = "misses no pair; exact tests decide what is left";
-  const char* const loses = "can miss a pair that is smaller than a pixel (docs/methods.md)";
-  const char* const published = "to see what the published method loses";
   return contest(
       argc, argv,
       {device() == "native" ? far_pairs_of_library(reliable)
                             : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
        exact(), of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
-       of_method(Method::i_collide, reliable, "few objects that move little"),
-       of_method(Method::cullide, loses, published),
-       of_method(Method::quick_cullide, loses, published),
-       of_method(Method::s_cullide, loses, published)});
+       of_method(Method::i_collide, reliable, "few objects that move little")});
 }

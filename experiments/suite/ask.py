@@ -314,11 +314,16 @@ def segment_to_segment(e, f):
 
 
 def within(a, b, margin):
-    """Whether two triangles that are apart are no farther apart than the margin."""
-    a, b = (exact(a), exact(b)) if margin else whole(a, b)  # whole numbers are faster
-    least = min([point_to_triangle(p, t) for s, t in ((a, b), (b, a)) for p in s] +
-                [segment_to_segment(e, f) for e in edges(a) for f in edges(b)])
-    return least <= Fraction(margin) ** 2
+    """Whether two triangles that do not cross are no farther apart than the margin."""
+    a, b, ((margin,),) = whole(a, b, [[float(margin)]])
+    axes = [[int(i == k) for i in range(3)] for k in range(3)]
+    for n in [*axes, normal(a), normal(b)]:  # most are far apart along one of these
+        at_a, at_b = [dot(n, p) for p in a], [dot(n, p) for p in b]
+        gap = max(min(at_a) - max(at_b), min(at_b) - max(at_a))
+        if gap > 0 and gap ** 2 > margin ** 2 * square(n):
+            return False
+    return any(point_to_triangle(p, t) <= margin ** 2 for s, t in ((a, b), (b, a)) for p in s) or any(
+        segment_to_segment(e, f) <= margin ** 2 for e in edges(a) for f in edges(b))
 
 
 def interval(t, n, origin, along):

@@ -219,9 +219,8 @@ def time_figure(rows):
     """A row for each contestant, first those that err least by what their own documentation promises."""
     out, points = Figure(
         "libraries-time", "Wrong answers where the documentation promises the answer, and the time of a question",
-        "Each row is a contestant, with the fewest wrong answers first; (ours) marks the methods of farcull, of which "
-        "those of CULLIDE are as published and promise nothing. Missed: the triangles meet, and it says apart; false "
-        "alarms: the other way round. Both are per million answers to questions of which its documentation promises the "
+        "Each row is a contestant, with the fewest wrong answers first; (ours) marks the methods of farcull. "
+        "Missed: the triangles meet, and it says apart; false alarms: the other way round. Both are per million answers to questions of which its documentation promises the "
         "answer; what was refused or crashed is no answer, and stands in the table. Time: the mean of a question about "
         "two triangles, as the contestant's own process measured it. It includes what the call needs, such as the "
         "making of a mesh of one triangle, so that what is made for meshes "
