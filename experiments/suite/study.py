@@ -27,6 +27,12 @@ ROUNDS = 4  # of a search for a simpler pair
 
 # ---- rows
 
+def is_scored(card, one):
+    """Whether the right answer is known, and one that the documentation may mean: whether a point of the surface (parameter 2:
+    at a vertex) is inside is a matter of words, unless the documentation promises exact answers."""
+    return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
+
+
 def listed_rows(card, listed, answers, differs):
     """A row for each parameter and kind of label, in the order of the questions."""
     rows = {}
@@ -35,9 +41,9 @@ def listed_rows(card, listed, answers, differs):
         row = rows.setdefault((one.parameter, kind), ask.Row())
         row.take(answer, again)
         row['timed'] += answer.outcome == 'answered'
-        if answer.outcome == 'answered' and one.label != '?':
+        if answer.outcome == 'answered' and is_scored(card, one):
             ask.score(card, one, answer.value, row)
-        row['answered'] -= answer.outcome == 'answered' and one.label == '?'
+        row['answered'] -= answer.outcome == 'answered' and not is_scored(card, one)
     return rows
 
 
