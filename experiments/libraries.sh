@@ -2,11 +2,13 @@
 # Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
 # labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
 # program and the contestants, runs the study and prints where the tables are.
-#   bash experiments/libraries.sh --quick [DIR]   the small suite, some minutes; VTK and Open3D only
+#   bash experiments/libraries.sh --quick [DIR]   the small suite, ten minutes; VTK and Open3D only
 #                                                 where they are installed, since they are large
-#   bash experiments/libraries.sh [DIR]           the full suite, hours; a second run goes on. When it
-#                                                 is whole, the report is copied to docs/results, and
-#                                                 the smallest examples to tests/cases/libraries.txt
+#   bash experiments/libraries.sh --keep [DIR]    the same. When it is whole, the report is copied to
+#                                                 docs/results, and the smallest examples to
+#                                                 tests/cases/libraries.txt
+#   bash experiments/libraries.sh [DIR]           the same of the full suite, some two hours; a second
+#                                                 run goes on
 # DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
 # and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
 # pair or had no answer.
@@ -16,9 +18,10 @@ set -euo pipefail
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 cd "$farcull_root"
 
-quick=()
-if [[ ${1-} == --quick ]]; then
+quick=() keep=yes
+if [[ ${1-} == --quick || ${1-} == --keep ]]; then
   quick=(--quick)
+  if [[ $1 == --quick ]]; then keep=no; fi
   shift
 fi
 farcull_packages+=(libccd-dev libgts-dev)
@@ -42,8 +45,8 @@ out=${1:-build/libraries-${commit##* }${quick:+-quick}}
 status=0
 build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
 build/farcull report "$out" || status=$?
-if ((${#quick[@]} == 0 && status == 0)); then
-  farcull_keep_report libraries "Results of the study libraries" "$out/report"
+if [[ $keep == yes && $status == 0 ]]; then
+  farcull_keep_report libraries "Results of the study libraries" "$out/report" "libraries.sh${quick:+ --keep}"
   cp "$out"/report/tables/libraries{,-meshes,-kinds,-distances,-calls,-families}.csv docs/results/
   cp "$out"/report/libraries-cases.html docs/results/
   cp "$out"/report/libraries-examples.txt tests/cases/libraries.txt
