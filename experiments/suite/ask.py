@@ -56,7 +56,7 @@ class Child:
         threading.Thread(target=self.write, daemon=True).start()
 
     def read(self):
-        """Lines come in lists, which takes a third of the time of one by one. One that is too long comes in parts."""
+        """Lines come in lists, which is faster than one by one. One that is too long comes in parts."""
         with self.process.stdout as file:
             part = b''
             for bytes_ in iter(lambda: file.read1(LONGEST), b''):

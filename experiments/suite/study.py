@@ -179,7 +179,7 @@ def main(arguments):
     parser.add_argument('--deaths', type=int, default=20)
     options = parser.parse_args(arguments)
     command = shlex.split(options.command)
-    gc.disable()  # a tenth of the time, since there are millions of objects and no circles of them
+    gc.disable()  # it would look through millions of objects, none of which hold each other in a circle
     try:
         card = ask.card_of(command, ask.ask(command, [ask.Question('card', [])], options)[0][0])
         if options.question == 'card':
