@@ -75,15 +75,15 @@ class Child:
     def write(self):
         """Writes what was sent. A process that does not read makes this thread wait, and no other."""
         with contextlib.suppress(OSError), self.process.stdin as file:
-            for text in iter(self.texts.get, ''):
-                file.write(text.encode())
+            for text in iter(self.texts.get, b''):
+                file.write(text)
                 file.flush()
 
     def send(self, text):
-        self.texts.put(text)
+        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # the bytes that a path has
 
     def end_input(self):
-        self.texts.put('')
+        self.texts.put(b'')
 
     def end(self, seconds):
         """How the process ended, after it was given some time, and why: an outcome and a reason."""
@@ -351,10 +351,10 @@ def crosses(a, b):
 
 def promised(card, a, b, label, kind=None):
     """Whether the documentation promises the right answer about two triangles. kind: of a pair of the suite."""
-    if label and card['means'] == 'crossing':  # triangles that cross are never degenerate
-        return kind == 'crossing' if kind and not kind.startswith('neighbours') else crosses(a, b)
     if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not (proper(a) and proper(b)):
         return False
+    if label and card['means'] == 'crossing':
+        return kind == 'crossing' if kind and not kind.startswith('neighbours') else crosses(a, b)
     return label or float(card['margin']) == 0 or not within(a, b, card['margin'])
 
 
@@ -475,6 +475,12 @@ def lists_of(card, suite, kinds, only=None):
                 yield kind, family, [*questions_of(kind, suite, lines)]
 
 
+def is_scored(card, one):
+    """Whether the right answer is known, and one that the documentation may mean: whether a point of the surface (parameter 2:
+    at a vertex) is inside is a matter of words, except for methods that promise the answer of docs/suite.md."""
+    return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
+
+
 def score(card, listed, value, row):
     _, _, question, label, numbers = listed
     right = label not in ('no', 'apart', 'neighbours-apart')
@@ -593,7 +599,7 @@ def measure(command, options):
         for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
             row = rows[kind].setdefault(family, Row())
             row.take(answer, differs)
-            if answer.outcome == 'answered' and one.label != '?':
+            if answer.outcome == 'answered' and is_scored(card, one):
                 score(card, one, answer.value, row)
     for family, names in suite.meshes().items() if 'mesh' in asked else []:
         row = rows['mesh'].setdefault(family, Row())

@@ -27,12 +27,6 @@ ROUNDS = 4  # of a search for a simpler pair
 
 # ---- rows
 
-def is_scored(card, one):
-    """Whether the right answer is known, and one that the documentation may mean: whether a point of the surface (parameter 2:
-    at a vertex) is inside is a matter of words, unless the documentation promises exact answers."""
-    return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
-
-
 def listed_rows(card, listed, answers, differs):
     """A row for each parameter and kind of label, in the order of the questions."""
     rows = {}
@@ -41,9 +35,9 @@ def listed_rows(card, listed, answers, differs):
         row = rows.setdefault((one.parameter, kind), ask.Row())
         row.take(answer, again)
         row['timed'] += answer.outcome == 'answered'
-        if answer.outcome == 'answered' and is_scored(card, one):
+        if answer.outcome == 'answered' and ask.is_scored(card, one):
             ask.score(card, one, answer.value, row)
-        row['answered'] -= answer.outcome == 'answered' and not is_scored(card, one)
+        row['answered'] -= answer.outcome == 'answered' and not ask.is_scored(card, one)
     return rows
 
 
@@ -114,15 +108,18 @@ def simpler(numbers):
     return sorted((one for one in found if cost(one) < cost(numbers)), key=lambda one: (cost(one), one))
 
 
+def pierces(edge, t):
+    """Whether an edge crosses the inside of a triangle."""
+    edge, t = ask.whole(edge, t)
+    p, along = edge[0], ask.minus(edge[1], edge[0])
+    side = [ask.dot(ask.normal(t), ask.minus(q, t[0])) for q in edge]
+    turns = [ask.dot(along, ask.cross(ask.minus(a, p), ask.minus(b, p))) for a, b in ask.edges(t)]
+    return min(side) < 0 < max(side) and (min(turns) > 0 or max(turns) < 0)
+
+
 def meets(a, b):
     """Whether two closed triangles have a point in common, exactly."""
-    for s, t in (a, b), (b, a):
-        s, t = ask.whole(s, t)
-        n = ask.normal(t)
-        side = [ask.dot(n, ask.minus(p, t[0])) for p in s]
-        if min(side) > 0 or max(side) < 0:
-            return False
-    return ask.crosses(a, b) or ask.within(a, b, 0)
+    return any(pierces(edge, t) for s, t in ((a, b), (b, a)) for edge in ask.edges(s)) or ask.within(a, b, 0)
 
 
 def is_like(card, label, numbers):

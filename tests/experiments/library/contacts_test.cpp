@@ -1,5 +1,7 @@
 // What the library says of contacts, and what it leaves out when it is told to: ignored objects,
 // and pairs beyond a limit. Each is held against the answer without that option.
+#include <cfenv>
+
 #include "core/base/random.h"
 #include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -82,6 +84,23 @@ TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
   };
   expect(found.pairs, found.contacts);
   expect(found.neighbour_pairs, found.neighbour_contacts);
+}
+
+TEST(LibraryContacts, OfAStreamWhoseCallerRoundsUpwardAreTheSame) {
+  const Flat flat(make_builtin_scene("two-tori"));
+  const auto streamed = [&](int rounding) {
+    std::vector<StreamedPair> out;
+    Stream stream(flat.input(), {.threads = 1, .contacts = Contacts::segments});
+    std::fesetround(rounding);
+    for (std::vector<StreamedPair> part; stream.next(part);)
+      out.insert(out.end(), part.begin(), part.end());
+    EXPECT_EQ(std::fegetround(), rounding);
+    std::fesetround(FE_TONEAREST);
+    return out;
+  };
+  const std::vector<StreamedPair> expected = streamed(FE_TONEAREST);
+  EXPECT_GT(expected.size(), 20u);
+  EXPECT_EQ(streamed(FE_UPWARD), expected);
 }
 
 /// The pairs whose objects are not these two.

@@ -139,9 +139,17 @@ def faulty(fault, *options):
 
 write_suite('suite', make_suite('suite'))
 shutil.copy(root + '/experiments/suite/ask.py', 'suite/ask.py')
-spec = importlib.util.spec_from_file_location('ask_module', 'suite/ask.py')
-module = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(module)
+
+
+def load(path, name):
+    spec = importlib.util.spec_from_file_location(name, path)
+    sys.modules[name] = loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+module = load('suite/ask.py', 'ask')
+study_module = load(root + '/experiments/suite/study.py', 'study')  # which imports ask
 with open('faulty.py', 'w', encoding='utf-8') as script:
     script.write(FAULTY)
 
@@ -314,6 +322,24 @@ class Ask(unittest.TestCase):
         with contextlib.closing(module.Child(['sleep', '60'], argparse.Namespace(memory=4096))) as child:
             child.send('x' * (1 << 20))  # more than a pipe holds
         self.assertLess(time.monotonic() - start, 30)
+
+    def test_a_path_may_have_any_bytes(self):
+        says = ['python3', '-c', 'print("0\\t" + "01"[b"\\xff" in open(0, "rb").read()])']
+        options = argparse.Namespace(limit=5, memory=4096, deaths=20)
+        path = os.fsdecode(b'/a\xff.obj')
+        self.assertTrue(module.ask(says, [module.Question('self', [path])], options)[0][0].value)
+        self.assertFalse(module.ask(says, [module.Question('self', ['/a.obj'])], options)[0][0].value)
+
+    def test_a_segment_through_a_triangle_counts_where_the_card_takes_segments(self):
+        a, b = [[0.25, 0.25, -1], [0.25, 0.25, 1], [0.25, 0.25, 1]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        shifted = [[x + 1, y, z] for x, y, z in a]
+        for s, t in (a, b), (b, a):
+            self.assertTrue(study_module.meets(s, t))
+            for means, degenerate in ('closed', 'yes'), ('closed', 'no'), ('crossing', 'no'):
+                card = {**module.CARD, 'means': means, 'degenerate': degenerate}
+                self.assertEqual(module.promised(card, s, t, True, 'crossing'), degenerate == 'yes', card)
+        self.assertFalse(study_module.meets(shifted, b))
+        self.assertTrue(study_module.meets([*a[:2], [1, 1, 1]], b))
 
     def test_an_interrupt_ends_the_contestant(self):
         with subprocess.Popen(['python3', 'suite/ask.py', '--only', 'pair', 'python3 faulty.py stops'],
