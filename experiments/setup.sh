@@ -257,8 +257,6 @@ farcull_keep_report() {
   mkdir -p "$results/figures" "$results/pictures"
   {
     printf '# %s\n\nMade again by\n\n    bash experiments/%s\n\n' "$2" "${4:-${0##*/}}"
-    printf 'Device, driver, commit and CPU are [at the end](#where-it-was-measured). Each chapter counts the rounds of timed\n'
-    printf 'runs that are void, since other programs took the processors meanwhile.\n'
     tail -n +2 "$3/results.md"
   } >"$results/$1.md"
   for file in "$3"/figures/*.svg "$3"/pictures/*.png; do

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "verify/contact_meeting.h"
 #include "verify/exact.h"
@@ -219,13 +218,11 @@ ContactShape contact_shape_of_segments(const Corners& a, const Corners& b) {
 
 std::vector<ContactKind> contact_kinds(const Scene& scene, std::span<const TrianglePair> pairs,
                                        unsigned threads) {
-  const FloatingPointGuard guard;
   return answers(scene, pairs, threads, contact_kind);
 }
 
 std::vector<ContactShape> contact_shapes(const Scene& scene, std::span<const TrianglePair> pairs,
                                          unsigned threads) {
-  const FloatingPointGuard guard;
   return answers(scene, pairs, threads, contact_shape);
 }
 

@@ -108,7 +108,7 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
 }
 
 // The arguments, with the mesh files of a folder and of the folders in it in place of the folder. A
-// file in a format that is not read is an error, unless the same part is there as a mesh.
+// file in a format that is not read is an error, unless the same part is beside it as a mesh.
 SceneArguments ClashCommand::parts() const {
   SceneArguments out = scene_;
   out.names.clear();
@@ -131,9 +131,14 @@ SceneArguments ClashCommand::parts() const {
     std::ranges::sort(files);
     for (const std::string& other : others) {
       const auto same = [&](const std::string& file) {
-        return mesh_stem(file) == mesh_stem(other);
+        return mesh_stem(file) == mesh_stem(other) &&
+               fs::path(file).parent_path() == fs::path(other).parent_path();
       };
-      const std::optional<Error> foreign = foreign_name(other);
+      const bool packed = lower_extension(other).ends_with(".gz");
+      std::optional<Error> foreign = foreign_name(packed ? other.substr(0, other.size() - 3) : other);
+      if (foreign && packed)
+        foreign = Error(other, foreign->reason,
+                        "unpack it: gzip -dk " + quoted(other) + ", then " + foreign->remedy);
       if (foreign && std::ranges::none_of(files, same)) throw *foreign;
     }
     out.names.insert(out.names.end(), files.begin(), files.end());

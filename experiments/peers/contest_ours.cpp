@@ -167,6 +167,6 @@ int main(int argc, char** argv) {
       argc, argv,
       {device() == "native" ? far_pairs_of_library(reliable)
                             : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
-       exact(), of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
+       exact(), of_method(Method::far, reliable, "FAR (2004), with the radius of the error budget"),
        of_method(Method::i_collide, reliable, "few objects that move little")});
 }

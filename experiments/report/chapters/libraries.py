@@ -157,8 +157,8 @@ def trust_table(rows):
         "Whom to trust for what: wrong answers, of those of which the documentation promises the answer. Pairs: do two "
         "triangles meet? Meshes: which of their pairs meet (missed pairs and pairs that are apart are wrong)? Distance: how far "
         "are two triangles apart (an error of a millionth is wrong)? Self: does a mesh meet itself? Inside: is a point in a "
-        "solid? Clash: do the insides of two solids meet? + none: so many got no answer. "
-        "Empty: it has no function for that",
+        "solid (points at a vertex count for farcull's methods alone)? Clash: do the insides of two solids meet? + none: so many "
+        "got no answer. Empty: it has no function for that",
         columns(["contestant", "library"], asked + ["ns a pair"]),
         [[name, of.library.iloc[0], *(cell(of, asks) for asks in asked), ns(of)]
          for name, of in sorted(by(rows, "method"), key=lambda both: rate(both[1]))])
@@ -167,9 +167,9 @@ def trust_table(rows):
 def uses_table(rows):
     known = {}
     for row in rows.drop_duplicates("method").itertuples():
-        known.setdefault((row.library, row.use), []).append(row.method)
+        known.setdefault(row.use, []).append(row.method)
     return Table("libraries-use", "What each is made for, by its documentation where it is quoted",
-                 columns(["contestants", "made for"], []), [[", ".join(names), use] for (_, use), names in known.items()])
+                 columns(["contestants", "made for"], []), [[", ".join(names), use] for use, names in known.items()])
 
 
 def questions_table(rows):
