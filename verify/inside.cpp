@@ -129,22 +129,34 @@ bool is_closed(const Scene& scene, std::uint32_t object) {
   return surface_of(scene, object) != Surface::open;
 }
 
-Surface surface_of(const Scene& scene, std::uint32_t object) {
-  const Object& o = object_of(scene, object, "surface_of");
-  using Place = std::array<double, 3>;
+namespace {
+
+using Place = std::array<double, 3>;
+using Places = std::array<Place, 3>;
+
+/// The corners of the object's triangles that have three different ones.
+std::vector<Places> places_of(const Scene& scene, const Object& o) {
+  std::vector<Places> out;
+  out.reserve(o.triangle_count);
+  for (std::uint32_t k = 0; k < o.triangle_count; ++k) {
+    const Corners t = scene.corners(o.first_triangle + k);
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    Places& p = out.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      for (int axis = 0; axis < 3; ++axis) p[i][axis] = t[i][axis] + 0.0;  // no -0.0
+    }
+  }
+  return out;
+}
+
+Surface surface_of(const std::vector<Places>& triangles) {
   struct Edge {
     std::array<Place, 2> ends;  // the lower one first
     bool forward = false;       // from the lower end to the upper one
   };
   std::vector<Edge> edges;
-  edges.reserve(3u * o.triangle_count);
-  for (std::uint32_t k = 0; k < o.triangle_count; ++k) {
-    const Corners t = scene.corners(o.first_triangle + k);
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    std::array<Place, 3> p{};
-    for (int i = 0; i < 3; ++i) {
-      for (int axis = 0; axis < 3; ++axis) p[i][axis] = t[i][axis] + 0.0;  // no -0.0
-    }
+  edges.reserve(3 * triangles.size());
+  for (const Places& p : triangles) {
     for (int i = 0; i < 3; ++i) {
       const Place &from = p[i], &to = p[(i + 1) % 3];
       edges.push_back({{std::min(from, to), std::max(from, to)}, from < to});
@@ -162,6 +174,37 @@ Surface surface_of(const Scene& scene, std::uint32_t object) {
   return oriented ? Surface::oriented : Surface::closed;
 }
 
+}  // namespace
+
+Surface surface_of(const Scene& scene, std::uint32_t object) {
+  return surface_of(places_of(scene, object_of(scene, object, "surface_of")));
+}
+
+Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
+  std::vector<Places> triangles = places_of(scene, object_of(scene, object, "doubted_surface_of"));
+  const Surface out = surface_of(triangles);
+  if (out == Surface::open) return out;
+  // Each with its corners in ascending order, and whether that is the other way round.
+  std::vector<std::pair<Places, bool>> sorted;
+  sorted.reserve(triangles.size());
+  for (Places& p : triangles) {
+    std::ranges::rotate(p, std::ranges::min_element(p));
+    const bool turned = p[2] < p[1];
+    if (turned) std::swap(p[1], p[2]);
+    sorted.emplace_back(p, turned);
+  }
+  std::ranges::sort(sorted);
+  bool copies = false;
+  for (std::size_t i = 0, end = 0; i < sorted.size(); i = end) {
+    std::int64_t balance = 0;
+    for (end = i; end < sorted.size() && sorted[end].first == sorted[i].first; ++end)
+      balance += sorted[end].second ? 1 : -1;
+    if (end - i > 1 && balance != 0) return Surface::open;
+    copies = copies || end - i > 1;
+  }
+  return copies && out == Surface::oriented ? Surface::doubled : out;
+}
+
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point) {
   return inside(scene, object, point, surface_of(scene, object));
 }
@@ -172,7 +215,7 @@ Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, Surfa
   if (on_surface(scene, o, point)) return Inside::on;
   if (surface == Surface::open) return Inside::not_closed;
   const Crossings found = crossings(scene, o, point);
-  const bool within = surface == Surface::oriented ? found.winding != 0 : found.odd;
+  const bool within = surface == Surface::closed ? found.odd : found.winding != 0;
   return within ? Inside::yes : Inside::no;
 }
 

@@ -257,14 +257,14 @@ class PieceTest {
       if (abs(plane.normal[k]) > abs(plane.normal[axis])) axis = k;
     }
     for (const Polygon& piece : pieces) {
-      const Overlap answer = test(plane, piece, axis);
+      const Overlap answer = test(own == objects_.a, plane, piece, axis);
       if (answer != Overlap::no) return answer;
     }
     return Overlap::no;
   }
 
  private:
-  Overlap test(const Plane& plane, const Polygon& piece, int axis) {
+  Overlap test(bool of_a, const Plane& plane, const Polygon& piece, int axis) {
     constexpr int kDraws = 8;
     for (int draw = 0; draw < kDraws; ++draw) {
       const Q3 p = point_inside(piece, random_);
@@ -277,6 +277,9 @@ class PieceTest {
         if (a->inside[side] && b->inside[side]) return Overlap::yes;
         if (a->perhaps[side] && b->perhaps[side]) out = Overlap::unknown;
       }
+      const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
+      if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
+        out = Overlap::unknown;  // what hangs together with it may be inside as well
       return out;
     }
     return Overlap::unknown;
@@ -290,8 +293,8 @@ class PieceTest {
 };
 
 /// Whether one of the points is inside; a point of the surface is left to the pieces.
-Overlap any_inside(const Scene& scene, std::uint32_t object, std::span<const Vec3> points) {
-  const Surface surface = surface_of(scene, object);
+Overlap any_inside(const Scene& scene, std::uint32_t object, Surface surface,
+                   std::span<const Vec3> points) {
   Overlap out = Overlap::no;
   for (const Vec3& point : points) {
     const Overlap here = overlap_at(scene, object, point, surface);
@@ -346,10 +349,12 @@ Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, 
 
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
                             std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
-                            std::span<const Vec3> parts_b, bool closed) {
+                            std::span<const Vec3> parts_b, std::array<Surface, 2> surfaces) {
   const FloatingPointGuard guard;
   if (plane_divides(scene, objects, contacts)) return Overlap::no;
-  if (!closed) return Overlap::unknown;
+  for (const Surface surface : surfaces) {
+    if (surface == Surface::open || surface == Surface::doubled) return Overlap::unknown;
+  }
   PieceTest test(scene, objects);
   for (const bool second : {false, true}) {
     const std::vector<TrianglePair> sorted = sorted_by(contacts, second);
@@ -361,8 +366,8 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
       if (answer != Overlap::no) return answer;
     }
   }
-  const Overlap a = any_inside(scene, objects.b, parts_a);
-  const Overlap b = any_inside(scene, objects.a, parts_b);
+  const Overlap a = any_inside(scene, objects.b, surfaces[1], parts_a);
+  const Overlap b = any_inside(scene, objects.a, surfaces[0], parts_b);
   if (a == Overlap::yes || b == Overlap::yes) return Overlap::yes;
   return a == Overlap::unknown ? a : b;
 }

@@ -15,6 +15,8 @@
 //   it. If the face has a contact, one of its pieces shows that. If not, the face is inside the
 //   other object, and so is all that hangs together with it up to the next contact, where a piece
 //   of a triangle is inside; without any contact one vertex of the part of the object shows it.
+//   Such a piece shows nothing if its own object is on neither side of it, as in a fold; then the
+//   answer is unknown.
 //
 // Here a point may be inside a mesh if a ray from it crosses the mesh an odd number of times, or
 // more often in one sense than in the other, so that overlapping shells hide nothing; it is inside
@@ -23,6 +25,7 @@
 // Everything is decided in rational numbers. Preconditions of verify/exact.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -37,15 +40,16 @@ enum class Overlap : std::uint8_t { no, yes, unknown };
 
 /// Preconditions: `contacts` are all pairs of a triangle of object a and a triangle of object b
 /// that share a point, and none of them is of ContactKind::crossing. parts_a: a vertex of each part
-/// of a that hangs together, and likewise parts_b. closed: whether both objects are closed.
+/// of a that hangs together, and likewise parts_b. surfaces: of a and b, by
+/// doubted_surface_of().
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
                             std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
-                            std::span<const Vec3> parts_b, bool closed);
+                            std::span<const Vec3> parts_b, std::array<Surface, 2> surfaces);
 
 /// Whether a point off the surface of a closed object is inside it (verify/inside.h). Where the
-/// object is not oriented, an even number of crossings does not tell a place outside from one
-/// inside two shells: no is the answer only if a ray along an axis meets nothing, and else unknown.
-/// surface: that of surface_of().
+/// object is closed alone or doubled, an even number of crossings, or a winding number of 0, does
+/// not tell a place outside from one inside two shells: no is the answer only if a ray along an
+/// axis meets nothing, and else unknown. surface: that of doubted_surface_of().
 Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 /// Whether a plane along the axes, or the plane of a triangle in one of the contacts, has one

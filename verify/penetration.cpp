@@ -138,14 +138,15 @@ class Polytope {
   Vec3 support(const Vec3& direction) {
     const Vec3 out = a_.farthest(direction) - b_.farthest(-direction);
     const double overlap = direction.dot(out);
-    if (overlap < overlap_) overlap_ = overlap, direction_ = direction;
+    if (overlap < overlap_ && (direction.array() != 0).any())
+      overlap_ = overlap, direction_ = direction;
     return out;
   }
 
   bool add_face(std::uint32_t i, std::uint32_t j, std::uint32_t k) {
     const Vec3 normal = (corners_[j] - corners_[i]).cross(corners_[k] - corners_[i]);
     const double length = normal.norm();
-    if (!(length > 0)) return false;
+    if (!(length > 0 && length < kInf)) return false;
     faces_.push_back({{i, j, k}, normal / length, normal.dot(corners_[i]) / length});
     return true;
   }
@@ -227,7 +228,8 @@ void bound_above(const Solid& a, const Solid& b, const Vec3& direction, Penetrat
     if (separates_points(a.points, b.points, direction, out.translation)) break;
     length += std::ldexp(kU, k) * std::abs(length);
   }
-  out.hi = out.translation.norm() * (1 + 8 * kU);
+  out.hi = out.translation.stableNorm() * (1 + 8 * kU);
+  if (out.hi > 0) out.hi = std::nextafter(out.hi, kInf);  // also among subnormal numbers
   if (!separates_points(a.points, b.points, direction, out.translation)) out.hi = kInf;
 }
 

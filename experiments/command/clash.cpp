@@ -135,7 +135,8 @@ SceneArguments ClashCommand::parts() const {
                fs::path(file).parent_path() == fs::path(other).parent_path();
       };
       const bool packed = lower_extension(other).ends_with(".gz");
-      std::optional<Error> foreign = foreign_name(packed ? other.substr(0, other.size() - 3) : other);
+      std::optional<Error> foreign =
+          packed ? foreign_name(other.substr(0, other.size() - 3)) : foreign_mesh(other);
       if (foreign && packed)
         foreign = Error(other, foreign->reason,
                         "unpack it: gzip -dk " + quoted(other) + ", then " + foreign->remedy);

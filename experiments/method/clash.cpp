@@ -38,7 +38,8 @@ class Objects {
   const std::vector<Box>& boxes() const { return boxes_; }
   Surface surface(std::uint32_t object) const {
     Facts& facts = facts_[object];
-    std::call_once(facts.surface_found, [&] { facts.surface = surface_of(scene_, object); });
+    std::call_once(facts.surface_found,
+                   [&] { facts.surface = doubted_surface_of(scene_, object); });
     return facts.surface;
   }
   bool closed(std::uint32_t object) const { return surface(object) != Surface::open; }
@@ -145,7 +146,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const auto& [p, q] : ends) {
     row.segments.push_back({Vec3(p[0], p[1], p[2]), Vec3(q[0], q[1], q[2])});
-    row.curve += (row.segments.back()[1] - row.segments.back()[0]).norm();
+    row.curve += (row.segments.back()[1] - row.segments.back()[0]).stableNorm();
   }
 }
 
@@ -157,10 +158,9 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
     row.verdict = ClashVerdict::touch;
     return;
   }
-  const bool closed = objects.closed(a) && objects.closed(b);
-  const Overlap overlap = closed ? overlap_of_touching(scene, row.objects, pairs, objects.parts(a),
-                                                       objects.parts(b), true)
-                                 : Overlap::unknown;
+  const Overlap overlap =
+      overlap_of_touching(scene, row.objects, pairs, objects.parts(a), objects.parts(b),
+                          {objects.surface(a), objects.surface(b)});
   row.verdict = overlap == Overlap::no ? ClashVerdict::touch : ClashVerdict::clash;
   row.proved = overlap != Overlap::unknown;
 }

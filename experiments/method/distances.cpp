@@ -496,13 +496,14 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
-    *memory = {};
+    DistanceMemory kept;  // whole or not at all, whatever is thrown
     if (options.pairs != DistancePairs::all) {
       for (const Distance& d : out.distances) {
-        memory->objects.push_back(d.objects);
-        memory->nearest.push_back(d.triangles);
+        kept.objects.push_back(d.objects);
+        kept.nearest.push_back(d.triangles);
       }
     }
+    *memory = std::move(kept);
   }
   out.ms = watch.ms();
   out.scene_hash = scene_hash(scene);

@@ -61,7 +61,8 @@ std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
   // Probing a software renderer takes longer than an answer may, except the first one. So these
   // two triangles are drawn before it, even if boxes alone decide what is asked first.
   [[maybe_unused]] static const Record probed =
-      run(scene_of({.a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
+      run(scene_of({.shared = {},
+                    .a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
                     .b = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(2, 2, 1)}}),
           options, session);
   const Record record = run(scene, options, session);

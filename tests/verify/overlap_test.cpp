@@ -32,7 +32,8 @@ Overlap answer(const Scene& scene) {
   EXPECT_FALSE(of.crossing);
   return overlap_of_touching(scene, {0, 1}, of.contacts,
                              point_of_each_part(scene, scene.objects[0]),
-                             point_of_each_part(scene, scene.objects[1]), true);
+                             point_of_each_part(scene, scene.objects[1]),
+                             {doubted_surface_of(scene, 0), doubted_surface_of(scene, 1)});
 }
 
 TEST(Overlap, BoxesSideBySideTouch) {
@@ -87,6 +88,30 @@ TEST(Overlap, IsFoundWhereNoTrianglesCross) {
   rod.add_cubes("rod", {{0, 0, -1}, {0, 0, 0}}, random);
   rod.add_box("slab", {-2, -2, -5}, {3, 3, 0});
   EXPECT_EQ(answer(rod.scene), Overlap::yes);
+}
+
+// A cube in the box a hangs on a fold, whose tip is on the wall of a. Only the fold meets a, and it
+// has no inside. The two sides of the fold are the same triangle, or are divided differently.
+TEST(Overlap, AFoldThatTouchesHidesNoCubeThatHangsOnIt) {
+  for (const bool alike : {false, true}) {
+    Parts parts;
+    parts.add_box("a", {0, 0, 0}, {10, 10, 10});
+    const std::uint32_t c = parts.next();
+    if (alike) {
+      parts.vertex(10, 5, 4), parts.vertex(6, 4, 4), parts.vertex(6, 6, 4);
+      parts.triangle(c, c + 1, c + 2);
+      parts.triangle(c, c + 2, c + 1);
+    } else {
+      parts.vertex(10, 4, 4), parts.vertex(10, 6, 4), parts.vertex(6, 6, 4), parts.vertex(6, 4, 4);
+      parts.vertex(8, 5, 4);
+      for (std::uint32_t k = 0; k < 4; ++k) parts.triangle(c + k, c + (k + 1) % 4, c + 4);
+      parts.quad(c, {3, 2, 1, 0});
+    }
+    parts.box({4, 4, 4}, {6, 6, 6});
+    parts.end("b");
+    EXPECT_EQ(doubted_surface_of(parts.scene, 1), alike ? Surface::doubled : Surface::oriented);
+    EXPECT_EQ(answer(parts.scene), Overlap::unknown) << alike;
+  }
 }
 
 // A sheet in a box, with a corner on its wall: the plane of the sheet has the box on both sides.

@@ -103,16 +103,21 @@ class Grouped:
 
     def ignored(self, given: Any) -> Any:
         """Pairs of objects, by their labels where there are some, as pairs of numbers."""
-        if self.labels is None or given is None or np.size(given) == 0:
+        if self.labels is None or given is None:
             return given
-        rows = np.asarray(given)
-        # numpy would compare numbers with text as text, and then search in another order.
-        same = (rows.dtype.kind == "U") == (self.labels.dtype.kind == "U")
-        if rows.ndim != 2 or rows.shape[1] != 2 or not same or not np.isin(rows, self.labels).all():
-            raise InputError(
-                "ignore", "are no rows of two labels that triangles have", "give labels, as in [(3, 7)]"
-            )
-        return np.searchsorted(self.labels, rows)
+        remedy = "give labels, as in [(3, 7)]"
+        rows = read("ignore", given, remedy)
+        if rows.size == 0:
+            return None
+        # Compared by Python, since numpy rounds where one array is signed and the other is not.
+        places = {label: place for place, label in enumerate(self.labels.tolist())}
+        try:
+            if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iubUS":
+                raise KeyError
+            return [[places[a], places[b]] for a, b in rows.tolist()]
+        except KeyError:
+            reason = "are no rows of two labels that triangles have"
+            raise InputError("ignore", reason, remedy) from None
 
 
 def poses(given: Any) -> np.ndarray:
@@ -123,6 +128,8 @@ def poses(given: Any) -> np.ndarray:
     out = read("poses", given, remedy)
     if out.shape[1:] not in ((3, 4), (4, 4)) or not np.can_cast(out.dtype, np.float64):
         raise InputError("poses", f"have the shape {out.shape} and the type {out.dtype}", remedy)
+    if out.dtype.kind in "iu" and out.size and max(-int(out.min()), int(out.max())) > 2**53:
+        raise InputError("poses", "hold what a double may not hold exactly", "give doubles")
     if not len(out):
         raise InputError("poses", "are none", "give one for each object, or leave them out")
     if out.shape[1] == 4 and not (out[:, 3] == (0, 0, 0, 1)).all():
@@ -140,14 +147,29 @@ def arrays(
     """The input of a call. ``before``: of the call whose arrays poses move where they are given alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
-    if alone and before is not None and len(matrices):
+    if alone and isinstance(before, Grouped) and len(matrices):
         return before, (np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices)
     for name, given in (("V", V), ("F", F)):
         if given is None:
             remedy = "give V and F; poses alone move those of the call before, if it had an answer"
             raise InputError(name, "is not given", remedy)
     grouped = Grouped(F, object_starts, labels)
+    if matrices.size and not grouped.triangles.size:
+        raise InputError("F", "has no triangles", "give some, or poses alone to move those of the call before")
     return grouped, (array("V", V), grouped.triangles, grouped.starts, matrices)
+
+
+def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
+    """The answer of a compiled collider or finder of ``owner``, which then knows the objects of the call.
+    If a signal handler asked it in between, it knows those of the handler's call, which was the last."""
+    turn = object()
+    if not given[1].size and given[3].size and owner._grouped is not grouped:
+        raise InputError("poses", "would move the arrays of a call in between", "give V and F")
+    owner._grouped = turn  # nothing is called before the next line: Python checks for signals after calls
+    found = compiled.find(*given)
+    if owner._grouped is turn:
+        owner._grouped = grouped
+    return found
 
 
 def _starts(given: Any) -> np.ndarray:
@@ -175,6 +197,8 @@ def number(name: str, given: Any) -> float:
         out = math.inf
     if math.isnan(out):
         raise InputError(name, "is no number", "give a number")
+    if isinstance(given, numbers.Integral) and math.isfinite(out) and int(out) != int(given):
+        raise InputError(name, f"is {given}, which is no double", f"give {out!r}, or another double")
     return out
 
 

@@ -156,7 +156,7 @@ class Collider:
         question = _question(
             self, clearance, neighbours, threads, contacts, segments, ignore, limit
         )
-        collider._grouped: Optional[_arguments.Grouped] = None  # of the call before
+        collider._grouped: Any = None  # of the call before, if it had an answer
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(
             question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
@@ -200,9 +200,7 @@ class Collider:
         self, grouped: _arguments.Grouped, given: _arguments.Arrays,
         shown: Optional[Tuple[Any, Any, Any]] = None,
     ) -> Result:
-        self._grouped = None  # until there is an answer
-        found = self._collider.find(*given)
-        self._grouped = grouped
+        found = _arguments.ask(self, self._collider, grouped, given)
         for names in (
             ("pairs", "kinds", "segments"),
             ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
@@ -299,8 +297,9 @@ class Stream:
             if found is None:
                 raise StopIteration
             part = Part(*self._grouped.pairs(*found))
-            self._stream.taken = True
-            if len(part.pairs) > 0:
+            some = len(part.pairs) > 0
+            self._stream.taken = True  # nothing is called from here on: Python checks for signals after calls
+            if some:
                 return part
 
     @property

@@ -120,7 +120,7 @@ class DistanceFinder:
         if parity and which == "all":
             raise InputError("inside", "has no meaning with kind all", "leave it out")
         pairs = _arguments.ignored(ignore)
-        finder._grouped: Optional[_arguments.Grouped] = None  # of the call before
+        finder._grouped: Any = None  # of the call before, if it had an answer
         finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
             which, wanted, limit, all_objects, each, parity or _arguments.flag("inside", inside),
@@ -144,9 +144,7 @@ class DistanceFinder:
         )
 
     def _find(self, grouped: _arguments.Grouped, given: _arguments.Arrays) -> Distances:
-        self._grouped = None  # until there is an answer
-        found = self._finder.find(*given)
-        self._grouped = grouped
+        found = _arguments.ask(self, self._finder, grouped, given)
         found["squared"] = np.array(found["squared"], dtype=object)
         if grouped.order is not None:
             found["triangles"] = grouped.order[found["triangles"]]

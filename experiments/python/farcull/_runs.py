@@ -207,7 +207,7 @@ def check(
         raise InputError("clearance", "is no distance", "give a finite number, 0 or more")
     listed = None
     if pairs is not None:
-        listed = np.asarray(pairs)
+        listed = _arguments.read("pairs", pairs, "give rows of two numbers of triangles")
         if listed.size == 0:
             listed = np.empty((0, 2), np.int64)
         if listed.dtype.kind not in "iu" or listed.ndim != 2 or listed.shape[1] != 2:

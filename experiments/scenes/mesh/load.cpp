@@ -57,7 +57,7 @@ struct Foreign {
   std::array<std::string_view, 2> signs = {};
 };
 
-constexpr std::array<Foreign, 28> kForeign = {{
+constexpr std::array<Foreign, 29> kForeign = {{
     {"glTF", kAssimp, ".gltf .glb", {"glTF"}},
     {"FBX", kAssimp, ".fbx", {"Kaydara FBX Binary", "; FBX "}},
     {"COLLADA", kAssimp, ".dae", {"<COLLADA"}},
@@ -65,7 +65,7 @@ constexpr std::array<Foreign, 28> kForeign = {{
     {"VTK", kMeshio, ".vtk .vtu", {"# vtk DataFile", "<VTKFile"}},
     {"a mesh of Gmsh", kGmshMesh, ".msh", {"$MeshFormat"}},
     {"a mesh of Medit", kMeshio, ".mesh", {"MeshVersionFormatted"}},
-    {"STEP", kGmshShape, ".step .stp", {"ISO-10303-21"}},
+    {"STEP", kGmshShape, ".step .stp .p21", {"ISO-10303-21"}},
     {"a shape of OpenCASCADE", kGmshShape, ".brep", {"DBRep_DrawableShape"}},
     {"USD",
      {kNewBlender, ".obj", "wm.usd_import"},
@@ -103,6 +103,9 @@ constexpr std::array<Foreign, 28> kForeign = {{
     {"a document of FreeCAD",
      {"open it in FreeCAD and export its shapes as STEP or STL (Debian: freecad)", "", "", ""},
      ".fcstd"},
+    {"a document of a CAD program",
+     {"open it there and export its shapes as STEP or STL", "", "", ""},
+     ".sldprt .sldasm .x_t .x_b .ipt .iam .catpart .catproduct .prt .sat .3dm .jt .dxf .dwg .skp"},
 }};
 
 // The text as a string literal of Python, in double quotes.

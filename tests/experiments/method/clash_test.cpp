@@ -290,6 +290,53 @@ TEST(Clash, IgnoredPairsThatMeetAreListedApart) {
   EXPECT_EQ(record.rows[0].verdict, clash);
 }
 
+// A file may have both sides of each face. Then no winding number tells what is inside.
+TEST(Clash, WhatIsInABoxWithBothSidesOfEachFaceIsUnknown) {
+  const auto boxes = [](bool both_sides, const Vec3& lo, bool turned = true) {
+    Parts parts;
+    parts.box({0, 0, 0}, {10, 10, 10});
+    for (std::uint32_t t = 0; both_sides && t < 12; ++t) {
+      const auto [a, b, c] = parts.scene.triangles[t];
+      turned ? parts.triangle(a, c, b) : parts.triangle(a, b, c);
+    }
+    parts.end("outer");
+    parts.add_box("inner", lo, lo + Vec3(2, 2, 2));
+    return clashes(parts.scene, {});
+  };
+  EXPECT_EQ(boxes(false, {4, 4, 4}).count(contained), 1u);  // the twin
+  EXPECT_EQ(boxes(true, {4, 4, 4}).count(unknown), 1u);
+  EXPECT_EQ(boxes(true, {4, 4, 4}, false).count(unknown), 1u);
+  EXPECT_EQ(boxes(true, {40, 4, 4}).count(clear), 1u);
+  const ClashRecord standing = boxes(true, {4, 4, 0});
+  EXPECT_EQ(standing.count(clash), 1u);
+  EXPECT_FALSE(standing.rows[0].proved);
+}
+
+// An inner wall divides a part into two chambers; it is there for both of them.
+TEST(Clash, WhatIsInAChamberBesideAnInnerWallIsContained) {
+  Parts parts;
+  parts.box({0, 0, 0}, {10, 10, 10});
+  parts.box({10, 0, 0}, {20, 10, 10});
+  parts.end("chambers");
+  parts.add_box("inner", {4, 4, 4}, {6, 6, 6});
+  EXPECT_EQ(clashes(parts.scene, {}).count(contained), 1u);
+}
+
+// The square of 1e-170 is no double.
+TEST(Clash, DepthsOfTinyPartsAreBounded) {
+  for (const double unit : {1e-170, 0x1p-1074, 1e-300, 1e100}) {
+    Parts parts;
+    parts.add_box("a", Vec3(0, 0, 0), Vec3(20, 20, 20) * unit);
+    parts.add_box("b", Vec3(10, 10, 10) * unit, Vec3(30, 30, 30) * unit);
+    const ClashRecord record = clashes(parts.scene, {});
+    ASSERT_EQ(record.count(clash), 1u);
+    ASSERT_TRUE(record.rows[0].depth) << unit;
+    EXPECT_LE(record.rows[0].depth->lo, 10 * unit);
+    EXPECT_GE(record.rows[0].depth->hi, 10 * unit) << unit;
+    EXPECT_GT(record.rows[0].curve, 0);
+  }
+}
+
 // Open surfaces have no inside: they touch only where a plane shows it.
 TEST(Clash, ATouchThatIsNotProvedCountsAsAClash) {
   Parts lid;

@@ -408,7 +408,11 @@ def test_arrays_come_through_dlpack():
     starts, labels, ignore = np.array([0, 1]), np.array([1, 0]), np.array([[0, 1]])
     assert farcull.collide(Tensor(V), Tensor(F), Tensor(starts)).pairs.tolist() == [[0, 1]]
     assert farcull.collide(Tensor(V), Tensor(F), labels=Tensor(labels)).pairs.tolist() == [[0, 1]]
-    assert error_of(farcull.collide, Tensor(V), Tensor(F), starts, ignore=Tensor(ignore)).where == "ignore"
+    three = np.concatenate([F, F[1:]])
+    for labels in None, [7, 8, 9]:
+        rows = Tensor(ignore if labels is None else ignore + 7)
+        some = farcull.collide(V, three, None if labels else [0, 1, 2], labels=labels, ignore=rows)
+        assert some.pairs.tolist() == [[0, 2], [1, 2]]
     error = error_of(farcull.collide, Tensor(V, 2), F, starts)
     assert isinstance(error, farcull.InputError) and error.where == "V" and "device" in error.reason
     assert refused(farcull.collide, V, Tensor(F, 2), starts) == "F"

@@ -211,6 +211,21 @@ def test_labels_group_triangles_in_any_order():
         assert answer.objects == tuple(np.unique(names).tolist()) and list(sorted(answer.triangles)) in wanted
         ignore = [tuple(np.unique(names))]
         assert error_of(farcull.collide, V, F[order], labels=names[order], ignore=ignore).where == "ignore"
+    # Labels beyond 2^53 are not rounded, whatever the type of the rows.
+    large = np.array([2**60, 2**60 + 1, 2**61, 2**61 + 1], np.uint64)
+    four = np.concatenate([F[:1]] * 4)
+    for rows in [(2**60 + 1, 2**61 + 1)], np.array([(2**60 + 1, 2**61 + 1)]), large[[[1, 3]]]:
+        assert [1, 3] not in farcull.collide(V, four, labels=large, ignore=rows).pairs.tolist()
+        assert [0, 2] in farcull.collide(V, four, labels=large, ignore=rows).pairs.tolist()
+    masked = np.ma.array([[3, 7], [3, 7]], mask=[[0, 0], [1, 1]])
+    assert error_of(farcull.collide, V, F, labels=labels, ignore=masked).where == "ignore"
+    assert error_of(farcull.collide, V, F, starts, clearance=2**53 + 1).where == "clearance"
+    far = np.array([[[1, 0, 0, 2**53 + 1], [0, 1, 0, 0], [0, 0, 1, 0]]] * 2)
+    assert error_of(farcull.collide, V, F, starts, poses=far).where == "poses"
+    # Poses alone move the arrays of the call before; empty arrays are no poses alone.
+    kept = farcull.Collider()
+    kept.find(V, F, labels=labels)
+    assert error_of(kept.find, V[:0], F[:0], [], poses=[np.eye(4)] * 2).where == "F"
     # The same labels as starts were 12 pairs before, without an error.
     assert error_of(farcull.collide, V, F, np.repeat([0, 1], count // 2)).where == "object_starts"
     for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None, np.ma.array(labels)):
