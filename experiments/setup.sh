@@ -256,7 +256,7 @@ farcull_keep_report() {
   local results=$farcull_root/docs/results file
   mkdir -p "$results/figures" "$results/pictures"
   {
-    printf '# %s\n\nMade again by\n\n    bash experiments/%s\n\n' "$2" "${4:-${0##*/}}"
+    printf '# %s\n\nMade again by\n\n    bash experiments/%s\n' "$2" "${4:-${0##*/}}"
     tail -n +2 "$3/results.md"
   } >"$results/$1.md"
   for file in "$3"/figures/*.svg "$3"/pictures/*.png; do
