@@ -62,7 +62,7 @@ std::vector<KnownContestant> make_list() {
   return all;
 }
 
-/// study.py imports ask.py, which is handed to it as its first argument.
+/// study.py imports ask.py, which is handed to it as its argument.
 constexpr const char* kImport =
     "import sys, types\nsys.modules['ask'] = ask = types.ModuleType('ask')\n"
     "exec(sys.argv.pop(1), ask.__dict__)\n";
@@ -103,23 +103,38 @@ std::string command_of(const KnownContestant& contestant) {
 }
 
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options) {
-  std::vector<std::string> words = {
-      python(), "-I", "-B", "-c", std::string(kImport) + embedded::study_py, embedded::ask_py};
-  words.insert(words.end(), options.begin(), options.end());
-  words.insert(words.end(), {"--", command});
-  std::string line = "exec";
-  for (const std::string& word : words) line += " " + quoted(word);
-  std::string text;
-  int status = -1;
-  if (FILE* const pipe = ::popen(line.c_str(), "re")) {
-    std::array<char, 1 << 16> buffer;
-    for (std::size_t got; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-      text.append(buffer.data(), got);
-    status = ::pclose(pipe);
+  // One process of Python answers all: to start it takes longer than most questions.
+  static FILE *questions = nullptr, *answers = nullptr;
+  if (questions == nullptr) {
+    std::array<int, 2> ends = {-1, -1};
+    if (::pipe(ends.data()) != 0) throw Error("study.py", "got no pipe", "allow more open files");
+    std::string line = "exec";
+    const std::string program = std::string(kImport) + embedded::study_py;
+    for (const std::string& word : {python(), {"-I"}, {"-B"}, {"-c"}, program, {embedded::ask_py}})
+      line += " " + quoted(word);
+    questions = ::popen((line + " >/dev/fd/" + std::to_string(ends[1])).c_str(), "we");
+    ::close(ends[1]);
+    answers = ::fdopen(ends[0], "r");
   }
-  nlohmann::json out = nlohmann::json::parse(text, nullptr, false);
-  if (status != 0 || out.is_discarded()) {
-    throw Error(command, text.empty() ? "cannot be asked" : text.substr(0, text.find('\n')),
+  std::string call;
+  for (const std::string& word : options) call += word + '\0';
+  call += std::string("--") + '\0' + command + '\0' + '\0';
+  char* text = nullptr;
+  std::size_t size = 0;
+  if (questions != nullptr) {
+    std::fwrite(call.data(), 1, call.size(), questions);
+    std::fflush(questions);
+  }
+  const bool answered = ::getline(&text, &size, answers) > 0;
+  nlohmann::json out = nlohmann::json::parse(answered ? text : "", nullptr, false);
+  std::free(text);
+  if (!answered) {  // it has ended; the next call starts another one
+    if (questions != nullptr) ::pclose(questions);
+    std::fclose(answers);
+    questions = nullptr;
+  }
+  if (out.is_discarded() || out.contains("error")) {
+    throw Error(command, out.is_discarded() ? "cannot be asked" : out["error"].get<std::string>(),
                 "install Python 3.8 or later; docs/ask.md has the protocol");
   }
   return out;

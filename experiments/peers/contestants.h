@@ -28,8 +28,8 @@ bool answers(const KnownContestant& contestant, const std::string& question);
 /// not built.
 std::string command_of(const KnownContestant& contestant);
 
-/// What study.py prints with these options about the program that a command line starts. Throws
-/// Error with the reason if it fails.
+/// What study.py answers to these options about the program that a command line starts. Throws
+/// Error with the reason if it fails. Not for several threads.
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options);
 
 }  // namespace farcull

@@ -115,10 +115,11 @@ Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS or card; fields: of the question, after its kind.
-Question = collections.namedtuple('Question', 'kind fields')
+# kind: one of KINDS or card; fields: of the question, after its kind; family: of which deaths are counted.
+Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
 
 
+FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
 GRAMMAR = {int: re.compile('[0-9]{1,18}'), float: re.compile('-?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)?')}
 
 
@@ -141,8 +142,10 @@ def parse(kind, fields, so_far):
             raise ValueError(rest)
         so_far.append(rest)
         return None
-    if kind == 'mesh' and word == 'pair' and len(rest) == 4:
-        so_far.append(tuple(number(field, int) for field in rest))
+    if kind == 'mesh' and word == 'pair':
+        if not FOUR.fullmatch('\t'.join(rest)):  # one match, since there are millions
+            raise ValueError(rest)
+        so_far.append(tuple(map(int, rest)))
         return None
     if kind == 'distance' and len(fields) in (1, 7):
         return Answer('answered', [number(field) for field in fields], None, '')
@@ -201,9 +204,12 @@ def ask(command, questions, options):
     """An Answer to each question, and how the process ended after the last one. A death counts for the question at which
     it happened; a new process gets the next."""
     answers = [NOT_ASKED] * len(questions)
-    following, deaths, start = 0, 0, max(30, 6 * options.limit)
-    while following < len(questions) and deaths < options.deaths:
+    following, deaths, start = 0, collections.Counter(), max(30, 6 * options.limit)
+    while following < len(questions):
         first = following
+        if deaths[questions[first].family] >= options.deaths:
+            following += 1
+            continue
         with contextlib.closing(Child(command, options)) as child:  # an interrupt reaches this program alone
             following, (outcome, reason) = ask_from(child, questions, first, answers, options.limit, start)
         start = 2 * options.limit
@@ -212,8 +218,8 @@ def ask(command, questions, options):
         if outcome == 'no memory' and following > first:
             continue  # earlier questions may have taken it: it is blamed only if it is the first of a process
         answers[following] = Answer(outcome, None, 0, reason)
+        deaths[questions[following].family] += 1
         following += 1
-        deaths += 1
     return answers, None
 
 
@@ -447,32 +453,32 @@ def corners_of(numbers):
 Listed = collections.namedtuple('Listed', 'number parameter question label numbers')
 
 
-def pairs_of(card, lines):
+def pairs_of(card, family, lines):
     for number_, parameter, shared, label, *words in lines:
         if shared == '-' or card['neighbours'] == 'yes':
             numbers = [*map(float.fromhex, words)]
-            yield Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)]), label, numbers)
+            yield Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)], family), label, numbers)
 
 
-def questions_of(kind, suite, lines):
+def questions_of(kind, family, suite, lines):
     paths = {'self': 1, 'inside': 1, 'clash': 2}.get(kind, 0)
     for number_, parameter, _, label, *words in (words for words in lines if words[2] == kind):
         numbers = [float.fromhex(word) for word in words[paths:]]
         fields = [*map(suite.path, words[:paths]), *map(repr, numbers)]
-        yield Listed(number_, parameter, Question(kind, fields), label, numbers)
+        yield Listed(number_, parameter, Question(kind, fields, family), label, numbers)
 
 
 def lists_of(card, suite, kinds, only=None):
-    """The kind, the family and the lines of each list of questions, or of the list `only`."""
+    """The kind and the lines of each list of pairs, or of the list `only`, and of all questions of each other kind: they are
+    few, and starting a process takes longer than most."""
     for family, lines in suite.lists('pairs', only) if 'pair' in kinds else []:
-        yield 'pair', family, [*pairs_of(card, lines)]
+        yield 'pair', [*pairs_of(card, family, lines)]
     families = {}  # of questions about meshes, each of which has a list
-    for family, lines in suite.lists('questions', only) if {*kinds} & {*KINDS[2:]} else []:
+    for family, lines in suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []:
         families.setdefault(family, []).extend(lines)
-    for family, lines in families.items():
-        for kind in KINDS[2:]:
-            if kind in kinds:
-                yield kind, family, [*questions_of(kind, suite, lines)]
+    for kind in KINDS[2:]:
+        if kind in kinds:
+            yield kind, [one for family, lines in families.items() for one in questions_of(kind, family, suite, lines)]
 
 
 def is_scored(card, one):
@@ -595,9 +601,9 @@ def measure(command, options):
     card = card_of(command, ask(command, [Question('card', [])], options)[0][0])
     asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
     rows = {kind: {} for kind in KINDS}
-    for kind, family, listed in lists_of(card, suite, asked):
+    for kind, listed in lists_of(card, suite, asked):
         for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
-            row = rows[kind].setdefault(family, Row())
+            row = rows[kind].setdefault(one.question.family, Row())
             row.take(answer, differs)
             if answer.outcome == 'answered' and is_scored(card, one):
                 score(card, one, answer.value, row)

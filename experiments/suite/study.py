@@ -1,17 +1,22 @@
 #!/usr/bin/env python3
 """What the study `libraries` keeps of one contestant and one part of a suite. ask.py, which lies beside this file, asks.
 
-    study.py --suite DIR --question KIND --family NAME COMMAND    prints an object of JSON, in the names of LibraryCounts
-                                                                  (experiments/studies/counts.h), and examples of faults
-    study.py --question card COMMAND                              prints the card
+It reads calls, and prints a line with an object of JSON for each. Arguments of a call end with a zero byte, and a call with
+one more; a path may have any other bytes.
+    --suite DIR --question KIND --family NAME COMMAND    in the names of LibraryCounts (experiments/studies/counts.h), and
+                                                         examples of faults
+    --question card COMMAND                              the card
+If it cannot be done, the object has the reason as its `error`.
 
 A mesh NAME stands for all meshes NAME-1, NAME-2 .. of the suite, which one process is asked about. `self`, `inside`,
-`clash` and `distance` need no family: all of a suite are asked. If it cannot be done, the reason is printed, with status 2.
+`clash` and `distance` need no family: all of a suite are asked.
 """
 import argparse
+import contextlib
 import gc
 import json
 import math
+import os
 import re
 import shlex
 import sys
@@ -44,7 +49,7 @@ def listed_rows(card, listed, answers, differs):
 def of_lists(command, card, suite, kind, family, options):
     """The rows of that list of pairs, or of all lists of questions of that kind; and the examples of faults of pairs."""
     rows, more = {}, {}
-    for _, _, listed in ask.lists_of(card, suite, [kind], family if kind == 'pair' else None):
+    for _, listed in ask.lists_of(card, suite, [kind], family if kind == 'pair' else None):
         answers, differs = ask.ask_twice(command, [one.question for one in listed], options)
         for key, row in listed_rows(card, listed, answers, differs).items():
             rows.setdefault(key, ask.Row()).add(row)
@@ -128,21 +133,27 @@ def is_like(card, label, numbers):
     return meets(a, b) == label and ask.promised(card, a, b, label)
 
 
-def simplest(command, card, numbers, label, fault, options):
-    """A pair with the same fault and fewer characters, which is the only one that a process is asked about; None if the
-    fault depends on what was asked before. Each round asks about all simpler pairs in one process."""
-    def err(pairs):
-        questions = [ask.Question('pair', ['-', *map(repr, pair)]) for pair in pairs]
-        return [(answer.outcome, answer.value) == fault for answer in ask.ask(command, questions, options)[0]]
+def simplest(command, card, faults, options):
+    """Of each fault a pair with the same fault and fewer characters, which is the only one that a process is asked about; none
+    if the fault depends on what was asked before. Each round asks about all simpler pairs in one process. A fault is a pair,
+    whether it meets, and the outcome and the value that the contestant gave."""
+    def err(tried):
+        questions = [ask.Question('pair', ['-', *map(repr, pair)]) for _, pair in tried]
+        return [(answer.outcome, answer.value) == faults[name][2]
+                for (name, _), answer in zip(tried, ask.ask(command, questions, options)[0])]
 
-    found, deadly = [numbers], fault[0] in DEATHS
-    for _ in range(ROUNDS):
-        tried = simpler(found[-1])[:4 if deadly else None]  # each death costs a process, a hang its whole limit
-        better = next((pair for pair, errs in zip(tried, err(tried)) if errs and is_like(card, label, pair)), None)
-        if not better:
-            break
-        found.append(better)
-    return next((pair for pair in (found[-1], numbers) if all(err([pair])[0] for _ in range(2))), None)
+    found = {name: pair for name, (pair, _, _) in faults.items()}
+    better = found
+    for _ in range(ROUNDS):  # each death costs a process, a hang its whole limit
+        tried = [(name, pair) for name, from_ in better.items()
+                 for pair in simpler(from_)[:4 if faults[name][2][0] in DEATHS else None]]
+        better = {}
+        for (name, pair), errs in zip(tried, err(tried)):
+            if errs and name not in better and is_like(card, faults[name][1], pair):
+                better[name] = pair
+        found = {**found, **better}
+    alone = {name: next((pair for pair in (found[name], faults[name][0]) if err([(name, pair)])[0]), None) for name in faults}
+    return {name: pair for name, pair in alone.items() if pair}
 
 
 def examples(command, card, listed, answers, options):
@@ -156,16 +167,41 @@ def examples(command, card, listed, answers, options):
             name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
             faults.append((cost(one.numbers), len(faults), name, right, one, answer))
     for _, _, name, right, one, answer in sorted(faults, key=lambda fault: fault[:2]):
-        if name in first:
-            continue
-        if ask.promised(card, ask.corners_of(one.numbers), ask.corners_of(one.numbers[9:]), right, one.label):
-            first[name] = one, simplest(command, card, one.numbers, right, (answer.outcome, answer.value), options)
-    return {name: {'parameter': float(one.parameter), 'numbers': list(pair)} for name, (one, pair) in first.items() if pair}
+        if name not in first and ask.promised(card, ask.corners_of(one.numbers), ask.corners_of(one.numbers[9:]), right, one.label):
+            first[name] = one, right, (answer.outcome, answer.value)
+    pairs = simplest(command, card, {name: (one.numbers, *fault) for name, (one, *fault) in first.items()}, options)
+    return {name: {'parameter': float(first[name][0].parameter), 'numbers': list(pair)} for name, pair in pairs.items()}
 
 
 # ---- the command
 
-def main(arguments):
+def found(command, card, options):
+    """What is kept of one family of one kind of question."""
+    suite, more = ask.Suite(options.suite), {}
+    if options.question == 'mesh':
+        rows = of_meshes(command, card, suite, options.family, options)
+    else:
+        rows, more = of_lists(command, card, suite, options.question, options.family, options)
+    total = ask.Row()
+    for row in rows.values():
+        total.add(row)
+    names = [*SCORE, 'timed', *(DISTANCES if options.question == 'distance' else [])]
+    return {'counts': {name.replace(' ', '_').replace('differs', 'differing'): total[name] for name in names},
+            'ns': total['ns'], 'worst': total.worst, 'reason': total.reason, 'scores': scores_text(rows),
+            'card': card, 'examples': more}
+
+
+def calls():
+    """The arguments of each call."""
+    text = b''
+    for part in iter(lambda: sys.stdin.buffer.read1(1 << 16), b''):
+        text += part
+        if text.endswith(b'\0\0'):
+            yield [os.fsdecode(word) for word in text[:-2].split(b'\0')]
+            text = b''
+
+
+def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('command', metavar='COMMAND')
     parser.add_argument('--suite', metavar='DIR')
@@ -174,32 +210,22 @@ def main(arguments):
     parser.add_argument('--limit', type=float, default=5)
     parser.add_argument('--memory', type=int, default=4096)
     parser.add_argument('--deaths', type=int, default=20)
-    options = parser.parse_args(arguments)
-    command = shlex.split(options.command)
     gc.disable()  # it would look through millions of objects, none of which hold each other in a circle
-    try:
-        card = ask.card_of(command, ask.ask(command, [ask.Question('card', [])], options)[0][0])
-        if options.question == 'card':
-            out = card
-        else:
-            suite, more = ask.Suite(options.suite), {}
-            if options.question == 'mesh':
-                rows = of_meshes(command, card, suite, options.family, options)
-            else:
-                rows, more = of_lists(command, card, suite, options.question, options.family, options)
-            total = ask.Row()
-            for row in rows.values():
-                total.add(row)
-            names = [*SCORE, 'timed', *(DISTANCES if options.question == 'distance' else [])]
-            out = {'counts': {name.replace(' ', '_').replace('differs', 'differing'): total[name] for name in names},
-                   'ns': total['ns'], 'worst': total.worst, 'reason': total.reason, 'scores': scores_text(rows),
-                   'card': card, 'examples': more}
-    except (ask.Wrong, ValueError, OSError) as error:
-        print(error)
-        return 2
-    print(json.dumps(out))
-    return 0
+    cards = {}  # by command
+    for call in calls():
+        options = parser.parse_args(call)
+        command = shlex.split(options.command)
+        try:
+            if options.command not in cards:
+                answer = ask.ask(command, [ask.Question('card', [])], options)[0][0]
+                cards[options.command] = ask.card_of(command, answer)
+            card = cards[options.command]
+            out = card if options.question == 'card' else found(command, card, options)
+        except (ask.Wrong, ValueError, OSError) as error:
+            out = {'error': os.fsencode(str(error)).decode('utf-8', 'replace')}
+        print(json.dumps(out), flush=True)
 
 
 if __name__ == '__main__':
-    sys.exit(main(sys.argv[1:]))
+    with contextlib.suppress(KeyboardInterrupt):  # the program that asks says so
+        main()
