@@ -2,12 +2,13 @@
 # Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
 # labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
 # program and the contestants, runs the study and prints where the tables are.
-#   bash experiments/libraries.sh --quick [DIR]   the small suite, ten minutes; VTK and Open3D only
+#   bash experiments/libraries.sh --quick [DIR]   the small suite; contestants are asked side by side, so
+#                                                 that their times say nothing; VTK and Open3D only
 #                                                 where they are installed, since they are large
-#   bash experiments/libraries.sh --keep [DIR]    the same. When it is whole, the report is copied to
-#                                                 docs/results, and the smallest examples to
-#                                                 tests/cases/libraries.txt
-#   bash experiments/libraries.sh [DIR]           the same of the full suite, some two hours; a second
+#   bash experiments/libraries.sh --keep [DIR]    the small suite, one after the other. When it is whole,
+#                                                 the report is copied to docs/results, and the smallest
+#                                                 examples to tests/cases/libraries.txt
+#   bash experiments/libraries.sh [DIR]           the same of the full suite, an hour and a half; a second
 #                                                 run goes on
 # DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
 # and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
@@ -41,9 +42,32 @@ npm_packages=(three@0.187.0 three-mesh-bvh@0.9.17 @dimforge/rapier3d-compat@0.21
 
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
-out=${1:-build/libraries-${commit##* }${quick:+-quick}}
+name=${quick:+-quick}
+if ((${#quick[@]})) && [[ $keep == yes ]]; then name=-keep; fi
+out=${1:-build/libraries-${commit##* }$name}
 status=0
-build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
+ask() { build/farcull experiment libraries "${quick[@]}" --resume --out "$out" "$@"; }
+if [[ $keep == yes && -e $out/results-1-of-2.sqlite ]]; then
+  echo "libraries: $out is of --quick, whose times are not to be kept; name another folder" >&2
+  exit 2
+elif [[ $keep == yes || -e $out/results.sqlite ]]; then
+  ask || status=$?
+else
+  # Two halves side by side, about a suite that is there before they look for it. Each is a group of
+  # processes, since a job of a script does not see an interrupt otherwise.
+  [[ -e $out/suite/suite.txt ]] || build/farcull suite "$out/suite"
+  running=()
+  set -m
+  for half in 1/2 2/2; do
+    ask --shard "$half" &
+    running+=($!)
+  done
+  trap 'kill -INT -- "${running[@]/#/-}"; wait; exit 130' INT TERM
+  for process in "${running[@]}"; do wait "$process" || status=$?; done
+  trap - INT TERM
+  set +m
+  build/farcull merge "$out" || exit $((status ? status : 2))
+fi
 build/farcull report "$out" || status=$?
 if [[ $keep == yes && $status == 0 ]]; then
   farcull_keep_report libraries "Results of the study libraries" "$out/report" "libraries.sh${quick:+ --keep}"
@@ -55,5 +79,6 @@ echo
 # The first table of the page.
 sed -n '/^| contestant/,/^$/p' "$out/report/results.md" | sed '/^$/q; /^|---/d; s/^| //; s/ |$//' |
   sed 's/ | /\t/g' | column -t -s $'\t'
+if [[ $keep == no ]]; then echo "libraries: contestants were asked side by side, so their times are bounds"; fi
 echo "libraries: all tables and figures are in $out/report/; $out/report/results.md begins with what was found"
 exit "$status"

@@ -236,7 +236,7 @@ BROKEN = [
     ('a claim without minutes', 'docs/claims.md', r'\| 110 \|', '| hours |', 'lacks a cell: The tests notice faults'),
     ('a figure that no chapter draws', 'docs/claims.md', 'figure error-time,', 'figure errors,', 'no chapter has errors'),
     ('a second table of claims', 'docs/results/README.md', r'^\| page \|', '| claim |', 'has claims of its own'),
-    ('a page that is gone, in a claim', 'docs/claims.md', r'\(paper\.md\)', '(papers.md)', 'papers.md is not there'),
+    ('a page that is gone, in a claim', 'docs/claims.md', r'\(results/cloth\.md\)', '(results/cloths.md)', 'cloths.md is not there'),
     ('a lemma without assumptions', TWO, r'\*Assumes:\* lemmas 16 and 17\.', '', 'does not say what it assumes')]
 
 

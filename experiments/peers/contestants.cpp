@@ -1,6 +1,7 @@
 // Lists the contestants that the study knows, and runs study.py by Python.
 #include "experiments/peers/contestants.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -108,6 +109,7 @@ nlohmann::json ask_program(const std::string& command, const std::vector<std::st
   if (questions == nullptr) {
     std::array<int, 2> ends = {-1, -1};
     if (::pipe(ends.data()) != 0) throw Error("study.py", "got no pipe", "allow more open files");
+    ::fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     std::string line = "exec";
     const std::string program = std::string(kImport) + embedded::study_py;
     for (const std::string& word : {python(), {"-I"}, {"-B"}, {"-c"}, program, {embedded::ask_py}})

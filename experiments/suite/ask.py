@@ -8,6 +8,7 @@ import argparse
 import collections
 import contextlib
 import csv
+import functools
 import hashlib
 import math
 import os
@@ -160,19 +161,19 @@ def ask_from(child, questions, first, answers, limit, start):
     process ended."""
     following, sent, so_far, size, since, lines = first, first, [], 0, time.monotonic(), collections.deque()
     while True:
-        quick = sent < len(questions) and questions[sent].kind in QUICK
+        quick = sent < len(questions) and not so_far and questions[sent].kind in QUICK
         ahead = AHEAD if quick else 2
-        if sent < len(questions) and sent <= following + ahead // 2:  # half of them at a time
+        if sent < len(questions) and not so_far and sent <= following + ahead // 2:  # half of them at a time
             until = min(following + ahead, len(questions))
             until = next((i for i in range(sent, until) if (questions[i].kind in QUICK) != quick), until)
             child.send(''.join('\t'.join([str(i), questions[i].kind, *questions[i].fields]) + '\n' for i in range(sent, until)))
             sent = until
             if sent == len(questions):
                 child.end_input()
-        slow = following < len(questions) and questions[following].kind not in QUICK
-        left = since + max(start, limit * (10 if slow else 1)) - time.monotonic()
         try:
             if not lines:
+                slow = following < len(questions) and questions[following].kind not in QUICK
+                left = since + max(start, limit * (10 if slow else 1)) - time.monotonic()
                 lines.extend(child.lines.get(timeout=max(0, left)))
         except queue.Empty:
             return following, HUNG
@@ -192,10 +193,11 @@ def ask_from(child, questions, first, answers, limit, start):
             what = 'too long an answer' if size > MOST else 'what docs/ask.md does not have'
             return following, ('crashed', f'wrote {what}: {line.rstrip()[:80]}')
         answers[following:at] = [UNANSWERED] * (at - following)
-        following, now = at, time.monotonic()
+        following = at
         if answer:
+            now = time.monotonic()
             answers[at] = answer if answer.ns is not None else answer._replace(ns=(now - since) * 1e9)
-            following, so_far, since, size, start = at + 1, [], now, 0, 0
+            following, so_far, since, size, start, left = at + 1, [], now, 0, 0, 0
         elif left < 0:  # lines that are not the last one gain no time
             return following, HUNG
 
@@ -215,7 +217,7 @@ def ask(command, questions, options):
         start = 2 * options.limit
         if following == len(questions):
             return answers, (outcome, reason)
-        if outcome == 'no memory' and following > first:
+        if (outcome == 'no memory' or reason.startswith('SIGXCPU')) and following > first:
             continue  # earlier questions may have taken it: it is blamed only if it is the first of a process
         answers[following] = Answer(outcome, None, 0, reason)
         deaths[questions[following].family] += 1
@@ -227,7 +229,12 @@ def ask_twice(command, questions, options):
     """The answers, and for each question whether a second answer was another one (None: it was not asked again)."""
     answers = ask(command, questions, options)[0]
     step = AGAIN if questions and questions[0].kind != 'mesh' else 1
-    again = [i for i in range(0, len(questions), step) if answers[i].outcome in ('answered', 'refused')][::-1]
+    at = collections.Counter()  # of each family
+    again = []
+    for i, question in enumerate(questions):
+        if at[question.family] % step == 0 and answers[i].outcome in ('answered', 'refused'):
+            again.insert(0, i)
+        at[question.family] += 1
     differs = [None] * len(questions)
     for i, second in zip(again, ask(command, [questions[i] for i in again], options)[0]):
         if second.outcome != 'not asked':
@@ -300,9 +307,11 @@ def edges(t):
 
 
 def point_to_segment(p, segment):
-    start, along = segment[0], minus(segment[1], segment[0])
-    t = Fraction(dot(minus(p, start), along), square(along)) if any(along) else 0
-    return square(minus(p, [x + min(max(t, 0), 1) * d for x, d in zip(start, along)]))
+    from_start, along = minus(p, segment[0]), minus(segment[1], segment[0])
+    t = dot(from_start, along)
+    if 0 < t < square(along):
+        return Fraction(square(cross(from_start, along)), square(along))
+    return square(from_start if t <= 0 else minus(p, segment[1]))
 
 
 def point_to_triangle(p, t):
@@ -321,9 +330,11 @@ def segment_to_segment(e, f):
 
 def within(a, b, margin):
     """Whether two triangles that do not cross are no farther apart than the margin."""
+    boxes = [[(min(axis), max(axis)) for axis in zip(*t)] for t in (a, b)]
+    if any(max(p[0] - q[1], q[0] - p[1]) > float(margin) for p, q in zip(*boxes)):  # rounding makes no gap exceed a double
+        return False
     a, b, ((margin,),) = whole(a, b, [[float(margin)]])
-    axes = [[int(i == k) for i in range(3)] for k in range(3)]
-    for n in [*axes, normal(a), normal(b)]:  # most are far apart along one of these
+    for n in normal(a), normal(b):  # most are far apart along one of these
         at_a, at_b = [dot(n, p) for p in a], [dot(n, p) for p in b]
         gap = max(min(at_a) - max(at_b), min(at_b) - max(at_a))
         if gap > 0 and gap ** 2 > margin ** 2 * square(n):
@@ -395,11 +406,14 @@ class Suite:
         return text
 
     def lists(self, folder, only=None):
-        """The name and the lines, as words, of each list in a folder, or of one of them."""
-        for name in self.files:
-            if re.fullmatch(f'{folder}/[^/]*[.]txt', name) and only in (None, name[len(folder) + 1:-4]):
-                lines = self.text(name).split('\n')
-                yield lines[0].split(' ')[2], [line.split() for line in lines[1:] if line and line[0] != '#']
+        """The names of the lists in a folder, or the one of a family."""
+        return [name for name in self.files
+                if re.fullmatch(f'{folder}/[^/]*[.]txt', name) and only in (None, name[len(folder) + 1:-4])]
+
+    def lines(self, name):
+        """The family and the lines, as words, of a list."""
+        lines = self.text(name).split('\n')
+        return lines[0].split(' ')[2], [line.split() for line in lines[1:] if line and line[0] != '#']
 
     def meshes(self):
         """The folders of each family of meshes, by their numbers."""
@@ -453,11 +467,14 @@ def corners_of(numbers):
 Listed = collections.namedtuple('Listed', 'number parameter question label numbers')
 
 
-def pairs_of(card, family, lines):
+@functools.lru_cache(maxsize=1)  # of the same list a study asks one contestant after the other
+def pairs_of(suite, name):
+    family, lines = suite.lines(name)
+    listed = []
     for number_, parameter, shared, label, *words in lines:
-        if shared == '-' or card['neighbours'] == 'yes':
-            numbers = [*map(float.fromhex, words)]
-            yield Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)], family), label, numbers)
+        numbers = [*map(float.fromhex, words)]
+        listed.append(Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)], family), label, numbers))
+    return listed
 
 
 def questions_of(kind, family, suite, lines):
@@ -471,10 +488,10 @@ def questions_of(kind, family, suite, lines):
 def lists_of(card, suite, kinds, only=None):
     """The kind and the lines of each list of pairs, or of the list `only`, and of all questions of each other kind: they are
     few, and starting a process takes longer than most."""
-    for family, lines in suite.lists('pairs', only) if 'pair' in kinds else []:
-        yield 'pair', [*pairs_of(card, family, lines)]
+    for name in suite.lists('pairs', only) if 'pair' in kinds else []:
+        yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
     families = {}  # of questions about meshes, each of which has a list
-    for family, lines in suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []:
+    for family, lines in map(suite.lines, suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []):
         families.setdefault(family, []).extend(lines)
     for kind in KINDS[2:]:
         if kind in kinds:
@@ -539,19 +556,29 @@ def score_mesh(card, objects, rows, reported, row):
     row['own asked'] += row['own missed'] + own(truth & found, True)
 
 
+@functools.lru_cache(maxsize=1)
+def meshes_of(suite, names):
+    """Of each mesh the question, the objects, and the rows of pairs.csv, None if there is none."""
+    out = []
+    for name in names:
+        paths, objects = suite.objects(name)
+        question = Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
+        known = name + '/pairs.csv' in suite.files
+        lines = suite.text(name + '/pairs.csv').split('\n')[1:-1] if known else []
+        out.append((question, objects, [[*map(int, line.split(','))] for line in lines] if known else None))
+    return out
+
+
 def ask_family(command, card, suite, names, options):
     """A row for each mesh of a family; one process is asked about all."""
-    meshes = [suite.objects(name) for name in names]
-    questions = [Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
-                 for name, (paths, _) in zip(names, meshes)]
-    for name, (_, objects), answer, differs in zip(names, meshes, *ask_twice(command, questions, options)):
+    meshes = meshes_of(suite, tuple(names))
+    for (_, objects, rows), answer, differs in zip(meshes, *ask_twice(command, [mesh[0] for mesh in meshes], options)):
         pairs, row = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []], Row()
         if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
             answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
         row.take(answer, differs)
-        if answer.outcome == 'answered' and name + '/pairs.csv' in suite.files:
-            lines = suite.text(name + '/pairs.csv').split('\n')[1:-1]
-            score_mesh(card, objects, [[int(cell) for cell in line.split(',')] for line in lines], pairs, row)
+        if answer.outcome == 'answered' and rows is not None:
+            score_mesh(card, objects, rows, pairs, row)
         yield row
 
 

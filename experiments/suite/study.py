@@ -138,7 +138,7 @@ def simplest(command, card, faults, options):
     if the fault depends on what was asked before. Each round asks about all simpler pairs in one process. A fault is a pair,
     whether it meets, and the outcome and the value that the contestant gave."""
     def err(tried):
-        questions = [ask.Question('pair', ['-', *map(repr, pair)]) for _, pair in tried]
+        questions = [ask.Question('pair', ['-', *map(repr, pair)], name) for name, pair in tried]
         return [(answer.outcome, answer.value) == faults[name][2]
                 for (name, _), answer in zip(tried, ask.ask(command, questions, options)[0])]
 
@@ -152,7 +152,8 @@ def simplest(command, card, faults, options):
             if errs and name not in better and is_like(card, faults[name][1], pair):
                 better[name] = pair
         found = {**found, **better}
-    alone = {name: next((pair for pair in (found[name], faults[name][0]) if err([(name, pair)])[0]), None) for name in faults}
+    alone = {name: next((pair for pair in (found[name], faults[name][0]) if all(err([(name, pair)])[0] for _ in range(2))), None)
+             for name in faults}
     return {name: pair for name, pair in alone.items() if pair}
 
 
@@ -175,9 +176,9 @@ def examples(command, card, listed, answers, options):
 
 # ---- the command
 
-def found(command, card, options):
+def found(command, card, suite, options):
     """What is kept of one family of one kind of question."""
-    suite, more = ask.Suite(options.suite), {}
+    more = {}
     if options.question == 'mesh':
         rows = of_meshes(command, card, suite, options.family, options)
     else:
@@ -211,7 +212,7 @@ def main():
     parser.add_argument('--memory', type=int, default=4096)
     parser.add_argument('--deaths', type=int, default=20)
     gc.disable()  # it would look through millions of objects, none of which hold each other in a circle
-    cards = {}  # by command
+    cards, suites = {}, {}  # by command, by folder
     for call in calls():
         options = parser.parse_args(call)
         command = shlex.split(options.command)
@@ -220,7 +221,9 @@ def main():
                 answer = ask.ask(command, [ask.Question('card', [])], options)[0][0]
                 cards[options.command] = ask.card_of(command, answer)
             card = cards[options.command]
-            out = card if options.question == 'card' else found(command, card, options)
+            if options.question != 'card' and options.suite not in suites:
+                suites[options.suite] = ask.Suite(options.suite)
+            out = card if options.question == 'card' else found(command, card, suites[options.suite], options)
         except (ask.Wrong, ValueError, OSError) as error:
             out = {'error': os.fsencode(str(error)).decode('utf-8', 'replace')}
         print(json.dumps(out), flush=True)

@@ -330,6 +330,59 @@ class Ask(unittest.TestCase):
         self.assertTrue(module.ask(says, [module.Question('self', [path])], options)[0][0].value)
         self.assertFalse(module.ask(says, [module.Question('self', ['/a.obj'])], options)[0][0].value)
 
+    def test_deaths_end_a_family_and_each_family_is_asked_twice(self):
+        with open('ends.py', 'w', encoding='utf-8') as file:
+            file.write('import sys\nfor line in sys.stdin:\n  number, _, word = line.split()\n  if word == "x": sys.exit(1)\n'
+                       '  print(number, 1, flush=True, sep="\t")\n')
+        options, families = argparse.Namespace(limit=5, memory=4096, deaths=2), 'a' * 4 + 'b' * 20 + 'c'
+        questions = [module.Question('self', ['x' if family == 'a' else 'y'], family) for family in families]
+        answers, differs = module.ask_twice(['python3', 'ends.py'], questions, options)
+        self.assertEqual([answer.outcome for answer in answers], ['crashed'] * 2 + ['not asked'] * 2 + ['answered'] * 21)
+        self.assertEqual([i for i, differ in enumerate(differs) if differ is not None], [4, 20, 24])
+
+    def test_faults_are_made_simpler_each_by_itself(self):
+        class Made:
+            """Dies at triangles with a 7, calls others with a 5 apart."""
+            asked = []
+
+            def __call__(self, command, questions, options):
+                self.asked.append(len(questions))
+                return [module.Answer('crashed', None, 0, '') if '7.0' in question.fields else
+                        module.Answer('answered', '5.0' not in question.fields, 1, '') for question in questions], None
+        pair = [0.0, 0, 0, 40.25, 0, 0, 0, 40.25, 0, 1, 1, -1, 1, 1, 1, 2, 2, 1]
+        with mock.patch.object(study_module.ask, 'ask', Made()) as made:
+            faults = {name: ([*map(float, pair[:-1]), mark], True, fault) for name, mark, fault in (
+                ('death', 7.0, ('crashed', None)), ('missed', 5.0, ('answered', False)), ('wrong', 1.0, ('hung', None)))}
+            found = study_module.simplest([], module.CARD, faults, None)
+        self.assertEqual({*found}, {'death', 'missed'})  # the third has no such fault
+        for name, mark in ('death', 7.0), ('missed', 5.0):
+            self.assertIn(mark, found[name])
+        self.assertLess(study_module.cost(found['missed']), study_module.cost(faults['missed'][0]))
+        self.assertEqual(made.asked[-2:], [1, 1])  # alone, at last
+
+    def test_a_pair_of_a_mesh_has_four_numbers(self):
+        for fields in ['1'] * 3, ['1'] * 5, ['1', '1', '1', '0_1'], ['1', '1', '1', '-1'], ['1', '1', '1', '1' * 19]:
+            with self.assertRaises(ValueError):
+                module.parse('mesh', ['pair', *fields], [])
+        module.parse('mesh', ['pair', '0', '1', '2', '3'], found := [])
+        self.assertEqual(found, [(0, 1, 2, 3)])
+
+    def test_calls_of_a_study_end_and_go_on_after_an_error(self):
+        calls = [['--question', 'card', 'false'], ['--question', 'card', 'python3 separate.py'],
+                 ['--suite', work + '/gone', '--question', 'pair', '--family', 'few', 'python3 separate.py'],
+                 ['--suite', work + '/suite', '--question', 'pair', '--family', 'few', 'python3 separate.py']]
+        text = b''.join(b''.join(os.fsencode(word) + b'\0' for word in call) + b'\0' for call in calls)
+        with subprocess.Popen(['python3', root + '/experiments/suite/study.py'], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+            answers = []
+            for call in text.split(b'\0\0')[:-1]:
+                child.stdin.write(call + b'\0\0')
+                child.stdin.flush()
+                answers.append(json.loads(child.stdout.readline()))
+            child.stdin.close()
+            self.assertEqual(child.wait(), 0)
+        self.assertEqual(['error' in answer for answer in answers], [True, False, True, False], answers)
+        self.assertEqual(answers[3]['counts']['asked'], PAIRS)
+
     def test_a_segment_through_a_triangle_counts_where_the_card_takes_segments(self):
         a, b = [[0.25, 0.25, -1], [0.25, 0.25, 1], [0.25, 0.25, 1]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
         shifted = [[x + 1, y, z] for x, y, z in a]
