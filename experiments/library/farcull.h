@@ -116,7 +116,7 @@ struct Pair {
 
 /// How the triangles A and B of a pair meet.
 struct Contact {
-  /// The first kind that fits (docs/methods.md, "Kinds of contact").
+  /// The first kind that fits (docs/record.md, "Kinds of contact").
   enum class Kind {
     apart,         // no point in common, and within the clearance
     equal,         // the same set of points
