@@ -169,24 +169,11 @@ bool penetrate(const Corners& a, const Corners& b) {
 
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
                              unsigned threads) {
-  for (const TrianglePair& pair : pairs) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
-      throw std::logic_error("count_contacts: a pair names a triangle that the scene lacks");
-    }
-    if (pair.a == pair.b) throw std::logic_error("count_contacts: a pair of one triangle");
-  }
-  constexpr std::size_t kLeast = 1024;  // pairs per thread, enough to pay for it
-  const std::size_t chunks = chunks_for(pairs.size(), kLeast, std::max(threads, 1u));
-  std::vector<std::uint64_t> penetrating(chunks, 0);
-  for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::uint64_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      count += penetrate(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
-    }
-    penetrating[chunk] = count;
-  });
+  if (std::ranges::any_of(pairs, [](const TrianglePair& pair) { return pair.a == pair.b; }))
+    throw std::logic_error("count_contacts: a pair of one triangle");
+  const std::vector<ContactKind> kinds = contact_kinds(scene, pairs, threads);
   ContactCounts counts;
-  for (const std::uint64_t count : penetrating) counts.penetrating += count;
+  counts.penetrating = static_cast<std::uint64_t>(std::ranges::count(kinds, ContactKind::crossing));
   counts.touching = pairs.size() - counts.penetrating;
   return counts;
 }

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -149,41 +150,95 @@ std::vector<Places> places_of(const Scene& scene, const Object& o) {
   return out;
 }
 
-Surface surface_of(const std::vector<Places>& triangles) {
-  struct Edge {
-    std::array<Place, 2> ends;  // the lower one first
-    bool forward = false;       // from the lower end to the upper one
-  };
+struct Edge {
+  std::array<Place, 2> ends;   // the lower one first
+  bool forward = false;        // from the lower end to the upper one
+  std::uint32_t triangle = 0;  // that has it
+};
+
+/// Calls group(edges) for the edges with each two ends; stops at one for which that is false, and
+/// returns whether there was none.
+template <class Group>
+bool each_edge(std::span<const Edge> edges, const Group& group) {
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {
+    }
+    if (!group(edges.subspan(i, end - i))) return false;
+  }
+  return true;
+}
+
+/// The edges of all triangles, ordered by their ends.
+std::vector<Edge> edges_of(const std::vector<Places>& triangles) {
   std::vector<Edge> edges;
   edges.reserve(3 * triangles.size());
-  for (const Places& p : triangles) {
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
-      const Place &from = p[i], &to = p[(i + 1) % 3];
-      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to});
+      const Place &from = triangles[t][i], &to = triangles[t][(i + 1) % 3];
+      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to, t});
     }
   }
   std::ranges::sort(edges, {}, &Edge::ends);
+  return edges;
+}
+
+Surface surface_of(const std::vector<Edge>& edges) {
   bool oriented = true;
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    std::int64_t balance = 0;
-    for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end)
-      balance += edges[end].forward ? 1 : -1;
-    if ((end - i) % 2 != 0) return Surface::open;
-    oriented = oriented && balance == 0;
-  }
+  const bool closed = each_edge(edges, [&](std::span<const Edge> of) {
+    const auto forward = std::ranges::count(of, true, &Edge::forward);
+    oriented = oriented && 2 * static_cast<std::size_t>(forward) == of.size();
+    return of.size() % 2 == 0;
+  });
+  if (!closed) return Surface::open;
   return oriented ? Surface::oriented : Surface::closed;
+}
+
+/// Whether two triangles at an edge may lie on each other; false only if rounding leaves no doubt.
+bool may_be_folded(const Corners& a, const Corners& b) {
+  const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
+  // Negative if the triangles lie on both sides of the edge; off by less than 30 u of the product
+  // of the lengths, and by underflow.
+  const double sides = e.cross(f).dot(e.cross(g));
+  return !(sides < -(1e-12 * e.squaredNorm() * f.norm() * g.norm() + 1e-290));
+}
+
+/// Whether two triangles of one plane that pass an edge in both senses lie on the same side of it,
+/// as both sides of a face do however each is cut into triangles. True as well where more than 64
+/// triangles have one edge.
+bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>& edges) {
+  const auto corners_at = [&](const Edge& edge) {
+    const auto point = [](const Place& p) { return Vec3(p[0], p[1], p[2]); };
+    const Places& t = triangles[edge.triangle];
+    const auto third = std::ranges::find_if(
+        t, [&](const Place& p) { return p != edge.ends[0] && p != edge.ends[1]; });
+    return Corners{point(edge.ends[0]), point(edge.ends[1]), point(*third)};
+  };
+  return !each_edge(edges, [&](std::span<const Edge> of) {
+    if (of.size() > 64) return false;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      for (std::size_t k = i + 1; k < of.size(); ++k) {
+        if (of[i].forward == of[k].forward) continue;
+        const Corners a = corners_at(of[i]), b = corners_at(of[k]);
+        if (may_be_folded(a, b) && intersects_beyond_shared(a, b)) return false;
+      }
+    }
+    return true;
+  });
 }
 
 }  // namespace
 
 Surface surface_of(const Scene& scene, std::uint32_t object) {
-  return surface_of(places_of(scene, object_of(scene, object, "surface_of")));
+  return surface_of(edges_of(places_of(scene, object_of(scene, object, "surface_of"))));
 }
 
 Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
   std::vector<Places> triangles = places_of(scene, object_of(scene, object, "doubted_surface_of"));
-  const Surface out = surface_of(triangles);
+  const std::vector<Edge> edges = edges_of(triangles);
+  const Surface out = surface_of(edges);
   if (out == Surface::open) return out;
+  const FloatingPointGuard guard;
+  const bool folded = out == Surface::oriented && has_flat_fold(triangles, edges);
   // Each with its corners in ascending order, and whether that is the other way round.
   std::vector<std::pair<Places, bool>> sorted;
   sorted.reserve(triangles.size());
@@ -194,15 +249,13 @@ Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
     sorted.emplace_back(p, turned);
   }
   std::ranges::sort(sorted);
-  bool copies = false;
   for (std::size_t i = 0, end = 0; i < sorted.size(); i = end) {
     std::int64_t balance = 0;
     for (end = i; end < sorted.size() && sorted[end].first == sorted[i].first; ++end)
       balance += sorted[end].second ? 1 : -1;
     if (end - i > 1 && balance != 0) return Surface::open;
-    copies = copies || end - i > 1;
   }
-  return copies && out == Surface::oriented ? Surface::doubled : out;
+  return folded ? Surface::doubled : out;
 }
 
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point) {

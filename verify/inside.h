@@ -23,10 +23,10 @@ enum class Surface : std::uint8_t { open, closed, doubled, oriented };
 /// What the surface of the object is; `closed` if it is not oriented as well; never `doubled`. An
 /// object without triangles is oriented.
 Surface surface_of(const Scene& scene, std::uint32_t object);
-/// The same for who doubts copies of triangles. `doubled`: oriented, and there are triangles that
-/// are turned over copies of others, as where a file has both sides of each face. The winding
-/// number does not count these, so it may be 0 in a place that they enclose. An object with
-/// triangles that are there twice and the same way round is `open`.
+/// The same for who doubts that a triangle is there twice. `doubled`: oriented, and two triangles
+/// of one plane with a common edge lie on each other, as where a file has both sides of each face.
+/// The winding number does not count these, so it may be 0 in a place that they enclose. An object
+/// with triangles that are there twice and the same way round is `open`.
 Surface doubted_surface_of(const Scene& scene, std::uint32_t object);
 /// True iff the object is closed.
 bool is_closed(const Scene& scene, std::uint32_t object);

@@ -1,5 +1,6 @@
 // The nearest of many pairs of triangles.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -75,6 +76,8 @@ class SamePoints {
         continue;
       }
       const Vec3 from = x - side.corners[0];
+      // Where a product overflows, so may the sum with it, while the bound does not.
+      if (!(w_.cwiseAbs().dot(from.cwiseAbs()) < HUGE_VAL)) return false;
       if (!(sense * w_.dot(from) < -(off_.dot(from.cwiseAbs()) + kTieAbsolute))) return false;
     }
     if (own < side.count) return false;

@@ -249,12 +249,13 @@ double height_above_faces(const Solid& solid) {
     // A component of the normal has two products of differences: 4 roundings each.
     const double length = std::sqrt(filters::dot(n.n, n.n)) * (1 - 8 * kU) -
                           8 * kU * (n.m.x + n.m.y + n.m.z) - 0x1p-500;
-    if (!(length > 0)) return kInf;
+    if (!(length > 0 && length < kInf)) return kInf;
     double above = 0, below = 0;  // the normal may face outward or inward
     for (const Vec3& p : solid.points) {
       const auto w = filters::difference(p, t[0]);
       const double value = filters::dot(n.n, w);
       const double bound = filters::side_bound<FilterBounds>(n, filters::magnitudes(w));
+      if (!(std::abs(value) + bound < kInf)) return kInf;
       above = std::max(above, (value + bound) / length);
       below = std::max(below, (bound - value) / length);
     }

@@ -128,4 +128,10 @@ std::string Sha256::digest() {
   return out;
 }
 
+std::string sha256(std::string_view text) {
+  Sha256 hash;
+  hash.add(text);
+  return hash.digest();
+}
+
 }  // namespace farcull

@@ -62,4 +62,7 @@ class Sha256 {
   std::uint64_t bytes_ = 0;  // in all
 };
 
+/// The SHA-256 of a text.
+std::string sha256(std::string_view text);
+
 }  // namespace farcull

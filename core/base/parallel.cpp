@@ -147,7 +147,8 @@ class Pool {
       }
       lock.lock();
       // The batch may be gone after this increment: then its run_parts() may return.
-      const bool last = batch.done.fetch_add(1) + 1 == batch.parts;
+      const std::size_t parts = batch.parts;
+      const bool last = batch.done.fetch_add(1) + 1 == parts;
       lock.unlock();
       if (last) finished_.notify_all();
     }

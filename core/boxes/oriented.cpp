@@ -399,8 +399,10 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   for (const Box& box : blocks.objects) {
     if (!box.is_empty()) all.add(box);
   }
-  const Vec3 size = 0.5 * all.hi - 0.5 * all.lo;
+  // The middle, rounded: where doubles are as wide as the scene, it may be a corner of the box.
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
+  const Vec3 size =
+      (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
   // The corners are at most `reach` from the origin. Below the least of these numbers floats lose
   // what the margins assume, above the largest they overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;

@@ -68,13 +68,13 @@ NativeCanvas::NativeCanvas(DepthMode mode, const SolidProgram& solid,
 }
 
 void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
+  drawables_ = nullptr;  // until all is there
   if (drawables.mode != mode_) throw std::logic_error("NativeCanvas: drawables of the other mode");
   for (const int side : {window.width, window.height}) {
     if (side < 1 || side > kMostPixels)
       throw std::logic_error("NativeCanvas: a window of " + std::to_string(side) + " px");
   }
   window_ = window;
-  drawables_ = &drawables;
   const std::size_t count = drawables.elements();
   ranges_.resize(count);
   // Snapping moves a corner by half a subpixel, and a pixel reaches half its side from its centre.
@@ -93,6 +93,7 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
   }
   for (int y = 0; y < window.height; ++y) work_[y + 1u] += work_[y];
   stride_ = window.width + kNativeOverhang;
+  drawables_ = &drawables;
 }
 
 NativeJob NativeCanvas::job(NativeOutput output, float empty) {

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "core/boxes/join.h"
 #include "core/scene/pair_sort.h"
@@ -73,7 +74,9 @@ const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!boxes[i].is_empty()) present.push_back(i);
   }
-  from_scratch_ = present != present_ || boxes.size() != boxes_.size();
+  // An update that threw has sorted the ends and not the pairs.
+  const bool is_whole = std::exchange(is_whole_, false);
+  from_scratch_ = !is_whole || present != present_ || boxes.size() != boxes_.size();
   present_ = std::move(present);
   appeared_.clear();
   vanished_.clear();
@@ -91,6 +94,7 @@ const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
     pairs_ = std::move(all);
   }
   boxes_.assign(boxes.begin(), boxes.end());
+  is_whole_ = true;
   return pairs_;
 }
 

@@ -58,6 +58,7 @@ class BoxSweep {
   std::vector<TrianglePair> vanished_;  // those that are gone; possibly several times
   std::uint64_t swaps_ = 0;
   bool from_scratch_ = false;
+  bool is_whole_ = false;  // all members are of the same boxes
 };
 
 /// The survivors, in the units in which all methods are compared, and the work done.

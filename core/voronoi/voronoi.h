@@ -15,8 +15,8 @@
 // Both walk down a tree of blocks of cells, where the published form fills slice after slice. A
 // block is left out if no cell in it can add to the answer.
 //
-// Both can also be computed slice by slice, on a device that rasterizes distances: on OpenGL
-// (core/gl/voronoi/voronoi.h) or on the CPU, cell by cell. The CPU divides each slab of slices into
+// Both can also be computed slice by slice, on a device that rasterizes distances, as OpenGL does
+// (core/gl/voronoi/voronoi.h). The CPU divides each slab of slices into
 // bricks, blocks of cells with the triangles that may matter there; the device computes the
 // distances of the cells of each brick from these triangles.
 #pragma once
@@ -282,9 +282,6 @@ class VoronoiDevice {
 /// throws Error if `listed` is more.
 constexpr std::size_t kVoronoiMostListed = std::size_t{1} << 24;
 void require_voronoi_list(std::size_t listed);
-
-/// A device on the cores of the CPU. threads: 0 for as many as there are cores.
-std::unique_ptr<VoronoiDevice> cpu_voronoi_device(unsigned threads);
 
 /// The two forms above, with the distances of all cells computed by the device. The answers
 /// of the reliable form are as above; which other pairs it keeps may differ. Errors: as above, and

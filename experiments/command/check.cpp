@@ -114,12 +114,19 @@ CheckedDistances check_with(const std::string& path, DistanceCertificate certifi
   return out;
 }
 
-// Writes the result for one scene. Checked: SceneCheck or CheckedDistances.
+// Writes the result for one scene. Checked: SceneCheck or CheckedDistances; weaker: as of
+// check_again(). The record comes last: there is none if the two checkers disagree.
 template <class Checked>
-int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done) {
-  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done,
+                bool weaker = false) {
+  const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
   if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
-  return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+    check_again(arguments, {arguments.certificate}, words, status, weaker);
+  }
+  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+  return status;
 }
 
 Scene checked_scene(const CheckArguments& arguments) {
@@ -139,33 +146,25 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
       require_no_list(arguments);
       DistanceCertificate of_distances = parse_distance_certificate(text, name);
       const Scene scene = checked_scene(arguments);
-      const int status = write_check(
-          arguments, scene, check_with(arguments.certificate, std::move(of_distances), scene));
-      if (arguments.verified) {
-        const auto words = [&](const TakeWord& take) { give_words(scene, take); };
-        check_again(arguments, {arguments.certificate}, words, status, true);
-      }
-      return status;
+      return write_check(arguments, scene,
+                         check_with(arguments.certificate, std::move(of_distances), scene), true);
     }
     certificate = parse_certificate(text, name);
     if (certificate->tile && arguments.clearance) {
       throw Error("--clearance", "does not go with the certificate of a tile, which names its own",
                   "leave it out");
     }
+    if (certificate->tile && arguments.scene.ignore) {
+      throw Error("--ignore", "does not go with the certificate of a tile", "leave it out");
+    }
     if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
   }
   const Scene scene = checked_scene(arguments);
-  const int status =
-      write_check(arguments, scene,
-                  check_scene_with(clearance_of(arguments, certificate),
-                                   clean_name(arguments.certificate), certificate, scene, list,
-                                   list ? std::span<const ListedPair>(list->rows)
-                                        : std::span<const ListedPair>()));
-  if (arguments.verified) {
-    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
-    check_again(arguments, {arguments.certificate}, words, status);
-  }
-  return status;
+  return write_check(arguments, scene,
+                     check_scene_with(clearance_of(arguments, certificate),
+                                      clean_name(arguments.certificate), certificate, scene, list,
+                                      list ? std::span<const ListedPair>(list->rows)
+                                           : std::span<const ListedPair>()));
 }
 
 // The output of the checks of frames: a row of the table and an element of the record for each,
@@ -219,6 +218,7 @@ int check_distance_frames(const CheckArguments& arguments) {
     DistanceCertificate certificate =
         parse_distance_certificate(read_file(file, kMaxCheckedBytes), clean_name(file));
     const Scene& scene = source.at(frame);
+    say_notes();
     const CheckedDistances check = check_with(file, std::move(certificate), scene);
     const std::uint64_t listed = check.certificate.distances.size();
     checks.add(frame, scene, check, listed,
@@ -260,6 +260,8 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
                                             "verdict", "box pairs", "meeting", "ms"));
   SceneCheck last;
   std::optional<double> clearance;
+  bool self = false, ignores = false;
+  std::string not_asked;
   for_each_frame(range, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
     std::optional<Certificate> certificate;
     if (!arguments.certificate.empty()) certificate = certificate_of_frame(arguments, frame);
@@ -270,7 +272,13 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       rows = {found.begin(), found.end()};
     }
     const Scene& scene = source.at(frame);
-    if (frame == range.first) require_asked(scene, {});
+    say_notes();
+    if (frame == range.first) {
+      require_asked(scene, {});
+      not_asked = not_asked_line(scene);
+    }
+    self = self || has_self(scene);
+    ignores = ignores || !scene.ignored.empty();
     if (!clearance) clearance = clearance_of(arguments, certificate);
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
@@ -284,8 +292,9 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   return checks.finish(
       fmt::format("these pairs {}, and no others",
                   *clearance == 0 ? "of the scene meet"
-                                  : fmt::format("are at distance {} or less", *clearance)),
-      (several ? "of the last frame's run: " : "") + unattested_text(last));
+                                  : fmt::format("are at distance {} or less", *clearance)) +
+          proved_limits(*clearance, self, ignores),
+      not_asked + (several ? "of the last frame's run: " : "") + unattested_text(last));
 }
 
 // Requires a number in the name of the certificate if, and only if, frames or tiles are asked for.

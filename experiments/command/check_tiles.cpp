@@ -95,6 +95,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     return stream_scene(arguments.scene, [&](Scene& part) {
       if (arguments.self) make_self(part);
       take(part);
+      say_notes();
     });
   };
   Census census = take_census(source, 0);
@@ -162,13 +163,31 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   const std::string other = arguments.pairs.empty() ? "" : other_list(arguments.pairs, list);
   if (reason.empty()) reason = other;
   if (!reason.empty() && verdict == Verdict::proved) verdict = Verdict::not_proved;
-  const std::string proves =
-      (whole ? "" : "of the pairs that belong to the tile, ") +
-      proved_text(rows.size(), tiles.front().clearance, census.self_objects > 0);
-  Sha256 hash;
-  hash.add(list);
-  const std::string sha256 = hash.digest();
+  const std::string proves = (whole ? "" : "of the pairs that belong to the tile, ") +
+                             proved_text(rows.size(), tiles.front().clearance) +
+                             proved_limits(tiles.front().clearance, census.self_objects > 0, false);
+  const std::string list_sha256 = sha256(list);
   const int status = verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (arguments.json != "-") {
+    SceneCheck last;
+    last.result.unattested = tiles.back().result.unattested;
+    write_output(
+        "-", clean_lines(fmt::format(
+                 "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}"
+                 "time       {:.1f} ms without reading the scene\n",
+                 to_string(verdict), status == kExitDone ? proves : one_line(reason), table,
+                 list_sha256, counted(sum.box_pairs, "pair", "pairs"), unattested_text(last), ms)));
+  }
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) {
+      take(census.objects);
+      for (const auto& [word, times] : census.sizes) {
+        for (std::uint64_t k = 0; k < times; ++k) take(word);
+      }
+      source([&](Scene& part) { give_coordinates(part, take); });
+    };
+    check_again(arguments, files, words, certified);
+  }
   if (!arguments.json.empty()) {
     // The keys are those of check_json() about one certificate.
     write_json({{"certificate", clean_name(arguments.certificate)},
@@ -178,7 +197,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
                 {"proves", json_if(status == kExitDone, proves)},
                 {"reason", text_json(reason)},
                 {"list",
-                 {{"found_sha256", sha256},
+                 {{"found_sha256", list_sha256},
                   {"given", text_json(clean_name(arguments.pairs))},
                   {"given_is_found", json_if(!arguments.pairs.empty(), other.empty())}}},
                 {"found", claims_json(sum)},
@@ -187,24 +206,6 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
                 {"tiles", each}},
                arguments.json);
   }
-  if (arguments.json != "-") {
-    SceneCheck last;
-    last.result.unattested = tiles.back().result.unattested;
-    write_output("-", clean_lines(fmt::format(
-                          "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}"
-                          "time       {:.1f} ms without reading the scene\n",
-                          to_string(verdict), status == kExitDone ? proves : reason, table, sha256,
-                          counted(sum.box_pairs, "pair", "pairs"), unattested_text(last), ms)));
-  }
-  if (!arguments.verified) return status;
-  const auto words = [&](const TakeWord& take) {
-    take(census.objects);
-    for (const auto& [word, times] : census.sizes) {
-      for (std::uint64_t k = 0; k < times; ++k) take(word);
-    }
-    source([&](Scene& part) { give_coordinates(part, take); });
-  };
-  check_again(arguments, files, words, certified);
   return status;
 }
 

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -232,9 +233,16 @@ void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
 }
 
+void say_notes() {
+  static std::set<std::string> said;  // frames and tiles read again what they have read
+  for (const std::string& note : take_reading_notes()) {
+    if (said.insert(note).second) complain(note);
+  }
+}
+
 Scene read_scene(const SceneArguments& arguments) {
   Scene scene = load_scene(arguments);
-  for (const std::string& note : take_reading_notes()) complain(note);
+  say_notes();
   return scene;
 }
 

@@ -194,7 +194,10 @@ void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> 
 /// may hold.
 void complain(const std::string& message);
 
-/// load_scene(), and its notes (take_reading_notes()) as lines on standard error.
+/// What readers passed over (take_reading_notes()), as lines on standard error, each once.
+void say_notes();
+
+/// load_scene() and say_notes().
 Scene read_scene(const SceneArguments& arguments);
 
 /// Prints the line of a broken guarantee likewise, in red on a terminal.

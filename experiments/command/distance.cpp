@@ -382,6 +382,7 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
         require_question(scene, options);
         const DistanceRecord record = distances(scene, options, progress, &memory);
         terminal.clear();
+        say_notes();
         // Written first, so that every frame in the record has its certificate.
         if (outputs.certificate) {
           write_output(numbered(*outputs.certificate, frame),

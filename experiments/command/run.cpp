@@ -387,6 +387,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   const FramesResult result =
       farcull::run_frames(source, question, progress, [&](const FrameReport& report) {
         terminal.clear();
+        say_notes();
         // Written first, so that every frame in the record has its certificate.
         if (outputs.certificate)
           write_output(numbered(*outputs.certificate, report.number), report.certificate);
@@ -415,6 +416,7 @@ SceneSource RunCommand::source() const {
     return stream_scene(scene_, [&](Scene& part) {
       if (options_.has("self")) make_self(part);
       take(part);
+      say_notes();
     });
   };
 }

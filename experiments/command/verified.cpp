@@ -4,6 +4,7 @@
 
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -106,9 +107,15 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   for (std::string& word : given) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
+  // Lists of the checker are as long as objects have triangles, and some of its functions recur.
+  rlimit stack{};
+  const bool known = ::getrlimit(RLIMIT_STACK, &stack) == 0;
+  const rlimit largest{stack.rlim_max, stack.rlim_max};
+  if (known) ::setrlimit(RLIMIT_STACK, &largest);
   const int error =
       written ? ::posix_spawnp(&child, path.c_str(), nullptr, nullptr, arguments.data(), environ)
               : EIO;
+  if (known) ::setrlimit(RLIMIT_STACK, &stack);
   int status = 0;
   if (error == 0) {
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -116,7 +123,11 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   }
   std::fclose(file);
   if (error != 0) refuse(std::string("cannot be run: ") + std::strerror(error));
-  constexpr int kUndecided = 3;
+  constexpr int kUndecided = 3, kTooSmall = 4;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kTooSmall) {
+    throw Error(kProgram, "ran out of stack or memory",
+                "raise the limit, as ulimit -s unlimited does");
+  }
   if (WIFEXITED(status) && WEXITSTATUS(status) == kUndecided) {
     throw Error(kProgram, "could not decide the pair that it names",
                 "leave --verified out, and report the scene: docs/verified.md says why this should "

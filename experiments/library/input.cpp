@@ -274,7 +274,7 @@ Vec3 moved(const Pose& pose, const Vec3& p) {
 void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
   std::vector<bool> moves(poses.size(), true);
   for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];
-  taken.scene.vertices.resize(taken.unmoved.size());
+  taken.scene.vertices.resize(taken.unmoved.size(), Vec3::Zero());
   for (std::uint32_t v = 0; v < taken.unmoved.size(); ++v) {
     const std::uint32_t o = taken.object_of[v];
     if (o != kNoObject && !moves[o]) continue;

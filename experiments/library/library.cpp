@@ -302,8 +302,15 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
                 "give a finite distance, 0 or more");
   if (out.pairs == DistancePairs::nearest && options.k == 0)
     throw Error("k", "is 0", "give 1 or more");
-  if (out.pairs == DistancePairs::nearest && !options.ignore.empty())
+  const bool nearest = out.pairs == DistancePairs::nearest;
+  if (nearest && !options.ignore.empty())
     throw Error("ignore", "has no meaning with nearest", "leave it out, or give another kind");
+  if (nearest && (options.self || std::ranges::count(options.self_objects, true) > 0))
+    throw Error("self", "has no meaning with nearest", "leave it out, or give another kind");
+  if (!nearest && options.k != 1)
+    throw Error("k", "has no meaning without nearest", "leave it out, or give nearest");
+  if (out.pairs == DistancePairs::all && options.parity)
+    throw Error("parity", "has no meaning with all", "leave it out");
   return out;
 }
 

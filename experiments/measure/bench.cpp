@@ -37,25 +37,6 @@ std::vector<std::string> names_of(const std::vector<Peer>& peers) {
   return names;
 }
 
-/// The names of `known` that the text asks for, in the order of `known`. Throws Error naming the
-/// option.
-std::vector<std::string> chosen(const std::string& option, const std::string& text,
-                                const std::vector<std::string>& known) {
-  if (text == "all") return known;
-  if (text == "none") return {};
-  const std::vector<std::string> asked = split_list(text);
-  for (const std::string& name : asked) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw Error(option, "'" + name + "' is none of them",
-                fmt::format("give all, none, or some of {}", fmt::join(known, ",")));
-  }
-  std::vector<std::string> out;
-  for (const std::string& name : known) {
-    if (std::find(asked.begin(), asked.end(), name) != asked.end()) out.push_back(name);
-  }
-  return out;
-}
-
 /// The time of the stages of boxes, before candidates are looked for.
 double build_ms_of(const std::vector<Stage>& trace) {
   double ms = 0;
@@ -123,7 +104,7 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
     c.device = gl->context().info().renderer;
     c.run = method_run(method, gl, gl_device);
   };
-  for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
+  for (const std::string& name : chosen_names("--methods", options.methods, kMethods)) {
     const Method method = parse_method(name);
     const std::string refused =
         has_self(scene) && !tests_self(method) ? "it tests no object against itself" : "";
@@ -146,7 +127,7 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
 
 void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const std::vector<Peer> peers = all_peers(options.threads);
-  const std::vector<std::string> names = chosen("--peers", options.peers, names_of(peers));
+  const std::vector<std::string> names = chosen_names("--peers", options.peers, names_of(peers));
   const bool by_name = options.peers != "all";
   for (const Peer& peer : peers) {
     if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
@@ -232,9 +213,26 @@ Json disagreement_json(const std::optional<Disagreement>& disagreement) {
 
 }  // namespace
 
+std::vector<std::string> chosen_names(const std::string& option, const std::string& text,
+                                      const std::vector<std::string>& known) {
+  if (text == "all") return known;
+  if (text == "none") return {};
+  const std::vector<std::string> asked = split_list(text);
+  for (const std::string& name : asked) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error(option, "'" + name + "' is none of them",
+                fmt::format("give all, none, or some of {}", fmt::join(known, ",")));
+  }
+  std::vector<std::string> out;
+  for (const std::string& name : known) {
+    if (std::find(asked.begin(), asked.end(), name) != asked.end()) out.push_back(name);
+  }
+  return out;
+}
+
 void validate(const BenchOptions& options) {
-  chosen("--methods", options.methods, kMethods);
-  chosen("--peers", options.peers, names_of(all_peers(options.threads)));
+  chosen_names("--methods", options.methods, kMethods);
+  chosen_names("--peers", options.peers, names_of(all_peers(options.threads)));
   if (options.repeat < 1) {
     throw Error("--repeat", fmt::format("{} is no number of runs", options.repeat),
                 "give 1 or more");

@@ -69,6 +69,11 @@ struct BenchResult {
   std::optional<std::size_t> fastest_peer;   // into rows
 };
 
+/// The names of `known` that the text asks for (`all`, `none`, or names with commas), in the order
+/// of `known`. Throws Error naming the option.
+std::vector<std::string> chosen_names(const std::string& option, const std::string& text,
+                                      const std::vector<std::string>& known);
+
 /// Throws Error naming the option for unknown names, a repeat below 1 or a limit below 0.
 void validate(const BenchOptions& options);
 

@@ -39,18 +39,11 @@ PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigne
 
 std::vector<DistancePeer> chosen_peers(const std::string& text) {
   std::vector<DistancePeer> known = distance_peers();
-  if (text == "all") return known;
-  if (text == "none") return {};
   std::vector<std::string> names;
   for (const DistancePeer& peer : known) names.push_back(peer.name);
-  const std::vector<std::string> asked = split_list(text);
-  for (const std::string& name : asked) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw Error("--peers", "'" + name + "' is none of them",
-                fmt::format("give all, none, or some of {}", fmt::join(names, ",")));
-  }
-  std::erase_if(known, [&asked](const DistancePeer& peer) {
-    return std::find(asked.begin(), asked.end(), peer.name) == asked.end();
+  names = chosen_names("--peers", text, names);
+  std::erase_if(known, [&names](const DistancePeer& peer) {
+    return std::find(names.begin(), names.end(), peer.name) == names.end();
   });
   return known;
 }

@@ -49,6 +49,7 @@ Json frame_json(const Scene& scene, const Record& record, long frame, double rea
               {"hash", run["scene"]["hash"]},
               {"objects", scene.objects.size()},
               {"triangles", scene.triangles.size()},
+              {"folded_polygons", scene.folded.size()},
               {"topology_changed", source.topology_changed()}};
   for (const char* key : kOfFrame) out[key] = run[key];
   out["time_ms"]["read"] = read_ms;

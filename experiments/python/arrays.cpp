@@ -233,7 +233,9 @@ Input Given::input(Copies& copies) const {
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles) {
-  const auto given = py::array_t<std::int64_t, py::array::c_style>::ensure(array);
+  // The caller has looked that these are whole numbers; those beyond 2^63 become negative.
+  const auto given =
+      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!given || given.ndim() != 2 || given.shape(1) != 2)
     refuse(name, "have no two columns", "give an array of shape (k, 2)");
   std::vector<TrianglePair> out(static_cast<std::size_t>(given.shape(0)));

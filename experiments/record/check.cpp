@@ -146,11 +146,21 @@ std::string pair_text(const Scene& scene, const TrianglePair& pair) {
 
 // The text names the scene and not the run, since a proof is about the scene.
 std::string proved_text(const Scene& scene, const SceneCheck& check) {
-  return proved_text(check.result.meeting.size(), check.clearance, has_self(scene)) +
-         (scene.ignored.empty() ? "" : ", of objects that are not ignored");
+  return proved_text(check.result.meeting.size(), check.clearance) +
+         proved_limits(check.clearance, has_self(scene), !scene.ignored.empty());
 }
 
-std::string proved_text(std::size_t pairs, double clearance, bool self) {
+std::string proved_limits(double clearance, bool self, bool ignores) {
+  return std::string(clearance != 0 && self ? " (neighbours only where they meet)" : "") +
+         (ignores ? ", of objects that are not ignored" : "");
+}
+
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', '?');
+  return text;
+}
+
+std::string proved_text(std::size_t pairs, double clearance) {
   const std::string near = clearance == 0 ? "" : fmt::format("at distance {} or less", clearance);
   std::string out;
   if (pairs == 0) {
@@ -161,14 +171,15 @@ std::string proved_text(std::size_t pairs, double clearance, bool self) {
     out = "these " + grouped(pairs) + " pairs of the scene " +
           (near.empty() ? "meet" : "are " + near) + ", and no others";
   }
-  return !near.empty() && self ? out + " (neighbours only where they meet)" : out;
+  return out;
 }
 
 std::string verdict_text(const Scene& scene, const SceneCheck& check) {
   const CheckResult& result = check.result;
   std::string out =
       to_string(result.verdict) + ": " +
-      (result.verdict == Verdict::proved ? proved_text(scene, check) : result.reason) + "\n";
+      (result.verdict == Verdict::proved ? proved_text(scene, check) : one_line(result.reason)) +
+      "\n";
   if (result.pair) out += fmt::format("  pair: {}\n", pair_text(scene, *result.pair));
   return out;
 }
@@ -205,7 +216,7 @@ std::string unattested_text(const SceneCheck& check) {
   std::string out;
   if (!check.result.unattested.empty())
     out += "unattested, since the evidence is about the scene and not about the run:\n";
-  for (const std::string& line : check.result.unattested) out += "  " + line + "\n";
+  for (const std::string& line : check.result.unattested) out += "  " + one_line(line) + "\n";
   if (callers_floating_point() != kProved) {
     out += fmt::format("arithmetic: {}; the caller {}\n", to_string(floating_point()),
                        to_string(callers_floating_point()));
@@ -251,7 +262,9 @@ Verdict FrameVerdicts::in_all() const {
 }
 
 Json FrameVerdicts::json(long wanted) const {
-  const Verdict verdict = in_all();
+  // Of frames that were not looked at nothing is proved.
+  const bool whole = all() == static_cast<std::uint64_t>(wanted);
+  const Verdict verdict = in_all() == Verdict::proved && !whole ? Verdict::not_proved : in_all();
   const auto& bad = first_[static_cast<std::size_t>(verdict)];
   return {{"frames", all()},
           {"wanted", wanted},
@@ -328,8 +341,8 @@ std::string proved_text(const CheckedDistances& check) {
 std::string verdict_text(const Scene& scene, const CheckedDistances& check) {
   const DistanceCheck& result = check.result;
   const bool proved = result.verdict == Verdict::proved;
-  std::string out =
-      to_string(result.verdict) + ": " + (proved ? proved_text(check) : result.reason) + "\n";
+  std::string out = to_string(result.verdict) + ": " +
+                    (proved ? proved_text(check) : one_line(result.reason)) + "\n";
   if (!result.pair) return out;
   return out + fmt::format("  pair: {}\n  the exact square of its distance: {}, so about {}\n",
                            pair_text(scene, *result.pair), shortened(result.squared),

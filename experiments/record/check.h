@@ -35,8 +35,13 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 /// The statement that the check has proved if its verdict is `proved`: "these 12 pairs of the scene
 /// meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// The same for so many pairs; self: whether an object is tested against itself.
-std::string proved_text(std::size_t pairs, double clearance, bool self);
+/// The same for so many pairs, without what limits it.
+std::string proved_text(std::size_t pairs, double clearance);
+/// The end of the statement where it is not about all pairs. self: whether an object is tested
+/// against itself; ignores: whether pairs of objects are ignored.
+std::string proved_limits(double clearance, bool self, bool ignores);
+/// A text of a certificate, which may have any bytes: without ends of lines.
+std::string one_line(std::string text);
 /// The verdict with its reason, and the pair that it is about: one line or two.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 /// The verdict and everything else.

@@ -8,6 +8,7 @@
 #include "commit.h"
 #include "core/base/text.h"
 #include "experiments/record/output.h"
+#include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -136,8 +137,8 @@ bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failin
 
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   std::string out =
-      fmt::format("{}: {}, {}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
-                  counted(scene.triangles.size(), "triangle", "triangles"));
+      fmt::format("{}: {}, {}{}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
+                  counted(scene.triangles.size(), "triangle", "triangles"), folded_text(scene));
   out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
                      counted(record.asked, "pair", "pairs"),
                      is_clean(record, table.failing) ? ": clean" : "");
@@ -183,6 +184,7 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const std::string
   return {{"scene", scene.name},
           {"objects", json_list(scene.objects, [](const Object& object) { return object.name; })},
           {"triangles", scene.triangles.size()},
+          {"folded_polygons", scene.folded.size()},
           {"unit", text_json(unit)},
           {"clearance", record.options.clearance},
           {"asked", record.asked},

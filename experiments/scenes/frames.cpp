@@ -65,6 +65,7 @@ FrameSource::FrameSource(SceneArguments arguments, FrameRange range, bool self)
     : arguments_(std::move(arguments)), range_(range), self_(self), meshes_(range.first) {
   const std::vector<std::string>& names = arguments_.names;
   const bool built_in = names.size() == 1 && is_builtin_scene(names[0]);
+  require_meshes(arguments_);
   if (built_in && has_motion(names[0])) {
     built_in_.emplace(names[0], range.last + 1, self);
     return;

@@ -462,11 +462,7 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
   }
   if (arguments.size() > 1) return scene_of_meshes(arguments, meshes).finish();
   const std::string& name = arguments[0];
-  if (is_builtin_scene(name)) {
-    if (!meshes.note().empty())
-      throw Error("--weld", "has no meaning for a built-in scene", "leave it out");
-    return make_builtin_scene(name);
-  }
+  if (is_builtin_scene(name)) return make_builtin_scene(name);
   if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
   if (name == "-" || has_mesh_extension(name)) return scene_of_meshes(arguments, meshes).finish();
   std::error_code error;
@@ -491,6 +487,17 @@ std::vector<std::string> SceneArguments::words() const {
   return out;
 }
 
+void require_meshes(const SceneArguments& arguments) {
+  const std::vector<std::string>& names = arguments.names;
+  if (arguments.weld && names.size() == 1 && is_builtin_scene(names[0]))
+    throw Error("--weld", "has no meaning for a built-in scene", "leave it out");
+  const auto may_read = [](const std::string& name) { return name == "-" || is_scene_file(name); };
+  if (arguments.format && std::ranges::none_of(names, may_read)) {
+    throw Error("--format", "is of a mesh on standard input, and none is named",
+                "name it, by -, or leave --format out");
+  }
+}
+
 Scene load_scene(const SceneArguments& arguments) {
   MeshCache meshes;
   return load_scene(arguments, meshes);
@@ -498,6 +505,7 @@ Scene load_scene(const SceneArguments& arguments) {
 
 Scene load_scene(const SceneArguments& arguments, MeshCache& meshes) {
   const bool later_frame = !meshes.numbered_paths().empty();
+  require_meshes(arguments);
   try {
     meshes.read_as(reading_of(arguments));
     Scene out = load_any_scene(arguments.names, meshes);
@@ -511,6 +519,7 @@ Scene load_scene(const SceneArguments& arguments, MeshCache& meshes) {
 
 std::vector<ObjectPair> stream_scene(const SceneArguments& given, const TakePart& take) {
   const std::vector<std::string>& arguments = given.names;
+  require_meshes(given);
   MeshCache meshes;
   meshes.read_as(reading_of(given));
   if (arguments.size() == 1 && is_builtin_scene(arguments[0])) {

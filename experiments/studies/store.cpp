@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -270,11 +269,6 @@ Provenance provenance_now(const std::string& device, const std::string& options)
   return out;
 }
 
-std::string driver_text(const Provenance& provenance) {
-  if (provenance.gl_vendor.empty() && provenance.gl_version.empty()) return "none";
-  return provenance.gl_vendor + ", " + provenance.gl_version;
-}
-
 struct Store::State {
   std::string path;
   SQLite::Database database;
@@ -514,19 +508,6 @@ std::string device_folder(const std::string& folder, const std::string& device) 
         "give all, or some of native, hardware, software and numbers, as in native,software");
   }
   return folder + "/" + kDeviceFolder + device;
-}
-
-std::vector<std::string> device_folders(const std::string& folder) {
-  std::vector<std::string> out;
-  std::error_code code;
-  for (std::filesystem::directory_iterator next(folder, code), end; !code && next != end;
-       next.increment(code)) {
-    if (next->path().filename().string().starts_with(kDeviceFolder) &&
-        std::filesystem::exists(store_path(next->path().string())))
-      out.push_back(next->path().string());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
 }
 
 std::string store_path(const std::string& folder, int shard, int of) {

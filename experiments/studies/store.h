@@ -33,9 +33,6 @@ struct Provenance {
                  options)
 };
 
-/// Vendor and version of the driver for people; "none" on the native canvas.
-std::string driver_text(const Provenance& provenance);
-
 /// The provenance of this process, with the device that Session chooses. Opens a GL device to read
 /// its names. Throws Error if the named device does not answer.
 Provenance provenance_now(const std::string& device, const std::string& options);
@@ -123,7 +120,5 @@ std::string store_path(const std::string& folder, int shard = 1, int of = 1);
 /// DIR/on-DEVICE: the folder of the results on a further device, with its own store. Throws Error
 /// naming --devices if that is no valid file name.
 std::string device_folder(const std::string& folder, const std::string& device);
-/// The folders of further devices in DIR that hold a store, by name.
-std::vector<std::string> device_folders(const std::string& folder);
 
 }  // namespace farcull

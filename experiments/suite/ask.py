@@ -540,7 +540,8 @@ def score_distance(label, numbers, value, row):
             point_to_triangle(point, exact(triangle)) > near ** 2 for point, triangle in zip(points, triangles))
 
 
-def score_mesh(card, objects, rows, reported, row):
+def score_mesh(card, objects, rows, kinds, reported, row):
+    """kinds: of pairs that were looked at before, which many contestants report."""
     def shared(a, b):
         return len({*objects[a[0]][a[1]][0]} & {*objects[b[0]][b[1]][0]}) if a[0] == b[0] else 0
     counts = card['neighbours'] == 'yes'
@@ -549,7 +550,13 @@ def score_mesh(card, objects, rows, reported, row):
     row['colliding'] += len(truth)
     row['reported'] += len(found)
     def own(pairs, label):
-        return sum(promised(card, *(objects[o][t][1] for o, t in pair), label) for pair in pairs)
+        own_pairs = 0
+        for pair in pairs:
+            a, b = (objects[o][t][1] for o, t in pair)
+            if label and card['means'] == 'crossing' and pair not in kinds:
+                kinds[pair] = 'crossing' if crosses(a, b) else 'touch'
+            own_pairs += promised(card, a, b, label, kinds.get(pair) if label else None)
+        return own_pairs
     for fault, pairs in ('missed', truth - found), ('wrong', found - truth):
         row[fault] += len(pairs)
         row['own ' + fault] += own(pairs, fault == 'missed')
@@ -558,27 +565,27 @@ def score_mesh(card, objects, rows, reported, row):
 
 @functools.lru_cache(maxsize=1)
 def meshes_of(suite, names):
-    """Of each mesh the question, the objects, and the rows of pairs.csv, None if there is none."""
+    """Of each mesh the question, the objects, the rows of pairs.csv (None if there is none), and room for kinds of pairs."""
     out = []
     for name in names:
         paths, objects = suite.objects(name)
         question = Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
         known = name + '/pairs.csv' in suite.files
         lines = suite.text(name + '/pairs.csv').split('\n')[1:-1] if known else []
-        out.append((question, objects, [[*map(int, line.split(','))] for line in lines] if known else None))
+        out.append((question, objects, [[*map(int, line.split(','))] for line in lines] if known else None, {}))
     return out
 
 
 def ask_family(command, card, suite, names, options):
     """A row for each mesh of a family; one process is asked about all."""
     meshes = meshes_of(suite, tuple(names))
-    for (_, objects, rows), answer, differs in zip(meshes, *ask_twice(command, [mesh[0] for mesh in meshes], options)):
+    for (_, objects, rows, kinds), answer, differs in zip(meshes, *ask_twice(command, [mesh[0] for mesh in meshes], options)):
         pairs, row = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []], Row()
         if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
             answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
         row.take(answer, differs)
         if answer.outcome == 'answered' and rows is not None:
-            score_mesh(card, objects, rows, pairs, row)
+            score_mesh(card, objects, rows, kinds, pairs, row)
         yield row
 
 

@@ -355,7 +355,7 @@ SuiteIndex parse_suite(std::string_view text, const std::string& name) {
     }
     if (key != "sum") lines.fail(quote_token(key) + " is no word of a suite", kAgain);
     out.sum = take_word(line);
-    if (out.sum != sum_of(text.substr(0, before)))
+    if (out.sum != sha256(text.substr(0, before)))
       lines.fail("the sum is not that of the lines before it", kAgain);
     if (lines.next(line)) lines.fail("there are lines after the sum", kAgain);
     return out;
@@ -394,7 +394,7 @@ void check_files(const std::string& folder, const SuiteIndex& index) {
       throw Error(path, fmt::format("has {} bytes; suite.txt says {}", text.size(), file.bytes),
                   kAgain);
     }
-    if (sum_of(text) != file.sha256)
+    if (sha256(text) != file.sha256)
       throw Error(path, "its SHA-256 is not the one of suite.txt, so it was changed", kAgain);
   }
   std::vector<std::string> there;
@@ -441,12 +441,6 @@ std::string decimal(double value) {
   std::array<char, 40> buffer;
   const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   return {buffer.data(), end};
-}
-
-std::string sum_of(std::string_view text) {
-  Sha256 sum;
-  sum.add(text);
-  return sum.digest();
 }
 
 }  // namespace farcull

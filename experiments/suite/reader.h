@@ -132,8 +132,6 @@ void append_hexadecimal(std::string& text, double value);
 
 /// The shortest decimal text that is read back as the same finite double, whatever the locale.
 std::string decimal(double value);
-/// The SHA-256 of a text.
-std::string sum_of(std::string_view text);
 
 // Decides how two triangles meet, and which pairs of a mesh collide. Two exact oracles that share
 // no code give each answer; a disagreement is an Error. So no label of the suite rests on one

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "experiments/generators/pair_generators.h"
@@ -91,7 +92,7 @@ class Folder {
   void write(const std::string& name, const std::string& text, std::uint64_t items) {
     make_parent(name);
     write_output(path_ + "/" + name, text);
-    index_.files.push_back({name, text.size(), sum_of(text), items});
+    index_.files.push_back({name, text.size(), sha256(text), items});
   }
   void write(const std::string& name, const SuiteQuestions& questions) {
     const std::size_t count = questions.questions.size();
@@ -308,7 +309,7 @@ std::string index_text(const SuiteIndex& index) {
     fmt::format_to(std::back_inserter(out), "file {} {} {} {}\n", file.path, file.bytes,
                    file.sha256, file.items);
   }
-  return out + "sum " + sum_of(out) + "\n";
+  return out + "sum " + sha256(out) + "\n";
 }
 
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,

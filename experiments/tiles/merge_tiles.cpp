@@ -16,6 +16,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
 
@@ -55,25 +56,10 @@ Value at(const Source& source, const char* place) {
   no_record(source.path, fmt::format("is no record of a tile: {} is missing or wrong", place));
 }
 
-std::string text_of(const std::string& path) {
-  std::error_code code;
-  if (!fs::exists(path, code)) no_record(path, "does not exist");
-  std::FILE* const file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) no_record(path, "cannot be read");
-  std::string out;
-  std::array<char, 1 << 16> buffer{};
-  for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), file)) > 0;)
-    out.append(buffer.data(), n);
-  const bool failed = std::ferror(file) != 0;
-  std::fclose(file);
-  if (failed) no_record(path, "cannot be read to its end");
-  return out;
-}
-
 Source read_record(const std::string& path) {
   Source out;
   out.path = path;
-  out.json = Json::parse(text_of(path), nullptr, false);
+  out.json = Json::parse(read_file(path, std::uint64_t{1} << 30), nullptr, false);
   if (out.json.is_discarded()) no_record(path, "is no JSON, or was cut short");
   if (!out.json.is_object() || !out.json.contains("tile"))
     no_record(path, "is no record of a tile: it has no entry `tile`");

@@ -12,6 +12,7 @@
 #include "tests/lab/gl.h"
 #include "tests/lab/pairs.h"
 #include "tests/lab/voronoi.h"
+#include "tests/lab/voronoi_device.h"
 
 namespace farcull {
 namespace {
@@ -311,7 +312,7 @@ class VoronoiFaults : public testing::Test {
   std::unique_ptr<GlContext> context;
   const Scene scene = flat_scene();
   const VoronoiOptions options{.resolution = 6};
-  const std::unique_ptr<VoronoiDevice> cpu = cpu_voronoi_device(1);
+  const std::unique_ptr<VoronoiDevice> cpu = std::make_unique<lab::CpuVoronoiDevice>(1);
   const std::vector<ObjectPair> named = voronoi_neighbours(scene, options, *cpu).objects;
   const std::vector<TrianglePair> kept = reliable_neighbours(scene, options, *cpu).triangles;
   std::unique_ptr<VoronoiDevice> device;

@@ -123,6 +123,16 @@ TEST(NearestPair, OfDistancesThatAreRoundedToZero) {
   EXPECT_FALSE(found->closest.squared.is_zero());
 }
 
+// A product of the test for the same closest points is -infinity here, and its bound is finite.
+TEST(NearestPair, WhereProductsOverflow) {
+  const double s = 0x1p512, x = 127.0 / 128 * s;
+  const Scene scene =
+      reference::scene_of({{{Vec3(0, 0, 0), Vec3(0, -s, 0), Vec3(0, 0, -s)},
+                            {Vec3(0, 0, 0), Vec3(x, -s, x), Vec3(0, -s, 0)}},
+                           {{Vec3(s, s, s), Vec3(0x1p561, s, s), Vec3(s, 2 * s, s)}}});
+  expect_nearest(scene, pairs_between(scene));
+}
+
 TEST(NearestPair, RefusesWhatTheSceneLacks) {
   const Scene scene = reference::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}}});
   EXPECT_FALSE(nearest_pair(scene, {}).has_value());

@@ -149,7 +149,12 @@ TEST(Penetration, OfObjectsThatAreNotConvexHasBoundsByBalls) {
 
 // A dent does not make the bound of nearly convex objects wrong: it is less by the dent.
 TEST(Penetration, OfDentedBoxesIsBoundedByTheDent) {
-  for (const double dent : {1e-15, 1e-9, 1e-3, 0.3}) {
+  for (const auto& [size, dent] : {std::pair(1.0, 1e-15),
+                                   {1.0, 1e-9},
+                                   {1.0, 1e-3},
+                                   {1.0, 0.3},
+                                   {0x1p255, 0.3},
+                                   {0x1p256, 0.3}}) {
     Parts parts;
     const std::uint32_t first = parts.next();
     for (int k = 0; k < 8; ++k) parts.vertex(k & 1, (k & 2) / 2, (k & 4) / 4);
@@ -164,13 +169,15 @@ TEST(Penetration, OfDentedBoxesIsBoundedByTheDent) {
       parts.triangle(first + p, first + q, first + 8);
     parts.end("dented");
     parts.add_box("b", {0.4, 0.4, 0.5}, {0.6, 0.6, 2});
-    const Penetration found = penetration(parts.scene, {0, 1}, std::vector<Vec3>{{0.5, 0.5, 0.5}});
+    for (Vec3& p : parts.scene.vertices) p *= size;
+    const Vec3 middle = Vec3::Constant(0.5 * size);
+    const Penetration found = penetration(parts.scene, {0, 1}, std::vector<Vec3>{middle});
     // The box leaves upwards; the surface is highest at the edge of its lower face. Its twin, the
     // bound of the convex hull alone, is 0.5, which is too much.
-    const double depth = 0.5 - 0.8 * dent;
+    const double depth = size * (0.5 - 0.8 * dent);
     EXPECT_LE(found.lo, depth) << dent;
     EXPECT_GE(found.hi, depth) << dent;
-    EXPECT_GT(found.lo, dent < 1e-8 ? 0.499 : 0.1) << dent;
+    if (size == 1) EXPECT_GT(found.lo, dent < 1e-8 ? 0.499 : 0.1) << dent;
     EXPECT_TRUE(separates(parts.scene, {0, 1}, found.direction, found.translation));
   }
 }

@@ -467,9 +467,9 @@ void GlCanvas::require_begun(const char* function) const {
 }
 
 void GlCanvas::begin(const Window& window, const Drawables& drawables) {
+  if (state_) state_->begun = false;
   if (drawables.mode != mode_)
     throw std::logic_error("GlCanvas::begin: drawables of another depth mode");
-  if (state_) state_->begun = false;
   guarded([&] { state_->begin(window, drawables); });
 }
 

@@ -394,12 +394,16 @@ void MeshBuilder::add_vertex(const Vec3& p, long line) {
   mesh_.vertices.push_back(p);
 }
 
-void MeshBuilder::set_group(std::string_view group_name) {
+void MeshBuilder::set_group(std::string_view group_name, std::string_view within) {
   const std::string group = group_name.empty() ? "default" : clean_name(group_name);
-  const auto [entry, is_new] =
-      groups_.try_emplace(group, static_cast<std::uint32_t>(groups_.size()));
-  if (is_new) mesh_.group_names.push_back(group);
+  const auto [entry, is_new] = groups_.try_emplace(fmt::format("{}\n{}", within, group),
+                                                   static_cast<std::uint32_t>(groups_.size()));
   group_ = entry->second;
+  if (!is_new) return;
+  std::string name = group;
+  while (!group_names_.insert(name).second)
+    name = fmt::format("{}#{}", group, ++repeats_.try_emplace(group, 1).first->second);
+  mesh_.group_names.push_back(name);
 }
 
 void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "core/base/error.h"
@@ -61,15 +62,16 @@ std::vector<std::string> take_reading_notes();
 /// (below) says: a planar simple polygon keeps its area exactly, convex or not; one that is
 /// folded gets some triangulation of its corners, and is named in Mesh::folded. Vertices that are
 /// not finite and that no face uses become 0, 0, 0, and Mesh::notes says how many. OBJ: `o` and `g`
-/// name the group of the faces that follow, whichever came last. Other formats: one group,
-/// "default". ASCII STL: each solid is a group. STL: corners at one exact position become one
-/// vertex (0.0 and -0.0 are one position), the first one read. Contents compressed by gzip are
-/// decompressed, whatever their name; lines count in the decompressed text. Throws Error (where =
-/// path, line if the format has lines) if it is missing, is not a regular file, cannot be read, is
-/// malformed or shorter or longer than it claims, has a face with a corner that is NaN, infinite or
-/// beyond double, an index out of range, a polygon of fewer than 3 vertices, more than 2^32 - 1
-/// triangles, no triangle, or gzip data that are cut, damaged or suspiciously small (text.h). The
-/// Error for contents of a known format that is not read names its converter.
+/// name the group of the faces that follow, whichever came last; a `g` is one within its `o`. Other
+/// formats: one group, "default". ASCII STL: each solid is a group, also if its name is another's.
+/// STL: corners at one exact position become one vertex (0.0 and -0.0 are one position), the first
+/// one read. Contents compressed by gzip are decompressed, whatever their name; lines count in the
+/// decompressed text. Throws Error (where = path, line if the format has lines) if it is missing,
+/// is not a regular file, cannot be read, is malformed or shorter or longer than it claims, has a
+/// face with a corner that is NaN, infinite or beyond double, an index out of range, a polygon of
+/// fewer than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip data that are cut,
+/// damaged or suspiciously small (text.h). The Error for contents of a known format that is not
+/// read names its converter.
 Mesh load_mesh(const std::string& path);
 
 /// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
@@ -159,8 +161,10 @@ class MeshBuilder {
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
   /// p may be infinite or NaN where no face uses it. Throws Error beyond 2^32 - 1 vertices.
   void add_vertex(const Vec3& p, long line);
-  /// The faces added from now on belong to the group of this name; an empty name is "default".
-  void set_group(std::string_view group_name);
+  /// The faces added from now on belong to the group of this name within `within`, such as an
+  /// object of OBJ; an empty name is "default". A group of another `within` gets the name with #2,
+  /// #3 and so on if the name is taken.
+  void set_group(std::string_view group_name, std::string_view within = {});
   /// One polygon, corners in order as 0-based vertex indices. Throws Error if there are fewer than
   /// 3, if one is not a vertex added before or is not finite, if the triangles exceed 2^32 - 1, or
   /// if it is neither convex nor within reach of ear clipping (more than 8,192 corners, or a search
@@ -174,7 +178,8 @@ class MeshBuilder {
  private:
   std::string name_;
   Mesh mesh_;
-  std::unordered_map<std::string, std::uint32_t> groups_;
+  std::unordered_map<std::string, std::uint32_t> groups_, repeats_;
+  std::unordered_set<std::string> group_names_;
   std::uint32_t group_ = 0;
   std::uint32_t faces_ = 0;
   std::unordered_map<std::uint32_t, long> not_finite_;  // vertices, and their lines

@@ -18,6 +18,8 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <string>
 #include <unordered_map>
 
 #include "core/base/error.h"
@@ -64,12 +66,32 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
+// A CR alone is a blank beside lines that end with LF, so that all after it would belong to its
+// line: a comment or a vertex would swallow what follows.
+void require_one_end(std::string_view bytes, const std::string& name) {
+  if (bytes.find('\n') == std::string_view::npos) return;
+  for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
+       at = bytes.find('\r', at + 1)) {
+    const std::string_view after = bytes.substr(at + 1, 1);
+    if (after.empty() || after == "\n" || after == "\r") continue;
+    const auto before =
+        std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw Error(name, "a line ends with CR alone, and others end with LF",
+                "let all end alike, as tr '\\r' '\\n' makes them", static_cast<long>(before) + 1);
+  }
+}
+
 }  // namespace
 
 Mesh parse_obj(std::string_view bytes, const std::string& name) {
+  require_one_end(bytes, name);
   TextReader in(bytes, name, {.comment = '#', .continuation = true});
   MeshBuilder mesh(name);
   std::vector<std::uint32_t> corners;
+  std::string within;  // the number of the object
+  std::map<std::string, std::size_t, std::less<>> objects;
+  std::string twice;  // the first object that begins a second time
+  long line_of_twice = 0;
   std::uint64_t unknown = 0;
   std::string first_unknown;
   long line_of_unknown = 0;
@@ -83,8 +105,18 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
       for (std::string_view token = in.token(); !token.empty(); token = in.token())
         corners.push_back(corner_vertex(token, mesh.vertex_count(), in));
       mesh.add_face(corners, in.line());
-    } else if (keyword == "o" || keyword == "g") {
-      mesh.set_group(in.rest());
+    } else if (keyword == "o") {
+      const std::string object(in.rest());
+      const auto [at, is_new] = objects.try_emplace(object, objects.size() + 1);
+      within = std::to_string(at->second);
+      mesh.set_group(object, within);
+      if (!is_new && twice.empty()) {
+        twice = quote_token(object);
+        line_of_twice = in.line();
+      }
+    } else if (keyword == "g") {
+      const std::string group(in.rest());
+      mesh.set_group(group, group.empty() ? "" : within);
     } else if (contains(kFreeForm, keyword)) {
       in.fail("free-form geometry (" + quote_token(keyword) + ") is not read",
               "export the mesh as polygons");
@@ -96,6 +128,10 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
   if (unknown > 0 && mesh.vertex_count() == 0) {
     throw Error(name, first_unknown + " is not a statement of OBJ",
                 "see whether the file is an OBJ file and whole", line_of_unknown);
+  }
+  if (!twice.empty()) {
+    mesh.note(fmt::format("object {} begins again in line {}: its faces are one object", twice,
+                          line_of_twice));
   }
   if (unknown > 0) {
     mesh.note(fmt::format(
@@ -428,8 +464,9 @@ Mesh parse_text(std::string_view bytes, const std::string& name) {
     if (!inside && word == "solid") {
       inside = true;
       const std::string solid = rest_before(in, "facet", "normal");
-      mesh.set_group(solid.empty() && solids > 0 ? fmt::format("solid {}", solids + 1) : solid);
       ++solids;
+      mesh.set_group(solid.empty() && solids > 1 ? fmt::format("solid {}", solids) : solid,
+                     std::to_string(solids));
     } else if (inside && word == "endsolid") {
       inside = false;
       rest_before(in, "solid", "facet");

@@ -347,6 +347,10 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
       read_faces(body, element, faces);
       has_faces = true;
     } else {
+      if (element.name == "tristrips" && element.count > 0) {
+        throw Error(name, "has triangle strips, which are not read",
+                    "give the mesh of a surface, written as faces, not as strips", element.line);
+      }
       for (std::uint64_t i = 0; i < element.count; ++i) {
         body.begin();
         for (const Property& property : element.properties) skip_property(body, property);

@@ -146,10 +146,12 @@ std::string clean_name(std::string_view bytes) {
   std::string name;
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t length = utf8_length(bytes, at);
-    const bool control = length == 1 && (bytes[at] < ' ' || bytes[at] == '\x7f');
+    const std::string_view one = bytes.substr(at, length);
+    const bool control =
+        one.size() == 1 ? one[0] < ' ' || one[0] == '\x7f' : one >= "\xc2\x80" && one <= "\xc2\x9f";
     if (length == 0 || control) {
       name += '?';
-      ++at;
+      at += std::max<std::size_t>(length, 1);
     } else {
       name += bytes.substr(at, length);
       at += length;

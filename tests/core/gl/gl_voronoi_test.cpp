@@ -3,6 +3,7 @@
 
 #include "tests/lab/gl.h"
 #include "tests/lab/voronoi.h"
+#include "tests/lab/voronoi_device.h"
 
 namespace farcull {
 namespace {
@@ -38,7 +39,7 @@ TEST(GlVoronoi, NamesTheNeighboursThatTheCpuNames) {
 TEST(GlVoronoi, ListsWhatTheBoundsKeep) {
   const std::unique_ptr<VoronoiDevice> device =
       gl_voronoi_device(lab::context(), {.list = 1});  // grows on the way
-  const std::unique_ptr<VoronoiDevice> cpu = cpu_voronoi_device(1);
+  const auto cpu = std::make_unique<lab::CpuVoronoiDevice>(1);
   std::uint64_t listed = 0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const Scene scene = neighbours_scene(seed);

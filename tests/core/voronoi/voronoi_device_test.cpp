@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "tests/lab/voronoi.h"
+#include "tests/lab/voronoi_device.h"
 
 namespace farcull {
 
@@ -128,7 +129,7 @@ TEST(VoronoiBounds, SayWhereTheRootIsWorse) {
 // ---- both forms ----
 
 TEST(VoronoiDevice, PublishedIsThatOfAllCells) {
-  const std::unique_ptr<VoronoiDevice> device = cpu_voronoi_device(0);
+  const auto device = std::make_unique<lab::CpuVoronoiDevice>(0);
   lab::SliceCounts counts;
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(80)); ++seed) {
     const Scene scene = neighbours_scene(seed);
@@ -141,7 +142,7 @@ TEST(VoronoiDevice, PublishedIsThatOfAllCells) {
 }
 
 TEST(VoronoiDevice, ReliableLosesNone) {
-  const std::unique_ptr<VoronoiDevice> device = cpu_voronoi_device(0);
+  const auto device = std::make_unique<lab::CpuVoronoiDevice>(0);
   const lab::SliceLosses losses = lab::losses_of_reliable(*device, trials(1000), 1);
   EXPECT_GT(losses.pairs, 2000u / 8);
   EXPECT_EQ(losses.lost, 0u);
@@ -149,11 +150,11 @@ TEST(VoronoiDevice, ReliableLosesNone) {
 }
 // Twins: without the widening, and with half of it.
 TEST(VoronoiDevice, ReliableLosesSomeWithoutTheWidening) {
-  const std::unique_ptr<VoronoiDevice> device = cpu_voronoi_device(0);
+  const auto device = std::make_unique<lab::CpuVoronoiDevice>(0);
   EXPECT_GT(lab::losses_of_reliable(*device, trials(500), 0).lost, 0u);
 }
 TEST(VoronoiDevice, ReliableLosesSomeWithHalfTheWidening) {
-  const std::unique_ptr<VoronoiDevice> device = cpu_voronoi_device(0);
+  const auto device = std::make_unique<lab::CpuVoronoiDevice>(0);
   EXPECT_GT(lab::losses_of_reliable(*device, trials(500), 0.5).lost, 0u);
 }
 
@@ -161,7 +162,8 @@ TEST(VoronoiDevice, DoesNotDependOnThreads) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const Scene scene = lab::random_scene(seed);
     const VoronoiOptions one{.resolution = 20, .threads = 1}, more{.resolution = 20, .threads = 3};
-    const auto first = cpu_voronoi_device(1), other = cpu_voronoi_device(3);
+    const auto first = std::make_unique<lab::CpuVoronoiDevice>(1),
+               other = std::make_unique<lab::CpuVoronoiDevice>(3);
     EXPECT_EQ(voronoi_neighbours(scene, one, *first).objects,
               voronoi_neighbours(scene, more, *other).objects);
     EXPECT_EQ(reliable_neighbours(scene, one, *first).triangles,
@@ -170,7 +172,7 @@ TEST(VoronoiDevice, DoesNotDependOnThreads) {
 }
 
 TEST(VoronoiDevice, TakesScenesWithoutNeighbours) {
-  const std::unique_ptr<VoronoiDevice> device = cpu_voronoi_device(1);
+  const auto device = std::make_unique<lab::CpuVoronoiDevice>(1);
   const std::array<Vec3, 3> point = {Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3)};
   for (const auto& objects : std::vector<std::vector<std::vector<std::array<Vec3, 3>>>>{
            {}, {{}}, {{}, {}}, {{point}}, {{point}, {}}}) {

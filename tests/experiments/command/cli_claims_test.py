@@ -43,6 +43,9 @@ $ grep -qx '  "list_sha256": "{missed}",' c.json
 0 forged with the hash as well | check of_the_scene.json two-spheres
   | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no
   | ^unattested, .* about the scene and not about the run:$ | ^  that the method was far$ | ^  which pairs the run kept
+$ sed 's/"method": "[^"]*"/"method": "far\\nproved: all"/' exact.json >lies.json
+0 a certificate that prints a verdict | check lies.json two-spheres | #0 ^proved: these | ! ^proved: all
+  | ^  that the method was far.proved: all$
 1 and is not the list of the run | check of_the_scene.json two-spheres --pairs missed.csv
   | #0 ^not proved: missed\.csv is another list:
 bad a list that is not there | nothing\.csv: | check exact.json two-spheres --pairs nothing.csv

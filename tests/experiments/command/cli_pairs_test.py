@@ -131,6 +131,9 @@ bad a list of other frames | falls\.csv:2: frame 2[ ] | check fall.json --frames
 $ rm certificates/c_03.json
 2 a certificate that is missing | check certificates/c_%02d.json fall.json --frames 1:3 | ^ +1  proved[ ]
   | @err ^farcull: certificates/c_03\.json: the file does not .*; give[ ]
+$ mkdir partly && cp certificates/c_01.json partly/c_1.json
+2 nothing is proved of all frames then | check partly/c_%d.json fall.json --frames 1:3 --json v.json | ^ +1  proved[ ]
+  | @err does not | @v.json "verdict": "not proved"
 # Certificates of two questions are not one answer. The first one's is the question.
 0 certificates of a clearance | run {move} --frames 2 --clearance 0.2 --certificate near_%d.json
 0 certificates of meeting | run {move} --frames 2 --certificate meet_%d.json

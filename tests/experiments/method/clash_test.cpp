@@ -312,6 +312,23 @@ TEST(Clash, WhatIsInABoxWithBothSidesOfEachFaceIsUnknown) {
   EXPECT_FALSE(standing.rows[0].proved);
 }
 
+// The other side of each face has the other diagonal, so that no triangle is there twice.
+TEST(Clash, BothSidesOfAFaceMayBeCutOtherwise) {
+  for (const double z : {4, 0}) {
+    Parts parts;
+    parts.box({0, 0, 0}, {10, 10, 10});
+    for (std::uint32_t t = 0; t < 12; t += 2) {
+      const auto [a, b, c] = parts.scene.triangles[t];
+      parts.quad(0, {parts.scene.triangles[t + 1][2], c, b, a});
+    }
+    parts.end("outer");
+    parts.add_box("inner", {4, 4, z}, {6, 6, z + 2});
+    const ClashRecord record = clashes(parts.scene, {});
+    EXPECT_EQ(record.count(z > 0 ? unknown : clash), 1u);
+    EXPECT_EQ(record.rows[0].proved, z > 0);  // nothing is to be proved of "unknown"
+  }
+}
+
 // An inner wall divides a part into two chambers; it is there for both of them.
 TEST(Clash, WhatIsInAChamberBesideAnInnerWallIsContained) {
   Parts parts;

@@ -13,12 +13,6 @@
 namespace farcull {
 namespace {
 
-std::string sha256(std::string_view text) {
-  Sha256 hash;
-  hash.add(text);
-  return hash.digest();
-}
-
 // The examples of FIPS 180-4, and `sha256sum` of others.
 TEST(Sha256, IsThatOfTheStandard) {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

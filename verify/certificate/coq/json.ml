@@ -228,10 +228,17 @@ let certificate text_of_file =
 (* ---- certificates of distances ---- *)
 
 let distances_format = "farcull-distances"
-(* The key `format` comes first. *)
+(* Whether the file begins with { "format": "farcull-distances", with any blanks between. *)
 let is_of_distances text_of_file =
-  let start = String.sub text_of_file 0 (min 200 (String.length text_of_file)) in
-  List.exists (fun part -> part = distances_format) (String.split_on_char '"' start)
+  let size = String.length text_of_file in
+  let rec after_blanks i =
+    if i < size && String.contains " \t\r\n" text_of_file.[i] then after_blanks (i + 1) else i in
+  let rec begins at = function
+    | [] -> true
+    | token :: rest ->
+      let at = after_blanks at and length = String.length token in
+      at + length <= size && String.sub text_of_file at length = token && begins (at + length) rest in
+  begins 0 [ "{"; "\"format\""; ":"; "\"" ^ distances_format ^ "\"" ]
 
 (* "5/4" as two numbers, in lowest terms. *)
 let fraction v =

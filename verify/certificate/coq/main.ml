@@ -4,7 +4,8 @@
    words that `farcull check --verified` writes: 64 bits each, lowest byte first.
    docs/certificate.md describes the certificate. With --tiles CERTIFICATE... SCENE the certificates
    are those of all tiles of the scene, in their order. Exit status as of `farcull check`: 0 proved;
-   1 refuted or not proved; 2 a file that cannot be read; 3 the checker could not decide a pair. *)
+   1 refuted or not proved; 2 a file that cannot be read; 3 the checker could not decide a pair; 4 the
+   stack or the memory was too small. *)
 module Integer = Z
 open Checker
 module Z = Integer  (* zarith's; the checker has a Z of its own *)
@@ -370,8 +371,11 @@ let usage = "usage: farcull-check-verified CERTIFICATE SCENE [CERTIFICATE SCENE]
              or: farcull-check-verified --tiles CERTIFICATE... SCENE"
 let () =
   let run check =
-    let failed text = Printf.eprintf "farcull-check-verified: %s\n%!" text; 2 in
-    try status_of (check ()) with Bad text | Json.Bad text | Sys_error text -> failed text in
+    let failed status text = Printf.eprintf "farcull-check-verified: %s\n%!" text; status in
+    try status_of (check ()) with
+    | Bad text | Json.Bad text | Sys_error text -> failed 2 text
+    | Stack_overflow -> failed 4 "the stack is too small (ulimit -s)"
+    | Out_of_memory -> failed 4 "there is too little memory" in
   let one certificate scene =
     run (fun () ->
         let text = read_file certificate in

@@ -53,8 +53,6 @@ TEST(MeshHabits, LinesMayEndWithCarriageReturns) {
   EXPECT_EQ(mesh.triangles.size(), 1u);
   EXPECT_EQ(error_of([] { obj("v 0 0 0\rv 1 0 0\rf 1 2 9\r"); }).line, 3);
   EXPECT_EQ(off("OFF\r3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r").triangles.size(), 1u);
-  // With a line feed anywhere, a carriage return is a blank: the comment ends at the line feed.
-  EXPECT_EQ(obj("v 0 0 0\nv 1 0 0\nv 0 1 0\n# c\rf 9 9 9\nf 1 2 3\n").triangles.size(), 1u);
 }
 
 TEST(MeshHabits, StatementsThatObjDoesNotHaveArePassedOver) {
@@ -100,6 +98,38 @@ TEST(MeshHabits, SolidsOfAnStlAreGroupsAndMayStandOnOneLine) {
   const std::string scene =
       folder.write("s.json", R"({"objects": [{"mesh": "s.stl", "split": "groups"}]})");
   EXPECT_EQ(load_scene({scene}).objects.at(1).name, "s/b");
+}
+
+// Exports of one program that were put one behind the other have equal names.
+TEST(MeshHabits, PartsWithOneNameAreSeveralObjects) {
+  const Mesh solids = stl("solid a\n" + facet(0) + "endsolid a\nsolid a\n" + facet(0.5) +
+                          "endsolid a\nsolid a#2\n" + facet(1) + "endsolid\n");
+  EXPECT_EQ(solids.group_names, (std::vector<std::string>{"a", "a#2", "a#2#2"}));
+  EXPECT_EQ(solids.group, (std::vector<std::uint32_t>{0, 1, 2}));
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", face = "f 1 2 3\n";
+  const Mesh groups = obj(corners + "o A\ng x\n" + face + "g y\n" + face + "g x\n" + face +
+                          "o B\ng x\n" + face + "o A\n" + face);
+  EXPECT_EQ(groups.group_names, (std::vector<std::string>{"A", "x", "y", "B", "x#2"}));
+  EXPECT_EQ(groups.group, (std::vector<std::uint32_t>{1, 2, 1, 4, 0}));
+  EXPECT_TRUE(has_text(groups.notes.at(0), "object 'A' begins again in line 14"));
+}
+
+TEST(MeshHabits, AFileThatMixesEndsOfLinesIsRefused) {
+  const std::string first = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const Error error =
+      error_of([&] { obj(first + "# more\rv 0 0 1\rv 1 0 1\rv 0 1 1\rf 4 5 6\r"); });
+  EXPECT_TRUE(has_text(error.reason, "ends with CR alone")) << error.what();
+  EXPECT_EQ(error.line, 5);
+  EXPECT_EQ(obj(first + "# more\r\r\nv 0 0 1\r").triangles.size(), 1u);
+}
+
+TEST(MeshHabits, StripsBesideFacesAreNotPassedOver) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n";
+  EXPECT_TRUE(has_text(error_of([&] { ply(text); }).reason, "has triangle strips"));
 }
 
 // The command never writes to the file that it is about, nor to another that is there.

@@ -1,0 +1,89 @@
+// The grid of the diagram, and triangles on it.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/voronoi/voronoi.h"
+
+namespace farcull {
+
+// The box of the triangles, scaled by a power of two so that no difference overflows or is
+// subnormal, and divided into cubes. All roundings of the grid itself go outward.
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+double up(double x) { return std::nextafter(x, kInfinite); }
+
+}  // namespace
+
+int VoronoiGrid::longest() const { return *std::max_element(cells.begin(), cells.end()); }
+
+double VoronoiGrid::world(double distance) const {
+  if (!(distance > 0)) return 0;
+  return up(std::ldexp(up(distance * cell), -exponent));
+}
+
+VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
+  Box box = Box::empty();
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) box.add(p);
+  }
+  VoronoiGrid out;
+  if (box.is_empty()) return out;
+  const double largest =
+      std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
+  if (!(largest > 0)) return out;
+  // The largest coordinate is then in [1, 2). A coordinate that becomes subnormal is off by less
+  // than 2^-1074, where a cell is at least 2^-52 / kVoronoiLargest.
+  out.exponent = -std::ilogb(largest);
+  Vec3 extent;
+  for (int k = 0; k < 3; ++k) {
+    out.lo[k] = std::ldexp(box.lo[k], out.exponent);
+    extent[k] = std::ldexp(box.hi[k], out.exponent) - out.lo[k];
+    if (extent[k] > 0) extent[k] = up(extent[k]);
+  }
+  const double most = extent.maxCoeff();
+  if (!(most > 0)) return out;
+  out.cell = up(most / resolution);
+  for (std::size_t k = 0; k < 3; ++k) {
+    // The quotient is rounded twice, so the factor makes up for more than that.
+    const double sides = extent[static_cast<int>(k)] / out.cell * (1 + 0x1p-50);
+    out.cells[k] = std::min(resolution, static_cast<int>(sides) + 1);
+  }
+  return out;
+}
+
+std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& grid,
+                                         unsigned threads) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<GridTriangle> out(scene.triangles.size());
+  const std::size_t chunks = chunks_for(out.size(), 4096, threads);
+  for_chunks(out.size(), chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::array<Vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(t));
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto axis = static_cast<int>(k);
+          const double moved = std::ldexp(corners[i][axis], grid.exponent) - grid.lo[axis];
+          out[t].corners[i][k] = static_cast<float>(moved / grid.cell);
+        }
+      }
+      out[t].object = owner[t];
+    }
+  });
+  return out;
+}
+
+void require_voronoi_list(std::size_t listed) {
+  if (listed <= kVoronoiMostListed) return;
+  throw Error("resolution",
+              "a slice has " + std::to_string(listed) +
+                  " triangles or more that may be nearest to its cells, too many to list",
+              "take more cells, or objects that differ less in size");
+}
+
+}  // namespace farcull
