@@ -196,10 +196,12 @@ Surface surface_of(const std::vector<Edge>& edges) {
 /// Whether two triangles at an edge may lie on each other; false only if rounding leaves no doubt.
 bool may_be_folded(const Corners& a, const Corners& b) {
   const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
-  // Negative if the triangles lie on both sides of the edge; off by less than 30 u of the product
-  // of the lengths, and by underflow.
+  const double of_a = e.norm() * f.norm(), of_b = e.norm() * g.norm();
+  // Negative if the triangles lie on both sides of the edge. It is off by less than 30 u of_a of_b,
+  // and by underflow: of the products of two lengths, which is far below 1e-12 of these if they are
+  // above 1e-280, and of the product of four, which is below 1e-290.
   const double sides = e.cross(f).dot(e.cross(g));
-  return !(sides < -(1e-12 * e.squaredNorm() * f.norm() * g.norm() + 1e-290));
+  return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
 
 /// Whether two triangles of one plane that pass an edge in both senses lie on the same side of it,
