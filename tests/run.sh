@@ -3,9 +3,9 @@
 # packages that are missing, builds, fetches real meshes and runs ctest. Arguments go to ctest, for
 # example: bash tests/run.sh -R Scene
 # If the first argument is --sanitize, the tests that need no GL run a second time, built with the
-# address and undefined behaviour sanitizers. If CI is set, only those of core, offsets, verify, the
-# library and scenes, and the fuzz targets on their corpus, without those that repeat arithmetic on
-# numbers: a third of the time, and what handles memory by numbers or reads the files of strangers.
+# address and undefined behaviour sanitizers. If CI is set, only those of what handles memory by
+# numbers or reads the files of strangers (FARCULL_TESTS_OF=inner in tests/CMakeLists.txt) and the
+# fuzz targets on their corpus, for two instruction sets of the CPU: a sixth of the time.
 # If the first argument is --long, the campaigns of docs/tests.md run one after the other instead: hours. Those that passed at
 # this commit are not run again, and words behind --long choose some: bash tests/run.sh --long polygons odr
 # Exit status: 0 every test passed, and there was at least one; 2 the tests did not start; otherwise
@@ -22,6 +22,7 @@ echo "tests: seed of the day $FARCULL_SEED; FARCULL_SEED=$FARCULL_SEED replays i
 
 # Campaigns: a name, and a command in the folder of the checkout.
 campaigns=(
+  "trials FARCULL_TRIALS=all ctest --test-dir build --output-on-failure -L 'one|gl'"
   "rounding FARCULL_ROUNDING_PAIRS=320000 build/tests/farcull_tests --gtest_filter=WorstRounding.LosesNoPair*"
   "polygons FARCULL_POLYGONS=1000000 build/tests/farcull_tests --gtest_filter=Polygons.*"
   "model FARCULL_MODEL_TRIALS=1000000 ctest --test-dir build --output-on-failure -R CullModel"
@@ -108,7 +109,9 @@ ctest --test-dir build -C Release --output-on-failure --no-tests=error \
 # Tests that need GL are left out and named: Mesa is not built with sanitizers, and its leaks would be
 # reported as ours.
 echo "tests: a second time, with sanitizers ($sanitize)"
-farcull_build_beside build-sanitize "farcull_tests farcull_fuzz_replay" -DFARCULL_TESTS_OF="$sanitize" \
+fewer=()
+if [[ $sanitize == inner ]]; then fewer=(-DFARCULL_GL=OFF "-DFARCULL_WITHOUT_LANES=HWY_SSE4|HWY_AVX3"); fi
+farcull_build_beside build-sanitize "farcull_tests farcull_fuzz_replay" -DFARCULL_TESTS_OF="$sanitize" "${fewer[@]}" \
   -DFARCULL_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 left_out=gl
 if ((${#without[@]})); then left_out='gl|meshes'; fi

@@ -1,5 +1,5 @@
-// The seed of the day, and where failures are written. A listener prints the seed once at the start
-// of a test program and beside each failure.
+// The seed of the day, how many random cases are tried, and where failures are written. A listener
+// prints the seed once at the start of a test program and beside each failure.
 #include "tests/lab/test.h"
 
 #include <ctime>
@@ -33,8 +33,17 @@ class SaysTheSeed : public ::testing::EmptyTestEventListener {
   }
 };
 
+bool all_trials() {
+  const char* const wish = std::getenv("FARCULL_TRIALS");
+  if (wish == nullptr) return false;
+  if (wish != std::string("all"))
+    throw std::runtime_error("FARCULL_TRIALS: '" + std::string(wish) + "' is not \"all\"");
+  return true;
+}
+
 [[maybe_unused]] const bool kListens = [] {
-  ::setenv("RC_PARAMS", ("seed=" + std::to_string(seed_of_day())).c_str(), 0);
+  const char* const most = all_trials() ? " max_success=100" : " max_success=25";
+  ::setenv("RC_PARAMS", ("seed=" + std::to_string(seed_of_day()) + most).c_str(), 0);
   ::testing::UnitTest::GetInstance()->listeners().Append(new SaysTheSeed);  // which owns it
   return true;
 }();
@@ -52,6 +61,15 @@ std::uint64_t seed_of_day(std::uint64_t fixed) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
   return x ^ (x >> 31);
+}
+
+int trials(int n, int least) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kPart = 8;
+#else
+  constexpr int kPart = 4;
+#endif
+  return all_trials() ? n : std::max(n / kPart, least);
 }
 
 std::filesystem::path failure_file(const std::string& name) {

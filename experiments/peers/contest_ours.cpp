@@ -53,9 +53,8 @@ std::vector<TrianglePair> touching_strangers(const Scene& scene) {
 }
 
 /// The pairs that a method reports, as a suite counts them: with touching_strangers().
-std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
+std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
   static Session session(device(), 1, {});
-  RunOptions options{.method = method};
   options.device = device();
   options.verify = false;
   // Probing a software renderer takes longer than an answer may, except the first one. So these
@@ -73,7 +72,7 @@ std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
       return std::binary_search(kept.begin(), kept.end(), t);
     };
     // If a method culls triangles, it has to keep both; other methods keep no set of triangles.
-    if (!draws(method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
+    if (!draws(options.method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
   }
   return out;
 }
@@ -107,14 +106,29 @@ Contestant contestant(ContestantCard card, const Finder& find) {
           .mesh = find};
 }
 
-Contestant of_method(Method method, const std::string& says, const std::string& use) {
+Contestant of_options(const RunOptions& options, const std::string& says, const std::string& use) {
+  const Method method = options.method;
   return contestant({.name = to_string(method),
                      .neighbours = tests_self(method),
-                     .promises = !culls(method) || promises(RunOptions{.method = method}),
+                     .promises = !culls(method) || promises(options),
                      .call = "farcull run --method " + to_string(method) + " --device " + device(),
                      .says = says,
                      .use = use},
-                    [method](const Scene& scene) { return pairs_by(method, scene); });
+                    [options](const Scene& scene) { return pairs_by(options, scene); });
+}
+Contestant of_method(Method method, const std::string& says, const std::string& use) {
+  return of_options({.method = method}, says, use);
+}
+
+/// far where pixels alone decide: by default it decides small scenes exactly, and draws nothing. At
+/// 0.9 of the radius it is the control of "misses none", which has to miss some.
+Contestant far_drawn(const std::string& radius, const std::string& says, const std::string& use) {
+  Contestant out = of_options(
+      {.method = Method::far, .radius = parse_radius(radius), .boxes = BoxLevel::objects}, says,
+      use);
+  out.card.name = radius == "budget" ? "far-drawn" : "far-drawn-at-" + radius;
+  out.card.call += " --boxes objects --radius " + radius;
+  return out;
 }
 
 /// Whether the insides of two objects overlap, as `farcull clash` says it.
@@ -169,5 +183,7 @@ int main(int argc, char** argv) {
       {device() == "native" ? far_pairs_of_library(reliable)
                             : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
        exact(), of_method(Method::far, reliable, "FAR (2004), with the radius of the error budget"),
-       of_method(Method::i_collide, reliable, "few objects that move little")});
+       of_method(Method::i_collide, reliable, "few objects that move little"),
+       far_drawn("budget", reliable, "to see that pixels miss none"),
+       far_drawn("0.9", "a control, which has to miss pairs", "nothing")});
 }

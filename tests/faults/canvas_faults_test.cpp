@@ -121,7 +121,7 @@ TEST_P(CanvasFaults, EveryLostCallOfALifeIsNoticed) {
   ASSERT_TRUE(mixed(right));
   const auto outcomes = lab::try_gl_faults(
       GlFault::drop, [&] { canvas.reset(); }, [&] { return life() == right; });
-  EXPECT_GT(outcomes.size(), 200u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(200)));
   expect_no_wrong_answer("lost calls, life of a canvas", outcomes);
 }
 
@@ -138,7 +138,7 @@ TEST_P(CanvasFaults, EveryLostCallOfALaterPassIsNoticed) {
         run_other();
       },
       [&] { return later() == right; });
-  EXPECT_GT(outcomes.size(), 100u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(100)));
   expect_no_wrong_answer("lost calls, later passes", outcomes);
 }
 

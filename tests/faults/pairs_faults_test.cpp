@@ -35,7 +35,7 @@ TEST_P(PairsFaults, EveryLostCallOfAFirstFindIsNoticed) {
   ASSERT_TRUE(scene.found_by(*collider));
   const auto outcomes = lab::try_gl_faults(
       GlFault::drop, [&] { open(); }, [&] { return scene.found_by(*collider); });
-  EXPECT_GT(outcomes.size(), 100u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(100)));
   expect_no_wrong_answer("lost calls, first find", outcomes);
 }
 
@@ -49,7 +49,7 @@ TEST_P(PairsFaults, EveryLostCallOfALaterFindIsNoticed) {
   const auto outcomes = lab::try_gl_faults(
       GlFault::drop, [&] { ASSERT_TRUE(before.found_by(*collider)); },
       [&] { return scene.found_by(*collider); });
-  EXPECT_GT(outcomes.size(), 100u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(100)));
   expect_no_wrong_answer("lost calls, later find", outcomes);
 }
 
@@ -58,7 +58,7 @@ TEST_P(PairsFaults, EveryFailedAllocationIsNoticed) {
   ASSERT_TRUE(scene.found_by(*collider));
   const auto outcomes = lab::try_gl_faults(
       GlFault::out_of_memory, [&] { open(); }, [&] { return scene.found_by(*collider); });
-  EXPECT_GT(outcomes.size(), 20u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(20)));
   for (const GlFaultOutcome& o : outcomes)
     EXPECT_TRUE(o.threw && o.error.find("GL_OUT_OF_MEMORY") != std::string::npos) << o.at;
   expect_no_wrong_answer("failed allocations", outcomes);
@@ -352,14 +352,14 @@ TEST_F(VoronoiFaults, TheUndisturbedAnswersAreThoseOfTheCpu) {
 TEST_F(VoronoiFaults, EveryLostCallOfTheFirstAnswerIsNoticed) {
   const auto outcomes = lab::try_gl_faults(
       GlFault::drop, [&] { device.reset(); }, [&] { return published(); });
-  EXPECT_GT(outcomes.size(), 100u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(100)));
   expect_no_wrong_answer("lost calls, published, first answer", outcomes);
 }
 
 TEST_F(VoronoiFaults, EveryLostCallOfTheReliableFormIsNoticed) {
   const auto outcomes = lab::try_gl_faults(
       GlFault::drop, [&] { ASSERT_TRUE(published()); }, [&] { return reliable(); });
-  EXPECT_GT(outcomes.size(), 100u);
+  EXPECT_GT(outcomes.size(), static_cast<std::size_t>(trials(100)));
   expect_no_wrong_answer("lost calls, reliable", outcomes);
 }
 

@@ -11,9 +11,9 @@ namespace {
 
 // The sanitizers take several times as long, and the fuzzer itself runs under them.
 #ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t kMutations = 200;
+constexpr std::uint32_t kMutations = 100;
 #else
-constexpr std::uint32_t kMutations = 2000;
+constexpr std::uint32_t kMutations = 500;
 #endif
 constexpr std::size_t kMaxBytes = 4096;  // of a mutated input
 

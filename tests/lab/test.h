@@ -28,16 +28,11 @@ inline std::uint64_t nth_seed(std::uint64_t i, std::uint64_t n) {
   return i < n / 2 ? i : seed_of_day(i);
 }
 
-/// n random cases, or an eighth of them (at least `least`) where the address sanitizer makes every
-/// case several times slower: it looks for faults of memory, which a few cases of each kind show,
-/// and all n cases are tried without it.
-constexpr int trials(int n, [[maybe_unused]] int least = 1) {
-#ifdef __SANITIZE_ADDRESS__
-  return n / 8 > least ? n / 8 : least;
-#else
-  return n;
-#endif
-}
+/// How many random cases a loop tries: all n if FARCULL_TRIALS is "all" (a campaign of
+/// tests/run.sh), else a quarter of them, and an eighth with the address sanitizer, which makes
+/// every case several times slower and looks for faults of memory, which a few cases of each kind
+/// show. At least `least`. Rapidcheck's own properties follow the variable too.
+int trials(int n, int least = 1);
 
 /// A file of the build tree for a minimized input that failed, to be moved to tests/cases. Makes
 /// the folder.

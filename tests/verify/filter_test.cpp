@@ -65,7 +65,7 @@ TEST(Filter, NeverContradictsExactArithmetic) {
   for (const auto& [name, make] : generators()) {
     for (const Sharing sharing : {Sharing::none, Sharing::vertex, Sharing::edge}) {
       for (const std::uint64_t seed : seeds(1)) {
-        const Tally t = tally<FilterBounds>(make, sharing, 250, seed);
+        const Tally t = tally<FilterBounds>(make, sharing, trials(250), seed);
         EXPECT_EQ(t.contradictions, 0) << name << " " << static_cast<int>(sharing);
       }
     }

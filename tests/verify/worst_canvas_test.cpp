@@ -70,9 +70,9 @@ TEST(WorstLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvase
 using lab::far_on;
 
 TEST(WorstFar, MissesNothingOnRandomScenes) {
-  constexpr std::uint64_t kScenes = trials(40);
+  const auto scenes = static_cast<std::uint64_t>(trials(40));
   std::uint64_t at_risk = 0;
-  for (std::uint64_t n = 1001; n <= 1000 + kScenes; ++n) {
+  for (std::uint64_t n = 1001; n <= 1000 + scenes; ++n) {
     const bool fixed = n % 2 != 0;
     const std::uint64_t seed = fixed ? n : seed_of_day(n);
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -91,7 +91,7 @@ TEST(WorstFar, MissesNothingOnRandomScenes) {
     }
   }
   std::printf("pairs at risk: %llu at 0\n", static_cast<unsigned long long>(at_risk));
-  EXPECT_GT(at_risk, 300 * kScenes / 40) << "pairs lost without a radius";
+  EXPECT_GT(at_risk, 300 * scenes / 40) << "pairs lost without a radius";
 }
 
 TEST(WorstFar, MissesNothingOnHardScenesAndTheirCopiesElsewhere) {

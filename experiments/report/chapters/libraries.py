@@ -242,7 +242,7 @@ def time_figure(rows):
 # ---- findings
 
 def add_ours(chapter, rows):
-    """Adds the methods of farcull that promise. A wrong answer breaks the promise, and so does no answer."""
+    """Adds the methods of farcull. Of those that promise, a wrong answer breaks the promise, and so does no answer."""
     kept, pairs, colliding, meshes, questions = [], [], [], [], 0
     for name, of in by(promising(rows), "method"):
         silent = without_answer(of)
@@ -272,6 +272,12 @@ def add_ours(chapter, rows):
             f"of the {most(colliding, 'colliding pair', 'colliding pairs')} of {most(meshes, 'mesh', 'meshes')}"] * any(
                 colliding) + [f"of {counted(questions, 'other question', 'other questions')}"] * bool(questions)
         chapter.find(f"{listed(kept)} missed none and reported none wrongly {listed(what)}.")
+    ours = rows[rows.library == "farcull"]
+    for name, of in by(ours.drop(promising(ours).index), "method"):
+        missed, asked, _, _ = answers(of[of.asks == "pairs"], True, False)
+        lost, known, _, _ = answers(of[of.asks == "meshes"], False, False)
+        chapter.find(f"{name}, a control that promises nothing, missed {grouped(missed)} of {counted(asked, 'pair', 'pairs')} and "
+                     f"{grouped(lost)} of {counted(known, 'colliding pair', 'colliding pairs')} of meshes.")
 
 
 def add_others(chapter, rows, asks):

@@ -26,7 +26,7 @@ TEST(GlCull, BothKindsOfQueryGiveTheSameAnswers) {
     const Drawing flags = on_gl(fattener, QueryMode::flags);
     const Drawing occlusion = on_gl(fattener, QueryMode::occlusion);
     std::size_t steps = 0;
-    for (int n = 0; n < 12; ++n) {
+    for (int n = 0; n < trials(12, 6); ++n) {
       const bool self = n % 3 == 0;
       const Scene scene = lab::scene_of(lab::random_small(3000 + n, 60), self);
       CullSettings settings = lab::cull_settings(flags, "x,y,1:2:3", n % 2 ? 24 : 128);

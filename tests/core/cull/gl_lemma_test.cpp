@@ -11,7 +11,7 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
   };
 }
 
-TEST(GlLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), 100'000); }
+TEST(GlLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), trials(100'000)); }
 
 TEST(GlLemma, Lemma1FailsAtNineTenthsOfTheBudget) {
   const auto radius = [](const Budget& b, double) { return 0.9 * b.radius(); };

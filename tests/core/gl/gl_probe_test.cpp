@@ -47,7 +47,7 @@ TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
 }
 
 TEST(GlProbe, OtherSeedsPassToo) {
-  for (const std::uint64_t seed : {2u, 77u}) {
+  for (const std::uint64_t seed : {std::uint64_t{2}, seed_of_day(77)}) {
     ProbeOptions options = kBrief;
     options.seed = seed;
     for (const ProbeResult& r : run(options, ""))

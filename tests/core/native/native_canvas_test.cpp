@@ -47,7 +47,7 @@ std::uint64_t different_lines(const SolidProgram& program, const Solid& solid,
   return different;
 }
 
-constexpr std::uint64_t kTriangles = trials(60'000);
+const auto kTriangles = static_cast<std::uint64_t>(trials(60'000));
 constexpr std::uint64_t kLines = 37;  // of a triangle
 
 /// Centres around a line, on a grid of half pixels and off it.
@@ -251,10 +251,10 @@ Pass repeated(const Pass& pass) {
 }
 
 TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
-  constexpr int kSeeds = trials(40);
+  const int seeds = trials(40);
   on_every_target([&] {
     int seen_in_all = 0, reversed_differs = 0;
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
       const RandomPass random(seed);
       const Pass many = repeated(random.pass);
       ASSERT_GT(many.draws.size(), 3 * 2048u);
@@ -278,9 +278,9 @@ TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
         }
       }
     }
-    EXPECT_GT(seen_in_all, 10 * kSeeds);
-    EXPECT_LT(seen_in_all, kSeeds * 4 * 24 - 10 * kSeeds);
-    EXPECT_GT(reversed_differs, 13 * kSeeds / 4) << "a swapped depth test has to be noticed";
+    EXPECT_GT(seen_in_all, 10 * seeds);
+    EXPECT_LT(seen_in_all, seeds * 4 * 24 - 10 * seeds);
+    EXPECT_GT(reversed_differs, 13 * seeds / 4) << "a swapped depth test has to be noticed";
   });
 }
 

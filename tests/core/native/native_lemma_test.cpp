@@ -28,7 +28,9 @@ TEST(NativeLemma, Lemmas1And2HoldAtTheBudgetRadius) {
   lab::expect_lemmas(canvases(), trials(400'000));
 }
 
-TEST(NativeLemma, AndOnTheWorstCanvasThatKeepsItsPromises) { lab::expect_lemmas(worst(), 60'000); }
+TEST(NativeLemma, AndOnTheWorstCanvasThatKeepsItsPromises) {
+  lab::expect_lemmas(worst(), trials(60'000));
+}
 
 TEST(NativeLemma, ItsRadiusIsBelowThatOfOpenGl) {
   for (const int viewport : {64, 512, 4096, 16384}) {

@@ -75,7 +75,8 @@ void expect_same(const Both& both) {
 
 TEST(GlPairs, EqualTheCpusOnRandomScenes) {
   Both both(shared());
-  for (std::uint64_t seed = 0; seed < 140; ++seed) {
+  const auto scenes = static_cast<std::uint64_t>(trials(140));
+  for (std::uint64_t seed = 0; seed < scenes; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Scene scene = random_scene(seed);
     if (seed % 3 == 1) scene = with_self(std::move(scene));
@@ -84,7 +85,7 @@ TEST(GlPairs, EqualTheCpusOnRandomScenes) {
     ASSERT_EQ(both.wrong, 0u);
   }
   expect_same(both);
-  EXPECT_GT(both.pairs, 10'000u);
+  EXPECT_GT(both.pairs, 70 * scenes);
   EXPECT_GT(both.large, 0u);
 }
 
@@ -94,7 +95,7 @@ TEST(GlPairs, EqualTheCpusOnBuiltInScenes) {
        {"two-spheres", "random-soup", "needles", "degenerate", "ground", "crowd", "needles@far",
         "needles@tiny", "two-spheres@ground", "degenerate@huge"}) {
     const Scene scene = make_builtin_scene(name);
-    for (const int resolution : {0, 32, 256, 1024}) {
+    for (const int resolution : {0, 32, 256}) {
       SCOPED_TRACE(std::string(name) + " at " + std::to_string(resolution));
       find_pairs(scene, {.resolution = resolution}, both);
       if (resolution <= 32) {
@@ -114,7 +115,7 @@ TEST(GlPairs, EqualTheCpusOnBuiltInScenes) {
 
 TEST(GlPairs, EqualTheCpusInCrowdedPixels) {
   Both both(shared());
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(trials(6, 3)); ++seed) {
     const Scene scene = crowded_scene(seed, 600 * static_cast<int>(seed));
     for (const int resolution : {1, 4, 33}) {
       find_pairs(seed % 2 == 0 ? scene : with_self(scene),
@@ -141,7 +142,7 @@ TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
 }
 
 TEST(GlPairs, MissNothing) {
-  for (std::uint64_t seed = 200; seed < 320; ++seed) {
+  for (std::uint64_t seed = 200; seed < 200 + static_cast<std::uint64_t>(trials(120)); ++seed) {
     Scene scene = random_scene(seed);
     if (seed % 2 == 0) scene = with_self(std::move(scene));
     ASSERT_EQ(missed(scene, settings_of(seed), shared()), 0u) << "seed " << seed;
@@ -430,7 +431,7 @@ TEST(GlPairsProperty, EqualTheCpusOnExtremeFamilies) {
     }));
   }
   expect_same(both);
-  EXPECT_GT(both.pairs, 1000u);
+  EXPECT_GT(both.pairs, static_cast<std::size_t>(trials(1000)));
 }
 
 // Views that take too much work: most of the scene lies in one pixel. And a device that finds so

@@ -18,7 +18,7 @@ TEST(GlPlan, RunsFollowIt) {
       // S-CULLIDE asks triangle by triangle.
       if (tests_self_alone(method) && scene.triangles.size() > 2000) continue;
       for (const auto& [self, full] : kQuestions) {
-        if (full && scene.triangles.size() > 5000) continue;
+        if (full && scene.triangles.size() > static_cast<std::size_t>(trials(3000))) continue;
         if (self ? !tests_self(method) : tests_self_alone(method)) continue;
         for (Object& object : scene.objects) object.self = self;
         RunOptions options;

@@ -235,7 +235,8 @@ TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
 
 // The methods that need no GL, on every built-in scene; gl_plan_test.cpp has the others.
 void expect_runs_follow(bool of_packaged_meshes) {
-  constexpr std::size_t kMostTriangles = trials(5000);  // of a run that leaves out nothing
+  const auto most_triangles =
+      static_cast<std::size_t>(trials(5000));  // of a run that leaves out nothing
   for (const std::string& name : lab::scene_names(of_packaged_meshes)) {
     Scene scene = make_builtin_scene(name);
     for (const bool self : {false, true}) {
@@ -244,7 +245,7 @@ void expect_runs_follow(bool of_packaged_meshes) {
         for (const bool full : {false, true}) {
           RunOptions options = on_cpu(method, full);
           options.verify = full;
-          if (full && scene.triangles.size() > kMostTriangles) continue;
+          if (full && scene.triangles.size() > most_triangles) continue;
           EXPECT_EQ(not_followed(run(scene, options)), "")
               << name << " " << to_string(method) << " full " << full << " self " << self;
         }
