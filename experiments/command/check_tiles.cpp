@@ -103,6 +103,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   std::vector<CheckedTile> tiles;
   std::vector<ListRow> rows;
   std::string hash_of_scene;
+  Certificate::Unasked unasked;
   for (const std::string& file : files) {
     const Certificate certificate = read_certificate(file);
     if (!certificate.tile) {
@@ -113,6 +114,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     const TileScene part = gather_tile(source, census, *certificate.tile);
     const WholeScene scene = whole_scene(census, *certificate.tile, part);
     hash_of_scene = part.hash;
+    unasked = scene.not_asked;
     tiles.push_back({clean_name(file), *certificate.tile, certificate.clearance,
                      check_certificate(certificate, part.scene, &scene), ""});
     CheckedTile& tile = tiles.back();
@@ -171,12 +173,19 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   if (arguments.json != "-") {
     SceneCheck last;
     last.result.unattested = tiles.back().result.unattested;
+    std::string untested;
+    if (unasked.pairs > 0) {
+      untested = fmt::format("untested   {} of triangles inside {} of {} (add --self)\n",
+                             counted(unasked.pairs, "pair", "pairs"), grouped(unasked.objects),
+                             counted(census.objects, "object", "objects"));
+    }
     write_output(
-        "-", clean_lines(fmt::format(
-                 "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}"
-                 "time       {:.1f} ms without reading the scene\n",
-                 to_string(verdict), status == kExitDone ? proves : one_line(reason), table,
-                 list_sha256, counted(sum.box_pairs, "pair", "pairs"), unattested_text(last), ms)));
+        "-",
+        clean_lines(fmt::format(
+            "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}{}"
+            "time       {:.1f} ms without reading the scene\n",
+            to_string(verdict), status == kExitDone ? proves : one_line(reason), table, list_sha256,
+            counted(sum.box_pairs, "pair", "pairs"), untested, unattested_text(last), ms)));
   }
   if (arguments.verified) {
     const auto words = [&](const TakeWord& take) {
@@ -191,7 +200,10 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   if (!arguments.json.empty()) {
     // The keys are those of check_json() about one certificate.
     write_json({{"certificate", clean_name(arguments.certificate)},
-                {"scene", {{"name", census.name}, {"hash", hash_of_scene}}},
+                {"scene",
+                 {{"name", census.name},
+                  {"hash", hash_of_scene},
+                  {"self_not_asked", {{"objects", unasked.objects}, {"pairs", unasked.pairs}}}}},
                 {"clearance", tiles.front().clearance},
                 {"verdict", to_string(verdict)},
                 {"proves", json_if(status == kExitDone, proves)},

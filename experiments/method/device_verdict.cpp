@@ -200,23 +200,32 @@ constexpr std::uintmax_t kMostBytes = 1 << 20;
 
 // Variables by which Mesa's drivers and compilers, and NVIDIA's, choose code.
 constexpr std::array kDriverVariables = {
-    "LP_",    "GALLIVM_", "GALLIUM_", "MESA_",  "LIBGL_",   "NIR_",   "ST_",    "DRAW_", "TGSI_",
-    "INTEL_", "IRIS_",    "ANV_",     "AMD_",   "RADV_",    "ACO_",   "R600_",  "SI_",   "RADEON_",
-    "ZINK_",  "NOUVEAU_", "NV50_",    "NVC0_",  "FD_",      "IR3_",   "TU_",    "V3D_",  "VC4_",
-    "PAN_",   "LIMA_",    "ETNA_",    "SVGA_",  "VIRGL_",   "D3D12_", "ASAHI_", "AGX_",  "__GL_",
-    "__GLX_", "glsl_",    "force_",   "allow_", "disable_", "mesa_",  "PIPE_",  "VK_"};
+    "LP_",    "GALLIVM_", "GALLIUM_", "MESA_",    "LIBGL_", "NIR_",  "ST_",   "DRAW_",
+    "TGSI_",  "INTEL_",   "IRIS_",    "ANV_",     "AMD_",   "RADV_", "ACO_",  "R600_",
+    "SI_",    "RADEON_",  "ZINK_",    "NOUVEAU_", "NV50_",  "NVC0_", "FD_",   "IR3_",
+    "TU_",    "V3D_",     "VC4_",     "PAN_",     "LIMA_",  "ETNA_", "SVGA_", "VIRGL_",
+    "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
 // Variables about caches and messages, which do not change the generated code.
 constexpr std::array kIdleVariables = {"MESA_SHADER_CACHE", "MESA_GLSL_CACHE", "MESA_LOG",
                                        "MESA_DISK_CACHE", "__GL_SHADER_DISK_CACHE"};
 
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
+// Mesa takes each option of driconf also from the variable of its name, in lower case. Other
+// variables in lower case are rare, but for those of proxies.
+bool may_be_driconf(const std::string& variable) {
+  const std::string name = variable.substr(0, variable.find('='));
+  return std::none_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) &&
+         name != "_" && !name.ends_with("_proxy");
+}
+
 std::string driver_environment() {
   std::vector<std::string> found;
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return begins(variable, prefix); };
-    if (std::any_of(kDriverVariables.begin(), kDriverVariables.end(), named) &&
+    if ((may_be_driconf(variable) ||
+         std::any_of(kDriverVariables.begin(), kDriverVariables.end(), named)) &&
         std::none_of(kIdleVariables.begin(), kIdleVariables.end(), named))
       found.push_back(variable);
   }

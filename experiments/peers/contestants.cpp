@@ -127,7 +127,7 @@ nlohmann::json ask_program(const std::string& command, const std::vector<std::st
     std::fwrite(call.data(), 1, call.size(), questions);
     std::fflush(questions);
   }
-  const bool answered = ::getline(&text, &size, answers) > 0;
+  const bool answered = answers != nullptr && ::getline(&text, &size, answers) > 0;
   nlohmann::json out = nlohmann::json::parse(answered ? text : "", nullptr, false);
   std::free(text);
   if (!answered) {  // it has ended; the next call starts another one

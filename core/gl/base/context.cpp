@@ -19,6 +19,22 @@
 #include "core/base/text.h"
 
 namespace farcull {
+
+struct EglContext {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  bool reset_detection = false;
+
+  ~EglContext() {
+    // The display stays initialized: EGL has one per device, and another context of this process
+    // may be using it.
+    if (context == EGL_NO_CONTEXT) return;
+    if (eglGetCurrentContext() == context)
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+  }
+};
+
 namespace {
 
 constexpr int kMajor = 4, kMinor = 3;
@@ -113,21 +129,6 @@ void require_egl() {
                 kInstall);
   }
 }
-
-struct EglContext {
-  EGLDisplay display = EGL_NO_DISPLAY;
-  EGLContext context = EGL_NO_CONTEXT;
-  bool reset_detection = false;
-
-  ~EglContext() {
-    // The display stays initialized: EGL has one per device, and another context of this process
-    // may be using it.
-    if (context == EGL_NO_CONTEXT) return;
-    if (eglGetCurrentContext() == context)
-      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display, context);
-  }
-};
 
 std::vector<EGLDeviceEXT> devices() {
   EGLint count = 0;

@@ -135,10 +135,15 @@ TEST(DeviceVerdict, DependsOnDeviceDriverRelianceAndEnvironment) {
   ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 1);
   EXPECT_TRUE(remade(device()));
   ::unsetenv("LP_NATIVE_VECTOR_WIDTH");
+  ::setenv("lower_depth_range_rate", "0.5", 1);  // an option of driconf
+  EXPECT_TRUE(remade(device()));
+  ::unsetenv("lower_depth_range_rate");
   // What only says where caches lie changes nothing, and the first verdict is still there.
   ::setenv("MESA_SHADER_CACHE_DIR", "/elsewhere", 1);
+  ::setenv("no_proxy", "localhost", 1);
   EXPECT_TRUE(ask(device()).remembered);
   ::unsetenv("MESA_SHADER_CACHE_DIR");
+  ::unsetenv("no_proxy");
   EXPECT_EQ(ask.runs, runs);
 }
 
