@@ -150,7 +150,8 @@ std::vector<Triangle> on_grid(int x, int y, int z) {
   return out;
 }
 
-/// Up to the first ones, where a corner is forgotten.
+/// How many pairs on the grid differ. Ends at the first triangle with one where a corner is
+/// forgotten.
 std::uint64_t differences_on_grid(int keep, std::uint64_t& penetrating) {
   std::vector<std::array<reference::Vector<std::int64_t>, 3>> exact;
   const std::vector<Triangle> all = on_grid(3, 3, 2);
