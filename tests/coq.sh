@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What Coq proves. The checker of certificates (docs/verified.md): lets Coq check its proof, extracts the program
 # build/farcull-check-verified, and compares its verdicts with those of `farcull check`. Culling (docs/model.md and docs/proofs.md):
-# the passes for any number of items, whose model is extracted and replays runs of core/cull, and the heart of lemmas 1, 3 and 19
+# the passes for any number of items, whose model is extracted and replays runs of core/cull, and the heart of lemmas 1, 3 and 16
 # over the reals. Prints the theorems and the axioms that they need: none but, for the last three, those of Coq's reals. Changes one
 # rule or inequality at a time, which must break the proof.
 #   bash tests/coq.sh                    all of this; it installs Coq and OCaml where they are missing: ten minutes

@@ -18,8 +18,7 @@ std::vector<ByHand> proved_by_hand() {
        "`filter.component` with `filter.clearance_length`; `fit.corner`"},
       {"Rounding never decreases with x, so least and largest computed numbers are those of some "
        "corner",
-       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a "
-       "pixel\"",
+       "each operation is rounded to the nearest number, or in one direction",
        "`distance.gap`, `fit.box`, `extent.corner`: they speak of one corner"},
       {"Signs of determinants decide on which side corners lie, and what two triangles on a line "
        "share",
@@ -53,24 +52,10 @@ std::vector<ByHand> proved_by_hand() {
        "between the two quotients",
        "[budget.md](budget.md), \"The oriented box\"",
        "`slab.doubt`, `slab.height`, then `slab.parallel`, or `slab.end` and `slab.depth`"},
-      {"A real vertex is within `widen` and half a unit in the last place of its float",
-       "[budget.md](budget.md), \"Interval pairs\", \"The float triangle\"",
-       "`map.point`, then `interval.bounds`, which leaves 1.9 v m for the origin that moves"},
-      {"The boundary of a strip is at most five segments, and its depths are those of their parts",
-       "[budget.md](budget.md), \"Interval pairs\"",
-       "`interval.strip`, `interval.depth`, then `interval.depth_margin`"},
-      {"The bounds that the margin is computed from reach the largest |coordinate| plus `widen`",
-       "they are those before the limits cut them: `core/pairs/grid.h`, "
-       "`core/gl/pairs/pair_source.glsl`",
-       "`interval.depth_margin`, `interval.image_margin`: it pays for the rounding of `widen`"},
-      {"The part of a pixel is exact below and above the pixel too",
-       "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},
       {"Of all ways in which two programs may round the depth map, up everywhere and down "
        "everywhere "
        "are the worst",
        "[budget.md](budget.md), \"Two programs\"", "`depth.behind`, which is about these two"},
-      {"The slice of a depth is exact and never decreases with depth",
-       "[budget.md](budget.md), \"Slices\"", "none: no error is bounded, an order is kept"},
       {"Passes, views and rounds keep both triangles of every colliding pair",
        "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2; Coq, "
        "`PassProofs.v`",

@@ -1,5 +1,5 @@
 // The two lemmas of CULLIDE and the five of Quick-CULLIDE (docs/reliability.md, "CULLIDE" and
-// "Quick-CULLIDE": lemmas 6 to 12; the names of tests have the numbers of the two papers), each as
+// "Quick-CULLIDE": lemmas 6 to 10; the names of tests have the numbers of the two papers), each as
 // a property: on raw triangles in the pixel-exact sense, on fattened ones against exact collisions.
 // Each has a twin that breaks its rule and is caught.
 #include "tests/lab/cull.h"

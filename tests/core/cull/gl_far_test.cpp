@@ -155,7 +155,7 @@ TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
   }
 }
 
-// Theorem 9, and a case that a search found: FAR as published loses a pair where corners of boxes
+// Theorem 8, and a case that a search found: FAR as published loses a pair where corners of boxes
 // are rounded to multiples of 2^-8 px, as llvmpipe and the native canvas do. The native canvas does
 // not round those of proxies, which fragment depth draws.
 TEST(GlFar, LosesAPairAsPublished) {

@@ -1,4 +1,4 @@
-// Theorems 9 and 11: what a radius below the budget loses, on models of devices that round corners.
+// Theorems 8 and 10: what a radius below the budget loses, on models of devices that round corners.
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "offsets/offsets.h"
@@ -62,7 +62,7 @@ std::size_t kept(const Scene& scene, const Fattener& fattener, Canvas& canvas,
   return cull(scene, find_regions(scene), settings, canvas).live.size();
 }
 
-// Theorem 9 for other grids. The native canvas rounds boxes that are drawn with interpolated depth
+// Theorem 8 for other grids. The native canvas rounds boxes that are drawn with interpolated depth
 // to 2^-8 px once more, so these have at most 8 bits here.
 TEST(Radius, AsPublishedItLosesAPairOnEveryGrid) {
   for (int bits = 4; bits <= 12; ++bits) {
@@ -93,7 +93,7 @@ TEST(Radius, AsPublishedItLosesPairsBesideThatPair) {
   }
 }
 
-// Theorem 11: below sqrt(2)/2 + sqrt(2) 2^-bits a device that keeps A2 loses a pair. Its twins: the
+// Theorem 10: below sqrt(2)/2 + sqrt(2) 2^-bits a device that keeps A2 loses a pair. Its twins: the
 // same device a little above, and at the budget radius, which is 0.6 % above at the most.
 TEST(Radius, BelowTheBoundADeviceThatKeepsTheAssumptionsLosesAPair) {
   const Scene scene = piercing(1);

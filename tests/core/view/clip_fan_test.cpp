@@ -182,7 +182,7 @@ Q most_of_cuts(std::uint64_t seed) {
   return most;
 }
 
-// A cut is charged 16 * 2^-53 times the largest coordinate (lemma 17).
+// A cut is charged 16 * 2^-53 times the largest coordinate (lemma 14).
 TEST(ClipFan, ACutMovesItsCornerByLessThanItsCharge) {
   for (const std::uint64_t seed : seeds(206)) EXPECT_LE(most_of_cuts(seed), 16);
 }

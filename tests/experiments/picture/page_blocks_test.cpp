@@ -157,7 +157,7 @@ TEST(PaperFigures, AreThoseOfThePages) {
   }
 }
 
-// Theorem 9, as the figure shows it: each triangle misses two of the four centres, and no centre is
+// Theorem 8, as the figure shows it: each triangle misses two of the four centres, and no centre is
 // hit by both.
 TEST(PaperFigures, OfThePublishedRadiusShowsNoCentreThatBothHit) {
   const std::string svg = published_figure(kPair).svg;

@@ -1,4 +1,4 @@
-(** Lemma 19 (docs/budget.md) over the real numbers: clipping keeps each point that is a pixel inside all
+(** Lemma 16 (docs/budget.md) over the real numbers: clipping keeps each point that is a pixel inside all
     planes, although the corners are rounded. Needs the axioms of Coq's reals. *)
 From Coq Require Import Reals Lra List ZArith Lia.
 Import ListNotations.
@@ -228,7 +228,7 @@ Record corner := Corner { partner : point; computed : nat -> R }.
 Section Patch.
 Variables (Q A B : nat -> R) (E : R).
 Definition space (i : nat) (p : point) : R := Q i + A i * fst p + B i * snd p.
-(** Lemma 18: each computed corner is within E of its partner, along each axis. *)
+(** Lemma 15: each computed corner is within E of its partner, along each axis. *)
 Definition near (c : corner) : Prop := forall i, Rabs (space i (partner c) - computed c i) <= E.
 (** A plane across axis i; s says on which side it cuts. Q is a pixel inside, the corner beyond or on it. *)
 Definition beyond (i : nat) (s bound : R) (c : corner) : Prop :=

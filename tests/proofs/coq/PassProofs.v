@@ -227,7 +227,7 @@ Qed.
 
 (** Corollary 3: let passes over single items along all views of a list set no bit from [e]. Then
     every schedule of Quick-CULLIDE along these views that starts within [e] stays within it, whatever
-    its order and its groups (lemma 13). So two runs that go on until no bit is set end at one set. *)
+    its order and its groups (lemma 11). So two runs that go on until no bit is set end at one set. *)
 Definition singles (w : world) (o : nat) : list (list nat) :=
   map (fun t => [t]) (filter (fun t => owner w t =? o) (items w)).
 Definition at_end (w : world) (views : list view) (e : bits) : Prop :=

@@ -9,7 +9,7 @@ Open Scope R_scope.
 Record place := Place { px : R; py : R; pz : R }.
 Definition squared (p q : place) : R := (px p - px q) ^ 2 + (py p - py q) ^ 2 + (pz p - pz q) ^ 2.
 
-(** [Q] is a point of the triangle, [Q'] one of the drawn patch within E of it (lemma 19); the pixel whose
+(** [Q] is a point of the triangle, [Q'] one of the drawn patch within E of it (lemma 16); the pixel whose
     centre is (cx, cy) holds Q. *)
 Record seen_at (E : R) (Q Q' : place) (cx cy : R) : Prop := {
   near_x : Rabs (px Q - px Q') <= E; near_y : Rabs (py Q - py Q') <= E; near_z : Rabs (pz Q - pz Q') <= E;
@@ -36,7 +36,7 @@ Proof.
 Qed.
 
 (** A solid that contains a ball of radius r around Q', and a kernel whose interval on the line of sight
-    contains all of the solid there (lemmas 20 and 23). *)
+    contains all of the solid there (lemmas 17 and 20). *)
 Definition holds_ball (solid : place -> Prop) (r : R) (Q' : place) : Prop :=
   forall p, squared p Q' <= r ^ 2 -> solid p.
 Definition bounds_solid (entry exit : R) (solid : place -> Prop) (cx cy : R) : Prop :=
@@ -49,7 +49,7 @@ Proof.
   assert (0 <= reach E + double E) by (destruct sqrt_2; unfold reach, double; nra). nra.
 Qed.
 
-(** Lemma 1 from lemma 19: the patch is clipped from a triangle that has Q; each triangle of its fan has a
+(** Lemma 1 from lemma 16: the patch is clipped from a triangle that has Q; each triangle of its fan has a
     solid with a ball around each of its points, and a kernel that bounds the solid. The coordinates of Q
     are Q 0, Q 1 and its depth Q 2. *)
 Definition point_of (u v w : R) (p s t : corner) : place :=
