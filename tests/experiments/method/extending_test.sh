@@ -116,24 +116,24 @@ folder=$build
 farcull=$work/farcull
 answer() { "$farcull" run "$@" --json - | grep -E '"(colliding_pairs|false_negatives|method|offset)"'; }
 truth=$("$farcull" run two-spheres --method exact --json - | grep '"colliding_pairs"')
-by_boxes=$(answer two-spheres --method boxes)
-grep -q '"method": "boxes"' <<<"$by_boxes" || fail "no run by the new method: $by_boxes"
-grep -qF -- "$truth" <<<"$by_boxes" || fail "the new method finds other pairs: $by_boxes"
-grep -q '"false_negatives": 0,' <<<"$by_boxes" || fail "the new method misses pairs: $by_boxes"
-grep -q 'boxes of all triangles' <<<"$("$farcull" plan two-spheres --method boxes)" ||
+by_join=$(answer two-spheres --method join)
+grep -q '"method": "join"' <<<"$by_join" || fail "no run by the new method: $by_join"
+grep -qF -- "$truth" <<<"$by_join" || fail "the new method finds other pairs: $by_join"
+grep -q '"false_negatives": 0,' <<<"$by_join" || fail "the new method misses pairs: $by_join"
+grep -q 'boxes of all triangles' <<<"$("$farcull" plan two-spheres --method join)" ||
   fail "the plan of the new method lacks its stage"
 wide=$(answer two-spheres --method far --offset wide --resolution 128)
 grep -q '"offset": "wide"' <<<"$wide" || fail "no run with the new offset: $wide"
 grep -qF -- "$truth" <<<"$wide" || fail "the new offset finds other pairs: $wide"
-"$farcull" run two-spheres --method boxes --radius 1 2>"$work/refused" && fail "--radius is taken by a method without one"
+"$farcull" run two-spheres --method join --radius 1 2>"$work/refused" && fail "--radius is taken by a method without one"
 grep -q -- '--radius' "$work/refused" || fail "the refusal does not name --radius"
 
 # The twin: without the definition of the method nothing may link or compile.
 for ((n = 1; ; ++n)); do
-  [[ $(<"$work/blocks/$n.file") == experiments/method/boxes.cpp ]] && break
+  [[ $(<"$work/blocks/$n.file") == experiments/method/join.cpp ]] && break
 done
 place "$work/twin" "$work/blocks" no "$n"
-rm "$work"/overlay/experiments_method_boxes.cpp.o
+rm "$work"/overlay/experiments_method_join.cpp.o
 if (cd "$folder" && eval "${link//$work\/farcull/$work\/twin_farcull}") >/dev/null 2>&1; then
   fail "the twin links without the new method's functions: this test cannot fail"
 fi
