@@ -269,7 +269,7 @@ experiments/peers/cgal.cpp tests/core/boxes:<CGAL/box_intersection_d.h>:.
 verify:<CGAL/Exact_predicates_inexact_constructions_kernel.h>:. | core/scene:core/other/other.h:in no folder of the table
 core/scene core/canvas:core/base/error.h:. | core/view:core/scene/scene.h core/boxes/join.h:. | offsets:core/view/budget.h:.
 core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:. | verify/certificate:<gmpxx.h>:.
-verify:core/canvas/canvas.h verify/certificate/json.h <gmpxx.h>:. | experiments/method:core/gl/canvas/canvas.h:.
+verify:core/canvas/canvas.h verify/certificate/certificate.h <gmpxx.h>:. | experiments/method:core/gl/canvas/canvas.h:.
 experiments/suite:verify/certificate/integer_pair.h:. | experiments/peers:experiments/suite/reader.h:.
 experiments/picture:experiments/measure/compare.h:. | experiments/command:experiments/studies/store.h:. | experiments/command:experiments/library/farcull.h:.
 experiments/peers/cgal.cpp experiments/peers/contest_cgal.cpp:<CGAL/Kernel.h>:.

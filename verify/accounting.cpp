@@ -26,19 +26,17 @@
 #include <vector>
 
 #include "core/base/floating_point.h"
+#include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "verify/certificate/box_pairs.h"
 
 namespace farcull {
 
-// ---- sets of pairs: the sum is over hashes of the pairs, made by SplitMix64's finalizer ----
+// ---- sets of pairs: the sum is over scrambled numbers of the pairs ----
 
 void PairSet::add(const TrianglePair& pair) {
   ++count;
-  std::uint64_t x = std::uint64_t{pair.a} << 32 | pair.b;
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  sum += x ^ x >> 31;
+  sum += scrambled(std::uint64_t{pair.a} << 32 | pair.b);
 }
 
 PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {

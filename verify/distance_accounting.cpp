@@ -2,8 +2,7 @@
 // about are joined. Two nodes settle all their pairs at once if their boxes are farther apart than
 // the threshold of these objects, or if all the pairs come after an answer of distance 0 (only an
 // earlier pair could be wrong then). The pairs that are left are decided one by one: by two
-// parallel planes in doubles, then in integers, as the checker of certificates decides
-// (verify/certificate/integer_distance.h).
+// parallel planes in doubles, then in integers (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "verify/certificate/box_pairs.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/distance_claims.h"
 #include "verify/exact.h"
@@ -189,76 +189,9 @@ std::uint64_t DistanceClaims::wrong(unsigned threads) const {
 
 namespace {
 
-using separation::Bounds;
-
-constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kExamples = 10;
 // Pairs decided at a time, so that a list of all pairs is never stored.
 constexpr std::size_t kChunk = 1 << 16;
-constexpr std::uint32_t kNone = 0xffffffff;
-
-struct Node {
-  Bounds bounds = separation::empty_bounds();
-  std::uint32_t first = 0, count = 0;         // into Trees::order
-  std::uint32_t least = kNone;                // of its triangles
-  std::uint32_t left = kNone, right = kNone;  // kNone: a leaf
-};
-
-/// A tree for each object.
-class Trees {
- public:
-  explicit Trees(const Scene& scene) : bounds_(scene.triangles.size()) {
-    for (std::uint32_t t = 0; t < bounds_.size(); ++t)
-      bounds_[t] = separation::bounds_of(scene.corners(t));
-    order_.resize(scene.triangles.size());
-    for (std::uint32_t t = 0; t < order_.size(); ++t) order_[t] = t;
-    for (const Object& object : scene.objects) {
-      roots_.push_back(
-          object.triangle_count == 0 ? kNone : build(object.first_triangle, object.triangle_count));
-    }
-  }
-
-  const Node& root(std::uint32_t object) const { return nodes_[roots_[object]]; }
-  const Node& left(const Node& node) const { return nodes_[node.left]; }
-  const Node& right(const Node& node) const { return nodes_[node.right]; }
-  std::uint32_t triangle(std::uint32_t place) const { return order_[place]; }
-  const Bounds& bounds(std::uint32_t triangle) const { return bounds_[triangle]; }
-
- private:
-  std::uint32_t build(std::uint32_t first, std::uint32_t count) {
-    Node node{.first = first, .count = count};
-    for (std::uint32_t k = first; k < first + count; ++k) {
-      include(node.bounds, bounds_[order_[k]]);
-      node.least = std::min(node.least, order_[k]);
-    }
-    if (count > kLeafSize) {
-      const std::uint32_t half = count / 2;
-      divide(first, half, count, node.bounds);
-      node.left = build(first, half);
-      node.right = build(first + half, count - half);
-    }
-    nodes_.push_back(node);
-    return static_cast<std::uint32_t>(nodes_.size() - 1);
-  }
-
-  // Moves the half of the triangles with the smaller centres to the front, along the longest side
-  // of the box.
-  void divide(std::uint32_t first, std::uint32_t half, std::uint32_t count, const Bounds& box) {
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (box.hi[k] / 2 - box.lo[k] / 2 > box.hi[axis] / 2 - box.lo[axis] / 2) axis = k;
-    }
-    const auto begin = order_.begin() + first;
-    std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t s, std::uint32_t t) {
-      const Bounds &a = bounds_[s], &b = bounds_[t];
-      return a.lo[axis] / 2 + a.hi[axis] / 2 < b.lo[axis] / 2 + b.hi[axis] / 2;
-    });
-  }
-
-  std::vector<Bounds> bounds_;  // per triangle
-  std::vector<std::uint32_t> order_, roots_;
-  std::vector<Node> nodes_;
-};
 
 /// Decides the pairs that boxes do not decide, a chunk at a time, and counts them.
 class Undecided {
@@ -360,8 +293,8 @@ class Undecided {
 /// Joins the trees of two objects, or of one object with itself.
 class Join {
  public:
-  Join(const Trees& trees, const Threshold& threshold, std::span<const ClaimedDistance> answers,
-       Undecided& undecided, DistanceAccounting& result)
+  Join(const BoundsTree& trees, const Threshold& threshold,
+       std::span<const ClaimedDistance> answers, Undecided& undecided, DistanceAccounting& result)
       : trees_(trees),
         threshold_(threshold),
         answers_(answers),
@@ -377,11 +310,12 @@ class Join {
            threshold.bound == Bound::below;
   }
 
+  /// a, b: roots of the trees of two objects, or one root twice.
   void objects(std::uint32_t a, std::uint32_t b) {
     if (a == b) {
-      one(trees_.root(a));
+      one(a);
     } else {
-      two(trees_.root(a), trees_.root(b));
+      two(a, b);
     }
     // An answer whose boxes are too far apart is wrong, but still counts as an answer.
     const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
@@ -392,30 +326,32 @@ class Join {
  private:
   /// True if all pairs of triangles from `least` on come after an answer of distance 0.
   bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
-  bool farther(const Bounds& a, const Bounds& b) const {
+  bool farther(const BoundsTree::Bounds& a, const BoundsTree::Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&
            separation::farther(a, b, threshold_.length->above);
   }
 
-  void one(const Node& node) {
-    if (settled(node.least)) {
+  void one(std::uint32_t n) {
+    const BoundsTree::Node& node = trees_.nodes[n];
+    if (settled(node.first_triangle)) {
       result_.objects_meet += std::uint64_t{node.count} * (node.count - 1) / 2;
       return;
     }
-    if (node.left != kNone) {
-      one(trees_.left(node));
-      one(trees_.right(node));
-      two(trees_.left(node), trees_.right(node));
+    if (!trees_.is_leaf(n)) {
+      one(trees_.left(n));
+      one(trees_.right(n));
+      two(trees_.left(n), trees_.right(n));
       return;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       for (std::uint32_t j = i + 1; j < node.first + node.count; ++j)
-        triangles(trees_.triangle(i), trees_.triangle(j));
+        triangles(trees_.order[i], trees_.order[j]);
     }
   }
 
-  void two(const Node& a, const Node& b) {
-    if (settled(std::min(a.least, b.least))) {
+  void two(std::uint32_t m, std::uint32_t n) {
+    const BoundsTree::Node &a = trees_.nodes[m], &b = trees_.nodes[n];
+    if (settled(std::min(a.first_triangle, b.first_triangle))) {
       result_.objects_meet += std::uint64_t{a.count} * b.count;
       return;
     }
@@ -423,16 +359,16 @@ class Join {
       result_.farther_by_boxes += std::uint64_t{a.count} * b.count;
       return;
     }
-    if (a.left != kNone && (b.left == kNone || a.count >= b.count)) {
-      two(trees_.left(a), b);
-      two(trees_.right(a), b);
-    } else if (b.left != kNone) {
-      two(a, trees_.left(b));
-      two(a, trees_.right(b));
+    if (!trees_.is_leaf(m) && (trees_.is_leaf(n) || a.count >= b.count)) {
+      two(trees_.left(m), n);
+      two(trees_.right(m), n);
+    } else if (!trees_.is_leaf(n)) {
+      two(m, trees_.left(n));
+      two(m, trees_.right(n));
     } else {
       for (std::uint32_t i = a.first; i < a.first + a.count; ++i) {
         for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
-          triangles(trees_.triangle(i), trees_.triangle(j));
+          triangles(trees_.order[i], trees_.order[j]);
       }
     }
   }
@@ -443,7 +379,7 @@ class Join {
       ++result_.objects_meet;
       return;
     }
-    if (farther(trees_.bounds(s), trees_.bounds(t))) {
+    if (farther(trees_.bounds[s], trees_.bounds[t])) {
       ++result_.farther_by_boxes;
       return;
     }
@@ -455,7 +391,7 @@ class Join {
     undecided_.add(pair);
   }
 
-  const Trees& trees_;
+  const BoundsTree& trees_;
   const Threshold& threshold_;
   std::span<const ClaimedDistance> answers_;  // of these objects, sorted by their pairs
   std::vector<bool> met_;                     // which answers the join has met
@@ -478,7 +414,12 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
   const DistanceClaims claims(scene, answers, question);
   DistanceAccounting out;
   out.wrong = claims.wrong(question.threads);
-  const Trees trees(scene);
+  BoundsTree trees(scene);
+  std::vector<std::uint32_t> roots;  // by object; of an object without triangles none is asked for
+  for (const Object& object : scene.objects) {
+    roots.push_back(static_cast<std::uint32_t>(trees.nodes.size()));
+    if (object.triangle_count > 0) trees.add(object.first_triangle, object.triangle_count);
+  }
   Undecided undecided(scene, question.threads, out);
   for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
     for (std::uint32_t b = a; b < scene.objects.size(); ++b) {
@@ -495,7 +436,7 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
       std::optional<TrianglePair> answer;
       if (question.kind != DistanceQuestion::Kind::all && !of.empty()) answer = of.front().pair;
       undecided.begin(threshold, a == b, answer);
-      Join(trees, threshold, of, undecided, out).objects(a, b);
+      Join(trees, threshold, of, undecided, out).objects(roots[a], roots[b]);
     }
   }
   undecided.decide();

@@ -2,9 +2,8 @@
 // answer allows.
 //
 // The accounting shares no code with what culled, nor with what computed the answers
-// (verify/closest.h). It makes its own boxes; pairs that boxes do not prove far apart, and each
-// answer, it decides in integers, as the checker of certificates does
-// (verify/certificate/integer_distance.h).
+// (verify/closest.h). Its boxes are those of the checker of certificates; pairs that boxes do not
+// prove far apart, and each answer, it decides in integers (verify/certificate/integer_distance.h).
 #pragma once
 
 #include <cstdint>

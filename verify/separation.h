@@ -12,36 +12,11 @@
 #include <limits>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/box_pairs.h"
 
 namespace farcull::separation {
 
 inline constexpr double kU = 0x1p-53;
-
-struct Bounds {
-  std::array<double, 3> lo;
-  std::array<double, 3> hi;
-};
-
-inline Bounds empty_bounds() {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
-}
-
-inline void include(Bounds& bounds, const Bounds& other) {
-  for (int axis = 0; axis < 3; ++axis) {
-    bounds.lo[axis] = std::min(bounds.lo[axis], other.lo[axis]);
-    bounds.hi[axis] = std::max(bounds.hi[axis], other.hi[axis]);
-  }
-}
-
-inline Bounds bounds_of(const std::array<Vec3, 3>& corners) {
-  Bounds out = empty_bounds();
-  for (const Vec3& p : corners) {
-    const std::array<double, 3> at = {p.x(), p.y(), p.z()};
-    include(out, {at, at});
-  }
-  return out;
-}
 
 /// True only if all points of the two boxes are farther apart than `limit` (>= 0, finite).
 ///
@@ -50,7 +25,7 @@ inline Bounds bounds_of(const std::array<Vec3, 3>& corners) {
 /// and two sums, and the root one rounding: a relative error below 8 u in all if the squares are
 /// normal numbers. The root is used only if it is so large that the loss to subnormal squares is
 /// far below u of it, and if nothing overflows.
-inline bool farther(const Bounds& a, const Bounds& b, double limit) {
+inline bool farther(const BoundsTree::Bounds& a, const BoundsTree::Bounds& b, double limit) {
   double squares = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double gap = std::max({b.lo[axis] - a.hi[axis], a.lo[axis] - b.hi[axis], 0.0});

@@ -33,6 +33,7 @@ class Fnv1a {
   void add(std::uint64_t word) {
     for (int byte = 0; byte < 8; ++byte, word >>= 8) add_byte(static_cast<unsigned char>(word));
   }
+  std::uint64_t value() const { return hash_; }
   /// 16 hex digits.
   std::string hex() const {
     char text[17];

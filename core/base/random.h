@@ -6,6 +6,16 @@
 
 namespace farcull {
 
+/// The finalizer of splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
+/// 2014): every bit of the result depends on every bit of x.
+constexpr std::uint64_t scrambled(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+/// 2^64 over the golden ratio, by which seeds and numbers are moved before they are scrambled.
+constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+
 /// Draws from std::mt19937_64, whose words are specified. The distributions of <random> differ
 /// between standard libraries, so the mappings below are our own.
 class RandomNumbers {

@@ -42,6 +42,33 @@ inline std::string grouped(std::uint64_t n) {
   return out;
 }
 
+/// The shortest decimal text that reads back as the same double, whatever the locale.
+inline std::string shortest(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+/// The text in one line: each control character becomes a blank.
+inline std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return text;
+}
+
+/// The reason in a message of nlohmann-json, which begins with "[json.exception.parse_error.101]
+/// parse error at line 1, column 2: ".
+inline std::string_view json_fault(std::string_view message) {
+  for (const std::string_view mark : {"] ", "column "}) {
+    const std::size_t found = message.find(mark);
+    if (found != message.npos) message.remove_prefix(found + mark.size());
+  }
+  const std::size_t number = message.find_first_not_of("0123456789");
+  if (number != 0 && number != message.npos && message.substr(number, 2) == ": ")
+    message.remove_prefix(number + 2);
+  return message;
+}
+
 /// A number and the words that agree with it: "1 pair", "1,234 pairs", "1 triangle is left".
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);

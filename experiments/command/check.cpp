@@ -1,13 +1,11 @@
-// Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
-// checkers of verify/certificate find.
+// Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
+// finds.
 #include "experiments/command/check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -28,7 +26,6 @@
 #include "experiments/system/text_table.h"
 #include "experiments/tiles/run_tile.h"
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -48,9 +45,9 @@ std::string clean_lines(const std::string& text) {
 }
 
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
-                 const std::function<void(const TakeWord&)>& words, int status, bool weaker) {
+                 const std::function<void(const TakeWord&)>& words, int status) {
   const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
-  if ((verified == kExitDone) == (status == kExitDone) || (weaker && verified == kExitDone)) return;
+  if ((verified == kExitDone) == (status == kExitDone)) return;
   throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
               "keep the certificate and the scene, and report them: one of the checkers is wrong");
 }
@@ -91,39 +88,14 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// A certificate of distances names its question itself, so --pairs and --clearance are refused.
-void require_no_list(const CheckArguments& arguments) {
-  if (arguments.pairs.empty() && !arguments.clearance) return;
-  throw Error(arguments.clearance ? "--clearance" : "--pairs",
-              "does not go with a certificate of distances", "leave it out");
-}
-
-// Whether the file exists and its start is that of a certificate of distances.
-bool is_of_distances(const std::string& file) {
-  std::array<char, 1024> start{};
-  std::ifstream in(file, std::ios::binary);
-  in.read(start.data(), start.size());
-  return is_distance_certificate({start.data(), static_cast<std::size_t>(in.gcount())});
-}
-
-CheckedDistances check_with(const std::string& path, DistanceCertificate certificate,
-                            const Scene& scene) {
-  require_nothing_ignored(scene, "a check");
-  CheckedDistances out{clean_name(path), std::move(certificate), {}};
-  out.result = check_distances(out.certificate, scene, out.file);
-  return out;
-}
-
-// Writes the result for one scene. Checked: SceneCheck or CheckedDistances; weaker: as of
-// check_again(). The record comes last: there is none if the two checkers disagree.
-template <class Checked>
-int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done,
-                bool weaker = false) {
+// Writes the result for one scene. The record comes last: there is none if the two checkers
+// disagree.
+int write_check(const CheckArguments& arguments, const Scene& scene, const SceneCheck& done) {
   const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
   if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
   if (arguments.verified) {
     const auto words = [&](const TakeWord& take) { give_words(scene, take); };
-    check_again(arguments, {arguments.certificate}, words, status, weaker);
+    check_again(arguments, {arguments.certificate}, words, status);
   }
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   return status;
@@ -140,16 +112,7 @@ Scene checked_scene(const CheckArguments& arguments) {
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
   if (!arguments.certificate.empty()) {
-    const std::string text = read_file(arguments.certificate, kMaxCheckedBytes);
-    const std::string name = clean_name(arguments.certificate);
-    if (is_distance_certificate(text)) {
-      require_no_list(arguments);
-      DistanceCertificate of_distances = parse_distance_certificate(text, name);
-      const Scene scene = checked_scene(arguments);
-      return write_check(arguments, scene,
-                         check_with(arguments.certificate, std::move(of_distances), scene), true);
-    }
-    certificate = parse_certificate(text, name);
+    certificate = read_certificate(arguments.certificate);
     if (certificate->tile && arguments.clearance) {
       throw Error("--clearance", "does not go with the certificate of a tile, which names its own",
                   "leave it out");
@@ -177,12 +140,10 @@ class FrameChecks {
     if (table_) write_output("-", names);
   }
 
-  // listed: number of pairs or distances; row: of the table.
-  template <class Checked>
-  void add(long frame, const Scene& scene, const Checked& check, std::uint64_t listed,
-           std::string row) {
+  // row: of the table.
+  void add(long frame, const Scene& scene, const SceneCheck& check, std::string row) {
     const Verdict verdict = check.result.verdict;
-    verdicts_.add(frame, verdict, listed);
+    verdicts_.add(frame, verdict, check.result.meeting.size());
     if (table_) {
       if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
       write_output("-", clean_lines(row));
@@ -194,7 +155,7 @@ class FrameChecks {
   }
 
   // proved: the sentence if every frame is proved; rest: the text after it.
-  int finish(const std::string& proved, const std::string& rest = "") {
+  int finish(const std::string& proved, const std::string& rest) {
     if (json_) json_->finish();
     if (table_) write_output("-", "\n" + clean_lines(verdicts_.text(proved) + rest));
     return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
@@ -206,28 +167,6 @@ class FrameChecks {
   std::optional<FrameRecord> json_;
   FrameVerdicts verdicts_;
 };
-
-constexpr const char* kVerdictsGiven = "their verdicts are given";
-
-int check_distance_frames(const CheckArguments& arguments) {
-  FrameSource source(arguments.scene, *arguments.frames, arguments.self);
-  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10}\n", "frame",
-                                            "verdict", "distances", "decided", "ms"));
-  for_each_frame(*arguments.frames, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
-    const std::string file = numbered(arguments.certificate, frame);
-    DistanceCertificate certificate =
-        parse_distance_certificate(read_file(file, kMaxCheckedBytes), clean_name(file));
-    const Scene& scene = source.at(frame);
-    say_notes();
-    const CheckedDistances check = check_with(file, std::move(certificate), scene);
-    const std::uint64_t listed = check.certificate.distances.size();
-    checks.add(frame, scene, check, listed,
-               fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10.1f}\n", frame,
-                           to_string(check.result.verdict), grouped(listed),
-                           grouped(check.result.decided), check.result.ms));
-  });
-  return checks.finish("the distances are exactly these, and no others were asked for");
-}
 
 // The certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
@@ -250,11 +189,6 @@ Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
 
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
   const FrameRange range = *arguments.frames;
-  if (!arguments.certificate.empty() &&
-      is_of_distances(numbered(arguments.certificate, range.first))) {
-    require_no_list(arguments);
-    return check_distance_frames(arguments);
-  }
   FrameSource source(arguments.scene, range, arguments.self);
   FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame",
                                             "verdict", "box pairs", "meeting", "ms"));
@@ -262,7 +196,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   std::optional<double> clearance;
   bool self = false, ignores = false;
   std::string not_asked;
-  for_each_frame(range, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
+  for_each_frame(range, "their verdicts are given", {}, "", [&](long frame, const Progress&) {
     std::optional<Certificate> certificate;
     if (!arguments.certificate.empty()) certificate = certificate_of_frame(arguments, frame);
     std::span<const ListedPair> rows;
@@ -284,7 +218,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     const CheckResult& result = last.result;
     checks.add(
-        frame, scene, last, result.meeting.size(),
+        frame, scene, last,
         fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
                     grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
   });
@@ -339,8 +273,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
   return add_command(
       app, "check", "prove or refute a certificate of a run, or a list of pairs",
       Rows{{"CERTIFICATE", &arguments_.certificate, "",
-            "as written by run or distance --certificate; may be\nleft out before SCENE to check "
-            "--pairs alone"}} +
+            "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
+            "alone"}} +
           scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
           Rows{
               {"--self", &arguments_.self, "",
@@ -375,14 +309,11 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
       "  farcull check c_%04d.json two-spheres --frames 10\n"
       "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
-      "  farcull check t%d.json two-tori --tiles 2\n"
-      "  farcull distance two-tori --certificate e.json\n"
-      "  farcull check e.json two-tori\n\n"
+      "  farcull check t%d.json two-tori --tiles 2\n\n"
       "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others, or these are the distances that were asked for; 1: refuted, or not proved, as\n"
-      "for another scene; 2: what cannot be read. Nothing is proved about the run: neither its\n"
-      "method nor which pairs it kept. The file of a certificate, and its proof:\n"
-      "docs/certificate.md.");
+      "no others; 1: refuted, or not proved, as for another scene; 2: what cannot be read.\n"
+      "Nothing is proved about the run: neither its method nor which pairs it kept. The file of a\n"
+      "certificate, and its proof: docs/certificate.md.");
 }
 
 int CheckCommand::run() {

@@ -21,11 +21,9 @@ Certificate read_certificate(const std::string& path);
 std::string clean_lines(const std::string& text);
 
 /// Asks the proved checker as well. Throws Error unless it proves just what this one has proved.
-/// status: of this one. weaker: the statement of the proved checker says less, so it may prove
-/// more. words: gives those of the scene.
+/// status: of this one. words: gives those of the scene.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
-                 const std::function<void(const TakeWord&)>& words, int status,
-                 bool weaker = false);
+                 const std::function<void(const TakeWord&)>& words, int status);
 
 /// Checks certificates of tiles one after the other, each with the triangles that meet its tile:
 /// the memory is that of the largest part of the scene and of one tile. whole: they have to be

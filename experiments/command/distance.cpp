@@ -38,7 +38,6 @@ constexpr const char* kDistanceExamples =
     "  farcull distance a.obj b.obj --pairs all --within 0.01 --csv near.csv\n"
     "  farcull distance cloth.obj --self --pairs all --within 0.001\n"
     "  farcull distance far-apart --verify\n"
-    "  farcull distance far-apart --certificate d.json && farcull check d.json far-apart\n"
     "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n"
     "  farcull distance crowd --voronoi published --resolution 128\n\n"
     "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
@@ -243,10 +242,7 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
                {"--frames", &frames_, "N|A:B", "as for farcull run: of a scene that moves"},
                {"--json", &outputs_.json, "FILE", kJsonHelp},
                {"--csv", &outputs_.csv, "FILE",
-                "write the pairs as CSV to this file; - for standard\noutput, without the table"},
-               {"--certificate", &outputs_.certificate, "FILE",
-                "write evidence of each distance to this file, for\n"
-                "farcull check; with --frames a number (%d or %04d) in it"}} +
+                "write the pairs as CSV to this file; - for standard\noutput, without the table"}} +
           diagram_.rows(),
       kDistanceExamples);
 }
@@ -278,9 +274,8 @@ DistanceOptions DistanceCommand::parse() const {
   if (inside_ && out.inside && out.pairs == DistancePairs::all)
     throw Error("--inside", *inside_ + " has no meaning with --pairs all",
                 "leave it out, or use --pairs objects or nearest");
-  if (out.parity && (verify_ || outputs_.certificate))
-    throw Error("--inside", "parity is not what --verify and --certificate decide by",
-                "leave it or these out");
+  if (out.parity && verify_)
+    throw Error("--inside", "parity is not what --verify decides by", "leave one of them out");
   out.threads = threads();
   out.verify = verify_;
   return out;
@@ -293,7 +288,6 @@ unsigned DistanceCommand::threads() const {
 }
 
 void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
-  if (outputs_.certificate) require_nothing_ignored(scene, "a certificate");
   require_asked(scene, {});
   const std::string reason = nothing_asked(scene, options);
   if (reason.empty()) return;
@@ -316,8 +310,7 @@ int DistanceCommand::run() const {
                   {"--self", self_},
                   {"--inside", inside_.has_value()},
                   {"--verify", verify_},
-                  {"--frames", frames_.has_value()},
-                  {"--certificate", outputs_.certificate.has_value()}},
+                  {"--frames", frames_.has_value()}},
                  "has no meaning with --voronoi", "leave one of the two out");
     const DiagramOptions options = diagram_.parse(threads());
     check_scene(scene_.names);
@@ -354,8 +347,6 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
   terminal.clear();
   if (outputs.csv) write_output(*outputs.csv, distances_header() + distances_rows(scene, record));
   if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_.names)), *outputs.json);
-  if (outputs.certificate)
-    write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
   if (!outputs.to_stdout())
     write_output("-",
                  distances_table(scene, record) + weld_lines(scene, not_closed(scene, record)));
@@ -383,11 +374,6 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
         const DistanceRecord record = distances(scene, options, progress, &memory);
         terminal.clear();
         say_notes();
-        // Written first, so that every frame in the record has its certificate.
-        if (outputs.certificate) {
-          write_output(numbered(*outputs.certificate, frame),
-                       to_text(certificate_of(scene, record)));
-        }
         frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_.names)),
                    source.topology_changed());
       });

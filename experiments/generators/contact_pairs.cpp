@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/random.h"
 #include "experiments/generators/pair_generators.h"
 
 namespace farcull {
@@ -190,14 +191,6 @@ MadePair duplicates(RandomDraws& draws, double units) {
   return out;
 }
 
-/// The finalizer of splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
-/// 2014): every bit of the result depends on every bit of x.
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
 std::vector<PairFamily> contact_families() {
   const std::string bits = "bits of the coordinates";
   return {
@@ -224,9 +217,9 @@ std::vector<PairFamily> contact_families() {
 }  // namespace
 
 std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number) {
-  std::uint64_t out = mixed(seed + 0x9e3779b97f4a7c15);
-  for (const char c : name) out = mixed(out + static_cast<unsigned char>(c));
-  return mixed(out + number);
+  std::uint64_t out = scrambled(seed + kGolden);
+  for (const char c : name) out = scrambled(out + static_cast<unsigned char>(c));
+  return scrambled(out + number);
 }
 
 const std::vector<PairFamily>& pair_families() {

@@ -2,7 +2,6 @@
 #include "experiments/method/options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -21,12 +20,6 @@ std::string offset_names() {
   std::string names;
   for (const std::string& name : kOffsets) names += (names.empty() ? "" : ", ") + name;
   return names;
-}
-
-// The shortest text that gives the same double back.
-std::string number(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
@@ -373,7 +366,7 @@ const Option kOptions[] = {
          },
      .kind = "distance",
      .remedy = "give a finite distance in world units, 0 or more",
-     .unusual = [](Run o) { return only_if(o.clearance != 0, number(o.clearance)); },
+     .unusual = [](Run o) { return only_if(o.clearance != 0, shortest(o.clearance)); },
      .why_not = [](const Traits&) { return "finds what meets, not what is near"; },
      .value = [](Run o) { return value_if(takes_clearance(o.method), o.clearance); }},
     {.name = "ignore",
@@ -445,7 +438,7 @@ void require_range(const RunOptions& options) {
   };
   require("resolution", options.resolution >= 0, std::to_string(options.resolution));
   require("rounds", options.rounds >= 0, std::to_string(options.rounds));
-  require("clearance", is_distance(options.clearance), number(options.clearance));
+  require("clearance", is_distance(options.clearance), shortest(options.clearance));
   require("device", is_device(options.device), options.device);
   if (std::find(kOffsets.begin(), kOffsets.end(), options.offset) == kOffsets.end()) {
     throw Error("{offset}", "'" + options.offset + "' is no offset",

@@ -6,32 +6,21 @@
 
 #include <unistd.h>
 
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <new>
 #include <optional>
 #include <sstream>
 #include <string_view>
 
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/scenes/mesh/load.h"
+
 namespace farcull {
 namespace {
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  return text;
-}
-
-/// The shortest decimal text that is read back as this number.
-std::string shortest(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
@@ -54,11 +43,8 @@ struct NoQuestion : std::runtime_error {
 
 template <class Number>
 Number number(std::string_view text) {
-  Number out{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw NoQuestion("'" + std::string(text) + "' is no number");
-  return out;
+  if (const std::optional<Number> out = parse_number<Number>(text)) return *out;
+  throw NoQuestion("'" + std::string(text) + "' is no number");
 }
 
 /// The last 18 fields as two triangles.
@@ -82,34 +68,17 @@ SuitePair read_pair(const Fields& fields) {
   return out;
 }
 
-void add_obj(const std::string& path, bool self, Scene& out) {
-  std::ifstream file(path);
-  if (!file) throw NoQuestion(path + " cannot be read");
+void add_mesh(const std::string& path, bool self, Scene& out) {
+  const Mesh mesh = load_mesh(path);
   const auto first = static_cast<std::uint32_t>(out.vertices.size());
   out.objects.push_back({.name = std::to_string(out.objects.size()),
                          .first_triangle = static_cast<std::uint32_t>(out.triangles.size()),
+                         .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()),
                          .self = self});
-  std::uint32_t& count = out.objects.back().triangle_count;
-  for (std::string line; std::getline(file, line);) {
-    const char* at = line.c_str() + 1;
-    char* end = nullptr;
-    if (line.starts_with("v ")) {
-      Vec3& point = out.vertices.emplace_back();
-      for (double& x : point) {
-        x = std::strtod(at, &end);
-        at = end;
-      }
-    } else if (line.starts_with("f ")) {
-      auto& triangle = out.triangles.emplace_back();
-      for (std::uint32_t& v : triangle) {
-        v = first + static_cast<std::uint32_t>(std::strtoul(at, &end, 10)) - 1;
-        at = end;
-        if (v < first || v >= out.vertices.size())
-          throw NoQuestion(path + ": a face names no vertex");
-      }
-      out.source_face.push_back(count++);
-    }
-  }
+  out.vertices.insert(out.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (const auto& [a, b, c] : mesh.triangles)
+    out.triangles.push_back({first + a, first + b, first + c});
+  out.source_face.insert(out.source_face.end(), mesh.source_face.begin(), mesh.source_face.end());
 }
 
 /// The OBJ files of the fields from `first` to before `end` as objects.
@@ -118,7 +87,11 @@ Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool 
     throw NoQuestion(std::string(fields[1]) + " lacks fields");
   Scene out;
   out.name = "scene";
-  for (std::size_t i = first; i < end; ++i) add_obj(std::string(fields[i]), self, out);
+  try {
+    for (std::size_t i = first; i < end; ++i) add_mesh(std::string(fields[i]), self, out);
+  } catch (const Error& error) {
+    throw NoQuestion(error.what());
+  }
   return out;
 }
 

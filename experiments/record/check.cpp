@@ -1,16 +1,15 @@
-// Checks a certificate, a list of pairs, or both against a scene. Turns the findings of the
-// checkers of verify/certificate, about pairs and about distances, into text and JSON.
+// Checks a certificate, a list of pairs, or both against a scene. Turns the findings of the checker
+// of verify/certificate into text and JSON.
 #include "experiments/record/check.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -124,15 +123,6 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
   result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
 }
 
-using Pairs = DistanceCertificate::Pairs;
-
-// Shortens a fraction for printing, since it may have thousands of digits.
-std::string shortened(const std::string& fraction) {
-  constexpr std::size_t kMost = 120;
-  if (fraction.size() <= kMost) return fraction;
-  return fraction.substr(0, kMost) + "... (whole with --json)";
-}
-
 }  // namespace
 
 Json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair) {
@@ -153,11 +143,6 @@ std::string proved_text(const Scene& scene, const SceneCheck& check) {
 std::string proved_limits(double clearance, bool self, bool ignores) {
   return std::string(clearance != 0 && self ? " (neighbours only where they meet)" : "") +
          (ignores ? ", of objects that are not ignored" : "");
-}
-
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', '?');
-  return text;
 }
 
 std::string proved_text(std::size_t pairs, double clearance) {
@@ -312,84 +297,6 @@ SceneCheck check_scene_with(double clearance, const std::string& file,
   }
   if (list) compare_list(scene, *list, rows, out);
   return out;
-}
-
-std::string proved_text(const CheckedDistances& check) {
-  const DistanceCertificate& c = check.certificate;
-  const std::size_t count = c.distances.size();
-  const bool all = c.pairs == Pairs::all;
-  const std::string what = all ? "triangles" : "objects";
-  const std::string within =
-      std::isfinite(c.within) ? fmt::format("at distance {} or less", c.within) : "";
-  if (count == 0) {
-    return "no two " + what + (within.empty() ? " have a distance" : " are " + within);
-  }
-  const std::string these = count == 1
-                                ? fmt::format("this pair of {} is", what)
-                                : fmt::format("these {} pairs of {} are", grouped(count), what);
-  const std::string others = count == 1 ? "no other" : "no others";
-  std::string out = these + " at exactly " + (count == 1 ? "this distance" : "these distances");
-  if (c.pairs == Pairs::nearest) {
-    return out + fmt::format(", and {} each object's {}nearest{}, and {}",
-                             count == 1 ? "it is" : "they are", c.k == 1 ? "" : grouped(c.k) + " ",
-                             within.empty() ? "" : " " + within, others);
-  }
-  if (within.empty()) return out + ", and there " + (count == 1 ? "is " : "are ") + others;
-  return out + ", and " + others + (count == 1 ? " is " : " are ") + within;
-}
-
-std::string verdict_text(const Scene& scene, const CheckedDistances& check) {
-  const DistanceCheck& result = check.result;
-  const bool proved = result.verdict == Verdict::proved;
-  std::string out = to_string(result.verdict) + ": " +
-                    (proved ? proved_text(check) : one_line(result.reason)) + "\n";
-  if (!result.pair) return out;
-  return out + fmt::format("  pair: {}\n  the exact square of its distance: {}, so about {}\n",
-                           pair_text(scene, *result.pair), shortened(result.squared),
-                           result.distance);
-}
-
-std::string check_text(const Scene& scene, const CheckedDistances& check) {
-  const DistanceCheck& result = check.result;
-  const bool all = check.certificate.pairs == Pairs::all;
-  std::string out = verdict_text(scene, check);
-  if (all) out += not_asked_line(scene);
-  if (result.decided > 0 || result.verdict == Verdict::proved) {
-    out += fmt::format("decided    {} in integers; boxes prove the others far enough apart\n",
-                       counted(result.decided, "pair of triangles", "pairs of triangles"));
-  }
-  if (result.neighbours > 0) {
-    out += fmt::format("neighbours {} near each other, which do not count\n",
-                       counted(result.neighbours, "pair", "pairs"));
-  }
-  if (callers_floating_point() != kProved) {
-    out += fmt::format("arithmetic {}; the caller {}\n", to_string(floating_point()),
-                       to_string(callers_floating_point()));
-  }
-  return out + fmt::format("time       {:.1f} ms\n", result.ms);
-}
-
-Json check_json(const Scene& scene, const CheckedDistances& check) {
-  const DistanceCertificate& c = check.certificate;
-  const DistanceCheck& result = check.result;
-  const bool proved = result.verdict == Verdict::proved;
-  return {{"certificate", check.file},
-          {"scene", checked_scene_json(scene)},
-          {"query",
-           {{"pairs", to_string(c.pairs)},
-            {"k", json_if(c.pairs == Pairs::nearest, c.k)},
-            {"within", json_if(std::isfinite(c.within), c.within)}}},
-          {"verdict", to_string(result.verdict)},
-          {"proves", json_if(proved, proved_text(check))},
-          {"reason", text_json(result.reason)},
-          {"pair", pair_json(scene, result.pair)},
-          {"squared", text_json(result.squared)},
-          {"distance", json_if(result.pair && std::isfinite(result.distance), result.distance)},
-          {"listed", c.distances.size()},
-          {"decided", result.decided},
-          {"neighbours", result.neighbours},
-          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
-          {"ms", result.ms}};
 }
 
 }  // namespace farcull

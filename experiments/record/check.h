@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -40,8 +39,6 @@ std::string proved_text(std::size_t pairs, double clearance);
 /// The end of the statement where it is not about all pairs. self: whether an object is tested
 /// against itself; ignores: whether pairs of objects are ignored.
 std::string proved_limits(double clearance, bool self, bool ignores);
-/// A text of a certificate, which may have any bytes: without ends of lines.
-std::string one_line(std::string text);
 /// The verdict with its reason, and the pair that it is about: one line or two.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 /// The verdict and everything else.
@@ -81,21 +78,5 @@ class FrameVerdicts {
 SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows);
-
-/// A certificate of distances with the result of its check.
-struct CheckedDistances {
-  std::string file;
-  DistanceCertificate certificate;
-  DistanceCheck result;
-};
-
-/// The statement that the check has proved if its verdict is `proved`: "these 3 pairs of objects
-/// are at exactly these distances, ...".
-std::string proved_text(const CheckedDistances& check);
-/// The verdict with its reason, and the pair that the verdict is about.
-std::string verdict_text(const Scene& scene, const CheckedDistances& check);
-/// The verdict and everything else.
-std::string check_text(const Scene& scene, const CheckedDistances& check);
-nlohmann::ordered_json check_json(const Scene& scene, const CheckedDistances& check);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Turns distances into JSON, CSV, text and certificates.
+// Turns distances into JSON, CSV and text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +16,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
+// By DistancePairs, and by WhichInside; the objects of `unknown` meet.
+constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
+constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 
 /// The numbers of the triangles within their objects, from 0.
 std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
@@ -36,7 +39,7 @@ Json pair_json(const Scene& scene, const Distance& d) {
           {"features", {to_string(c.features[0]), to_string(c.features[1])}},
           {"triangles", {s, t}},
           {"faces", {scene.source_face[d.triangles.a], scene.source_face[d.triangles.b]}},
-          {"inside", text_json(inside_text(d.inside))}};
+          {"inside", text_json(kInside.at(static_cast<std::size_t>(d.inside)))}};
 }
 
 std::uint32_t other_of(const Distance& d, std::uint32_t object) {
@@ -72,8 +75,7 @@ std::string place_text(const Scene& scene, const Distance& d, int side) {
 }
 
 std::string inside_cell(const Distance& d) {
-  constexpr std::array kTexts = {"-", "no", "a in b", "b in a",
-                                 "not closed"};  // unknown: the objects meet
+  constexpr std::array kTexts = {"-", "no", "a in b", "b in a", "not closed"};
   return kTexts.at(static_cast<std::size_t>(d.inside));
 }
 
@@ -168,7 +170,7 @@ Json distances_json(const Scene& scene, const DistanceRecord& record,
   const DistanceOptions& o = record.options;
   return {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
           {"objects", json_list(scene.objects, [](const Object& object) { return object.name; })},
-          {"pairs_asked", to_string(static_cast<DistanceCertificate::Pairs>(o.pairs))},
+          {"pairs_asked", kPairsAsked.at(static_cast<std::size_t>(o.pairs))},
           {"k", json_if(o.pairs == DistancePairs::nearest, o.k)},
           {"within", o.within},
           {"inside_by", text_json(!o.inside  ? ""
@@ -201,7 +203,7 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                        c.squared.text());
     for (const Vec3& p : c.points) out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
     out += fmt::format(",{},{},{}\n", to_string(c.features[0]), to_string(c.features[1]),
-                       inside_text(d.inside));
+                       kInside.at(static_cast<std::size_t>(d.inside)));
   }
   return out;
 }
@@ -255,31 +257,6 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
       "time       {:.1f} ms{}\n", record.ms,
       record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
   return out + accounting_lines(scene, record);
-}
-
-// The code of certificates shares nothing with other code, so its enumeration has to be in the same
-// order.
-static_assert(static_cast<int>(DistancePairs::objects) ==
-                  static_cast<int>(DistanceCertificate::Pairs::objects) &&
-              static_cast<int>(DistancePairs::nearest) ==
-                  static_cast<int>(DistanceCertificate::Pairs::nearest) &&
-              static_cast<int>(DistancePairs::all) ==
-                  static_cast<int>(DistanceCertificate::Pairs::all));
-
-DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record) {
-  DistanceCertificate out;
-  out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), record.scene_hash};
-  out.pairs = static_cast<DistanceCertificate::Pairs>(record.options.pairs);
-  if (record.options.pairs == DistancePairs::nearest) out.k = record.options.k;
-  out.within = record.options.within;
-  out.distances.reserve(record.distances.size());
-  for (const Distance& d : record.distances) {
-    out.distances.push_back(
-        entry_of(scene, d.triangles, d.closest.squared.text(),
-                 {number_of(d.closest.features[0]), number_of(d.closest.features[1])}));
-    out.distances.back().inside = d.inside;
-  }
-  return out;
 }
 
 }  // namespace farcull

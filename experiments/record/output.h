@@ -18,7 +18,6 @@
 #include "experiments/method/run.h"
 #include "experiments/system/output_file.h"
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -184,9 +183,5 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record);
 std::string verdict_text(const DistanceAccounting& accounting);
 /// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
-
-/// The certificate of the answers of the record, which a stranger can check. It has no times, and
-/// does not say which object is inside another.
-DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record);
 
 }  // namespace farcull

@@ -17,6 +17,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
@@ -101,15 +102,7 @@ class Syntax : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t position, const std::string&,
                    const json::exception& error) override {
     at = position;
-    // The library's text without "[json.exception.parse_error.101] parse error at line 1, column 2:
-    // ".
-    reason = error.what();
-    for (const std::string_view mark : {"] ", "column "}) {
-      const std::size_t found = reason.find(mark);
-      if (found != std::string::npos) reason.erase(0, found + mark.size());
-    }
-    const std::size_t number = reason.find_first_not_of("0123456789");
-    if (number != 0 && reason.find(": ", number) == number) reason.erase(0, number + 2);
+    reason = json_fault(error.what());
     return false;
   }
 

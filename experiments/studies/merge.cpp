@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <unistd.h>
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -44,47 +43,6 @@ std::string deletion(const std::string& path, const std::string& study,
       "points WHERE study = '{}' AND method IN ({}))\"",
       quoted(path), study, study, names);
 }
-
-// A temporary file, removed unless it was moved to its final place.
-class Part {
- public:
-  explicit Part(std::string path) : path_(std::move(path)) { remove(); }
-  ~Part() { remove(); }
-  Part(const Part&) = delete;
-  Part& operator=(const Part&) = delete;
-
-  const std::string& path() const { return path_; }
-  void put(const std::string& place) {
-    std::error_code code;
-    fs::rename(path_, place, code);
-    if (code) throw Error(place, "cannot be written: " + code.message(), "name another file");
-  }
-
- private:
-  void remove() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-    fs::remove(path_ + "-journal", ignored);
-  }
-  std::string path_;
-};
-
-// Blocks signals that would end the program, so that no half-written file is left.
-class Uninterrupted {
- public:
-  Uninterrupted() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-    ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
-  }
-  ~Uninterrupted() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  Uninterrupted(const Uninterrupted&) = delete;
-  Uninterrupted& operator=(const Uninterrupted&) = delete;
-
- private:
-  sigset_t before_ = {};
-};
 
 struct Source {
   std::string path;
@@ -350,8 +308,7 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
   require_whole(sources);
   share_times(sources);
 
-  const Uninterrupted uninterrupted;
-  Part part(out + ".part-" + std::to_string(::getpid()));
+  StreamedOutput file(out);
   MergeSummary summary{.files = files.size(), .studies = sources.front().studies.size()};
   std::set<std::string> machines;
   for (const Source& source : sources) {
@@ -360,7 +317,7 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
   }
   summary.machines = machines.size();
   {
-    Store store(part.path(), Store::Access::write);
+    Store store(file.half(), Store::Access::write_at_once);
     for (const StoredStudy& stored : sources.front().studies) {
       Declaration whole = stored.declaration;
       whole.shard = whole.of = 1;
@@ -381,7 +338,7 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
       }
     });
   }
-  part.put(out);
+  file.put();
   return summary;
 }
 

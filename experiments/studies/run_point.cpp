@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
@@ -129,14 +130,10 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
   return count_contacts(scene, missed).penetrating;
 }
 
-// FNV-1a over the numbers of the triangles.
 std::uint64_t hash_of(const std::vector<TrianglePair>& pairs) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const TrianglePair& pair : pairs) {
-    for (const std::uint32_t triangle : {pair.a, pair.b})
-      hash = (hash ^ triangle) * 1099511628211ULL;
-  }
-  return hash;
+  Fnv1a hash;
+  for (const TrianglePair& pair : pairs) hash.add(std::uint64_t{pair.a} << 32 | pair.b);
+  return hash.value();
 }
 
 PointResult result_of(const Scene& scene, const Truth& truth, const Record& record) {

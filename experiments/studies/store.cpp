@@ -275,7 +275,7 @@ struct Store::State {
 };
 
 Store::Store(const std::string& path, Access access) {
-  const bool write = access == Access::write;
+  const bool write = access != Access::read;
   struct stat info = {};
   const bool there = ::stat(path.c_str(), &info) == 0;
   if (there && !S_ISREG(info.st_mode))
@@ -293,6 +293,7 @@ Store::Store(const std::string& path, Access access) {
     SQLite::Database& database = state_->database;
     database.exec("PRAGMA foreign_keys = ON");
     // Locks out other programs until the file is closed or this program ends, however it ends.
+    if (access == Access::write_at_once) database.exec("PRAGMA journal_mode = MEMORY");
     if (write) database.exec("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE");
     const std::int32_t id = database.execAndGet("PRAGMA application_id").getInt();
     const std::int32_t version = database.execAndGet("PRAGMA user_version").getInt();

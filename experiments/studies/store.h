@@ -76,7 +76,8 @@ bool is_whole(const Measurement& row);
 
 class Store {
  public:
-  enum class Access { read, write };
+  /// write_at_once: has no journal beside the file, for a file that appears when it is whole.
+  enum class Access { read, write, write_at_once };
   /// write: creates the file if it does not exist, and locks out every other program until it is
   /// closed. Throws Error naming the path for a file that is no store of ours, of another version,
   /// damaged, in use, or that cannot be opened.

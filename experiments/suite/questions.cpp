@@ -183,7 +183,7 @@ SuiteQuestions read_questions(const std::string& path) {
 std::string questions_text(const SuiteQuestions& questions) {
   std::string out = "farcull-questions 1 " + questions.family + "\n";
   for (const SuiteQuestion& question : questions.questions) {
-    out += fmt::format("{} {} {} {}", question.id, decimal(question.parameter),
+    out += fmt::format("{} {} {} {}", question.id, shortest(question.parameter),
                        kKinds[number_of(question.kind)], question.label);
     for (const std::string& path : question.paths) out += " " + path;
     for (const double x : question.coordinates) out += " " + hexadecimal(x);

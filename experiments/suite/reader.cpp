@@ -437,10 +437,4 @@ void append_hexadecimal(std::string& text, double value) {
   text.append(buffer.data(), end);
 }
 
-std::string decimal(double value) {
-  std::array<char, 40> buffer;
-  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), end};
-}
-
 }  // namespace farcull

@@ -130,9 +130,6 @@ std::optional<double> parse_hexadecimal(std::string_view word);
 /// Appends a finite double as C's %a prints it, whatever the locale.
 void append_hexadecimal(std::string& text, double value);
 
-/// The shortest decimal text that is read back as the same finite double, whatever the locale.
-std::string decimal(double value);
-
 // Decides how two triangles meet, and which pairs of a mesh collide. Two exact oracles that share
 // no code give each answer; a disagreement is an Error. So no label of the suite rests on one
 // program alone.

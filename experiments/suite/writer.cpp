@@ -14,6 +14,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/suite/questions.h"
@@ -261,7 +262,7 @@ std::string pair_line(const SuitePair& pair) {
     shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
   if (shared.empty()) shared = "-";
   std::string out =
-      fmt::format("{} {} {} {}", pair.id, decimal(pair.parameter), shared, to_string(pair.kind));
+      fmt::format("{} {} {} {}", pair.id, shortest(pair.parameter), shared, to_string(pair.kind));
   for (const auto* t : {&pair.a, &pair.b}) {
     for (const Vec3& p : *t) {
       for (int k = 0; k < 3; ++k) {
@@ -295,7 +296,7 @@ std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
     out.push_back({object.name + ".obj", obj_text(mesh.scene, object), object.triangle_count});
   std::string properties =
       fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
-                  decimal(mesh.parameter), mesh.family);
+                  shortest(mesh.parameter), mesh.family);
   append_note(properties, mesh.note);
   out.push_back({"mesh.txt", std::move(properties), 0});
   if (mesh.labelled) out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});

@@ -259,10 +259,10 @@ StreamedOutput::StreamedOutput(const std::string& path) : path_(path) {
                 "name a file");
   }
   place_ = target.path;
-  const std::string half = beside(place_);
-  if (half.size() >= sizeof half_written) refuse(path_, ENAMETOOLONG);
-  part_ = std::make_unique<HalfWritten>(half);
-  file_ = std::fopen(half.c_str(), "wb");
+  half_ = beside(place_);
+  if (half_.size() >= sizeof half_written) refuse(path_, ENAMETOOLONG);
+  part_ = std::make_unique<HalfWritten>(half_);
+  file_ = std::fopen(half_.c_str(), "wb");
   if (file_ == nullptr) refuse(path_, errno);
   if (target.exists) ::fchmod(::fileno(file_), target.mode & 07777);
 }

@@ -89,11 +89,13 @@ class StreamedOutput {
 
   /// Throws Error if the disk refuses.
   void add(std::string_view text);
+  /// The file until put(), for a library that writes it by its name instead of add().
+  const std::string& half() const { return half_; }
   /// Waits until the file is on the disk, and puts it in place. Throws Error as add() does.
   void put();
 
  private:
-  std::string path_, place_;
+  std::string path_, place_, half_;
   std::unique_ptr<HalfWritten> part_;
   std::FILE* file_ = nullptr;
 };

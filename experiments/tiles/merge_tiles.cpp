@@ -1,12 +1,13 @@
 // Merges sorted lists: the least of the next lines of all lists is the next line of the whole.
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <queue>
@@ -140,11 +141,10 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// A list, read once from its beginning to its end. Its file is open only during each read, so that
-// the number of lists is not limited.
+// A list, read once from its beginning to its end.
 class List {
  public:
-  List(const Source& source, std::size_t buffer) : source_(source), buffer_(buffer) {
+  explicit List(const Source& source) : source_(&source), file_(source.list, std::ios::binary) {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
@@ -152,7 +152,7 @@ class List {
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {
-      if (rows_ != source_.rows || hash_.digest() != source_.sha256)
+      if (rows_ != source_->rows || hash_.digest() != source_->sha256)
         fail("is not the list that the tile wrote: it was cut short or changed");
       return false;
     }
@@ -161,46 +161,23 @@ class List {
     return true;
   }
   const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle, of both
-  std::string_view line() const { return line_; }                   // without its end
-  const std::string& path() const { return source_.list; }
+  const std::string& line() const { return line_; }                 // without its end
 
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error(source_.list, reason, kAgain, static_cast<long>(lines_));
+    throw Error(source_->list, reason, kAgain, static_cast<long>(lines_));
   }
 
  private:
   bool next_line() {
-    for (;;) {
-      const std::size_t end = text_.find('\n', at_);
-      if (end != std::string::npos) {
-        line_.assign(text_, at_, end - at_);
-        at_ = end + 1;
-        ++lines_;
-        return true;
-      }
-      text_.erase(0, at_);
-      at_ = 0;
-      if (!read_on()) break;
+    if (!std::getline(file_, line_)) {
+      if (!file_.eof()) fail("cannot be read to its end");
+      return false;
     }
-    if (!text_.empty()) fail("ends within a line: it was cut short");
-    return false;
-  }
-
-  bool read_on() {
-    std::FILE* const file = std::fopen(source_.list.c_str(), "rb");
-    if (file == nullptr) fail("cannot be read");
-    const std::size_t before = text_.size();
-    text_.resize(before + buffer_);
-    std::size_t n = 0;
-    const bool good = ::fseeko(file, static_cast<off_t>(offset_), SEEK_SET) == 0 &&
-                      ((n = std::fread(text_.data() + before, 1, buffer_, file)) == buffer_ ||
-                       std::ferror(file) == 0);
-    std::fclose(file);
-    if (!good) fail("cannot be read to its end");
-    text_.resize(before + n);
-    offset_ += n;
-    hash_.add(std::string_view(text_).substr(before));
-    return n > 0;
+    if (file_.eof()) fail("ends within a line: it was cut short");
+    ++lines_;
+    hash_.add(line_);
+    hash_.add("\n");
+    return true;
   }
 
   void read_key() {
@@ -215,14 +192,21 @@ class List {
     if (!rest.empty() && rest.front() != ',') fail("holds a line that is no pair");
   }
 
-  const Source& source_;
-  std::size_t buffer_;
-  std::string text_, line_;  // read and not used up; the current line
-  std::size_t at_ = 0;       // in text_
-  std::uint64_t offset_ = 0, rows_ = 0, lines_ = 0;
+  const Source* source_;
+  std::ifstream file_;
+  std::string line_;
+  std::uint64_t rows_ = 0, lines_ = 0;
   std::array<std::uint64_t, 4> key_{};
   Sha256 hash_;
 };
+
+// All lists are open at once. The limit of open files that a shell has set may be too low.
+void open_many_files() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &files);
+}
 
 // Writes all rows in order; returns how many, and the SHA-256 of the list.
 std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sources,
@@ -235,23 +219,20 @@ std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sou
     file.add(piece);
     piece.clear();
   };
-  const std::size_t buffer =
-      std::clamp<std::size_t>((std::size_t{64} << 20) / sources.size(), 4096, std::size_t{1} << 20);
-  std::vector<std::unique_ptr<List>> lists;
-  const auto later = [&](std::size_t a, std::size_t b) {
-    return lists[a]->key() > lists[b]->key();
-  };
+  open_many_files();
+  std::vector<List> lists;
+  const auto later = [&](std::size_t a, std::size_t b) { return lists[a].key() > lists[b].key(); };
   std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> next(later);
   for (const Source& source : sources) {
-    lists.push_back(std::make_unique<List>(source, buffer));
-    if (lists.back()->next()) next.push(lists.size() - 1);
+    lists.emplace_back(source);
+    if (lists.back().next()) next.push(lists.size() - 1);
   }
   std::uint64_t rows = 0;
   std::optional<std::array<std::uint64_t, 4>> last;
   while (!next.empty()) {
     const std::size_t index = next.top();
     next.pop();
-    List& list = *lists[index];
+    List& list = lists[index];
     if (last == list.key()) list.fail("holds a pair that the list of another tile holds as well");
     last = list.key();
     piece.append(list.line()).push_back('\n');
@@ -264,31 +245,24 @@ std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sou
   return {rows, hash.digest()};
 }
 
-// Sums a count over all records.
-std::uint64_t sum_of(const std::vector<Source>& sources, const char* place) {
-  std::uint64_t sum = 0;
-  for (const Source& source : sources) sum += at<std::uint64_t>(source, place);
-  return sum;
+// Joins the values at a place of all records, such as their sum.
+template <class Value, class Join>
+Value joined(const std::vector<Source>& sources, const std::string& place, const Join& join) {
+  Value out{};
+  for (const Source& source : sources) out = join(out, at<Value>(source, place.c_str()));
+  return out;
 }
 
-double largest_of(const std::vector<Source>& sources, const char* place) {
-  double most = 0;
-  for (const Source& source : sources) most = std::max(most, at<double>(source, place));
-  return most;
+std::uint64_t sum_of(const std::vector<Source>& sources, const std::string& place) {
+  return joined<std::uint64_t>(sources, place, std::plus());
 }
 
 // Sums of the kinds of contact, or null if they were not asked for.
 Json contacts_of(const std::vector<Source>& sources) {
   Json sum = at<Json>(sources.front(), "/contacts");
   if (!sum.is_object()) return nullptr;
-  for (const auto& kind : sum.items())
-    kind.value() = sum_of(sources, ("/contacts/" + kind.key()).c_str());
+  for (const auto& kind : sum.items()) kind.value() = sum_of(sources, "/contacts/" + kind.key());
   return sum;
-}
-
-bool all_verified(const std::vector<Source>& sources) {
-  return std::ranges::all_of(
-      sources, [](const Source& source) { return at<Json>(source, "/verification").is_object(); });
 }
 
 void require_other_files(const std::vector<Source>& sources, const std::string& out) {
@@ -321,32 +295,29 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
   std::ranges::sort(sources, {}, &Source::k);
   MergedTiles merged;
   merged.tiles = sources.size();
-  merged.verified = all_verified(sources);
-  const std::array counts = {"candidate_pairs", "colliding_pairs", "neighbour_pairs",
-                             "all_colliding_pairs"};
+  merged.verified = true;
+  for (const Source& source : sources) {
+    merged.verified = merged.verified && at<Json>(source, "/verification").is_object();
+    merged.promises = merged.promises && at<bool>(source, "/promises");
+  }
   Json json = {{"scene", at<Json>(sources.front(), "/scene")},
                {"method", at<Json>(sources.front(), "/method")},
                {"tiles", merged.tiles},
                {"axis", at<Json>(sources.front(), "/tile/axis")},
                {"cuts", at<Json>(sources.front(), "/tile/cuts")},
                {"options", at<Json>(sources.front(), "/tile/options")}};
-  for (const char* count : counts)
-    json[count] = sum_of(sources, (std::string("/") + count).c_str());
+  for (const char* count :
+       {"candidate_pairs", "colliding_pairs", "neighbour_pairs", "all_colliding_pairs"})
+    json[count] = sum_of(sources, std::string("/") + count);
   json["contacts"] = contacts_of(sources);
   if (merged.verified) merged.false_negatives = sum_of(sources, "/verification/false_negatives");
-  for (const Source& source : sources)
-    merged.promises = merged.promises && at<bool>(source, "/promises");
   json["promises"] = merged.promises;
   json["false_negatives"] = merged.verified ? Json(merged.false_negatives) : Json(nullptr);
-  std::uint64_t largest = 0;
-  for (const Source& source : sources)
-    largest = std::max(largest, at<std::uint64_t>(source, "/tile/triangles"));
-  json["triangles_of_largest_tile"] = largest;
-  json["peak_memory_mib"] = largest_of(sources, "/tile/peak_memory_mib");
-  double ms = 0;
-  for (const Source& source : sources)
-    ms += at<double>(source, "/time_ms/total") + at<double>(source, "/tile/read_ms");
-  json["time_ms"] = ms;
+  const auto larger = [](auto a, auto b) { return std::max(a, b); };
+  json["triangles_of_largest_tile"] = joined<std::uint64_t>(sources, "/tile/triangles", larger);
+  json["peak_memory_mib"] = joined<double>(sources, "/tile/peak_memory_mib", larger);
+  json["time_ms"] = joined<double>(sources, "/time_ms/total", std::plus()) +
+                    joined<double>(sources, "/tile/read_ms", std::plus());
   const auto [rows, sha256] = merge_lists(sources, out);
   merged.rows = rows;
   json["list"] = {{"rows", rows}, {"sha256", sha256}};

@@ -15,6 +15,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "core/boxes/block.h"
@@ -32,18 +33,10 @@ namespace {
 
 constexpr std::size_t kSample = 65536;
 
-// The finalizer of splitmix64: all bits of the result depend on all bits of the number.
-std::uint64_t scrambled(std::uint64_t n) {
-  n += 0x9e3779b97f4a7c15u;
-  n = (n ^ (n >> 30)) * 0xbf58476d1ce4e5b9u;
-  n = (n ^ (n >> 27)) * 0x94d049bb133111ebu;
-  return n ^ (n >> 31);
-}
-
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
-    const std::uint64_t hash = scrambled(number);
+    const std::uint64_t hash = scrambled(number + kGolden);
     if ((hash & mask_) != 0) return;
     sample_.emplace_back(hash, box);
     while (sample_.size() > kSample) {

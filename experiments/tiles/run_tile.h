@@ -196,12 +196,12 @@ struct MergedTiles {
 /// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists
 /// beside them, and writes the list of the whole scene to `out`: byte for byte that of one run. A
 /// file appears there only when everything was read to its end and proved whole. The lists are
-/// merged from their beginnings on, so the memory is at most 64 MiB, or 4 KiB for each list, and
-/// the records. Throws Error naming the file if a record or a list is missing, is no such file, or
-/// was cut short or changed since; if a tile is given twice or not at all; if two records differ in
-/// scene, number of tiles, cuts, options, columns or commit; if the tiles do not hold all triangles
-/// of the scene; and if `out` cannot be written or is a file that is read.
-/// other: a path to which the caller will write, which must not be a file that is read either.
+/// merged from their beginnings on, so the memory is a buffer for each list, and the records.
+/// Throws Error naming the file if a record or a list is missing, is no such file, or was cut short
+/// or changed since; if a tile is given twice or not at all; if two records differ in scene, number
+/// of tiles, cuts, options, columns or commit; if the tiles do not hold all triangles of the scene;
+/// and if `out` cannot be written or is a file that is read. other: a path to which the caller will
+/// write, which must not be a file that is read either.
 MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
                         const std::string& other = "");
 

@@ -31,9 +31,6 @@ Answer fuzz_scene_file(const std::uint8_t* data, std::size_t size);
 /// The text of a certificate, checked against a fixed scene. Where the first byte is 1 the others
 /// are its evidence instead, which no mutation of base64 would come across: see fuzz_check.cpp.
 Answer fuzz_check(const std::uint8_t* data, std::size_t size);
-/// The text of a certificate of distances, checked against a fixed scene. Where the first byte is 1
-/// the others change a right certificate: see fuzz_distances.cpp.
-Answer fuzz_distances(const std::uint8_t* data, std::size_t size);
 
 /// A contract that does not hold. No std::exception, so that nothing under test catches it.
 struct FuzzFinding {

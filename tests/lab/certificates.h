@@ -1,11 +1,9 @@
 // A scene with a certificate of it, for the tests of certificates.
 #pragma once
 
-#include "tests/lab/grid_distance.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/exact.h"
 
@@ -73,124 +71,3 @@ inline void recount(Certificate& certificate) {
 }
 
 }  // namespace farcull
-
-// Distances by brute force in rationals, and certificates made of them, for the tests of
-// certificates of distances. Nothing of verify/certificate but the form of the certificate.
-
-namespace farcull::distance_case {
-
-using reference::Rational;
-using reference::Triangle;
-
-/// The square of the distance of two triangles.
-inline Rational squared(const Triangle& a, const Triangle& b) {
-  return near_lab::squared_distance_of(a, b);
-}
-
-/// A corner, an edge or the triangle itself, as a triangle.
-inline Triangle part(const Triangle& t, int feature) {
-  if (feature < 3) return {t[feature], t[feature], t[feature]};
-  return feature < 6 ? Triangle{t[feature - 3], t[(feature - 2) % 3], t[(feature - 2) % 3]} : t;
-}
-
-/// The first two features that are as near as the triangles, the square of whose distance is given.
-inline std::array<std::uint8_t, 2> features(const Triangle& a, const Triangle& b,
-                                            const Rational& least) {
-  for (std::uint8_t i = 0; i < 7; ++i) {
-    for (std::uint8_t j = 0; j < 7; ++j) {
-      if (squared(part(a, i), part(b, j)) == least) return {i, j};
-    }
-  }
-  throw std::logic_error("no features");
-}
-
-/// A scene with all its distances.
-struct Distances {
-  Scene scene;
-  std::vector<std::uint32_t> owner;
-  std::map<TrianglePair, Rational> squares;               // of all pairs of triangles
-  mutable std::map<TrianglePair, DistanceEntry> entries;  // of those that were asked for
-
-  explicit Distances(Scene from) : scene(std::move(from)), owner(owners(scene)) {
-    const auto count = static_cast<std::uint32_t>(scene.triangles.size());
-    for (std::uint32_t a = 0; a < count; ++a)
-      for (std::uint32_t b = a + 1; b < count; ++b)
-        squares[{a, b}] = squared(scene.corners(a), scene.corners(b));
-  }
-
-  const DistanceEntry& entry(const TrianglePair& pair) const {
-    const auto [it, added] = entries.try_emplace(pair);
-    if (added) {
-      const Rational& square = squares.at(pair);
-      it->second =
-          entry_of(scene, pair, square.get_num().get_str() + "/" + square.get_den().get_str(),
-                   features(scene.corners(pair.a), scene.corners(pair.b), square));
-    }
-    return it->second;
-  }
-
-  bool counts(const TrianglePair& pair) const {
-    if (owner[pair.a] != owner[pair.b]) return true;
-    return scene.objects[owner[pair.a]].self &&
-           !reference::share_position(scene.corners(pair.a), scene.corners(pair.b));
-  }
-
-  /// By two objects that have triangles, or one twice, the first of the nearest pairs that count.
-  std::map<std::array<std::uint32_t, 2>, TrianglePair> nearest_pairs() const {
-    std::map<std::array<std::uint32_t, 2>, TrianglePair> out;
-    for (const auto& [pair, square] : squares) {
-      if (!counts(pair)) continue;
-      const auto [it, added] = out.try_emplace({owner[pair.a], owner[pair.b]}, pair);
-      if (!added && square < squares.at(it->second)) it->second = pair;
-    }
-    return out;
-  }
-
-  DistanceCertificate certificate(DistanceCertificate::Pairs pairs, double within,
-                                  std::uint64_t k = 0) const {
-    DistanceCertificate out;
-    out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
-    out.pairs = pairs;
-    out.k = k;
-    out.within = within;
-    const auto is_within = [&](const TrianglePair& pair) {
-      return std::isinf(within) || squares.at(pair) <= Rational(within) * Rational(within);
-    };
-    if (pairs == DistanceCertificate::Pairs::all) {
-      for (const auto& [pair, square] : squares) {
-        if (counts(pair) && is_within(pair)) out.distances.push_back(entry(pair));
-      }
-      std::ranges::sort(out.distances, {},
-                        [](const DistanceEntry& x) { return std::pair(x.objects, x.triangles); });
-      return out;
-    }
-    const auto nearest = nearest_pairs();
-    // Of those as far the lower object is nearer.
-    const auto among_nearest = [&](std::uint32_t object, std::uint32_t to,
-                                   const TrianglePair& pair) {
-      std::uint64_t nearer = 0;
-      for (const auto& [objects, other] : nearest) {
-        if (objects[0] == objects[1] || (objects[0] != object && objects[1] != object)) continue;
-        const std::uint32_t third = objects[0] == object ? objects[1] : objects[0];
-        nearer += is_within(other) &&
-                  std::pair(squares.at(other), third) < std::pair(squares.at(pair), to);
-      }
-      return nearer < k;
-    };
-    for (const auto& [objects, pair] : nearest) {
-      if (!is_within(pair)) continue;
-      const auto [a, b] = objects;
-      if (k > 0 && (a == b || (!among_nearest(a, b, pair) && !among_nearest(b, a, pair)))) continue;
-      out.distances.push_back(entry(pair));
-    }
-    return out;
-  }
-};
-
-/// By way of the text.
-inline DistanceCheck check(const DistanceCertificate& certificate, const Scene& scene) {
-  return check_distances(parse_distance_certificate(to_text(certificate), "c.json"), scene,
-                         "c.json");
-}
-
-}  // namespace farcull::distance_case

@@ -30,6 +30,13 @@ std::array<std::array<Vec3, 3>, 2> random_pair(rational::Draws& random) {
   return out;
 }
 
+BoundsTree::Bounds bounds_of(const std::array<Vec3, 3>& t) {
+  BoundsTree::Bounds out;
+  for (int k = 0; k < 3; ++k)
+    std::tie(out.lo[k], out.hi[k]) = std::minmax({t[0][k], t[1][k], t[2][k]});
+  return out;
+}
+
 double moved_by_ulps(double x, int ulps) {
   for (; ulps > 0; --ulps) x = std::nextafter(x, HUGE_VAL);
   for (; ulps < 0; ++ulps) x = std::nextafter(x, 0);
@@ -48,8 +55,7 @@ TEST(Separation, IsProvedOnlyWhereTrianglesAreFartherApart) {
                                        : std::min(root * random.uniform(0.8, 1.1), 1e308);
     const bool is_farther = squared > Q(limit) * Q(limit);
     farther += is_farther;
-    const auto boxes =
-        separation::farther(separation::bounds_of(a), separation::bounds_of(b), limit);
+    const auto boxes = separation::farther(bounds_of(a), bounds_of(b), limit);
     const bool planes = separation::farther_by_planes(a, b, limit);
     by_boxes += boxes;
     by_planes += planes;
@@ -64,14 +70,14 @@ TEST(Separation, IsProvedOnlyWhereTrianglesAreFartherApart) {
 
 TEST(Separation, OfBoxesKeepsWhatMayBeAsNear) {
   const double big = 1.5e308;
-  const separation::Bounds a = {{0, 0, 0}, {1, 1, 1}}, b = {{4, 5, 0}, {6, 6, 6}};
+  const BoundsTree::Bounds a = {{0, 0, 0}, {1, 1, 1}}, b = {{4, 5, 0}, {6, 6, 6}};
   EXPECT_TRUE(separation::farther(a, b, 4.999));
   EXPECT_FALSE(separation::farther(a, b, 5));
-  const separation::Bounds far = {{big, big, 0}, {big, big, 0}};
+  const BoundsTree::Bounds far = {{big, big, 0}, {big, big, 0}};
   EXPECT_TRUE(separation::farther(a, far, 1e308));
   EXPECT_FALSE(separation::farther(a, far, 1.7e308));  // whose squares overflow
   const double tiny = std::numeric_limits<double>::denorm_min();
-  const separation::Bounds near = {{1 + 0x1p-52, 0, 0}, {2, 2, 2}};
+  const BoundsTree::Bounds near = {{1 + 0x1p-52, 0, 0}, {2, 2, 2}};
   EXPECT_TRUE(separation::farther(a, near, tiny));
 }
 
@@ -123,7 +129,8 @@ ClaimedDistance claim_of(const Scene& scene, std::uint32_t a, std::uint32_t b,
   const Q& squared = closest.squared;
   double root = root_above(squared);
   while (!closest_reference::is_rounded_root(root, squared)) root = std::nextafter(root, 0);
-  ClaimedDistance out{a, b, pair, root, text_of(fraction(squared)), {}, {}};
+  ClaimedDistance out{
+      a, b, pair, root, squared.get_num().get_str() + "/" + squared.get_den().get_str(), {}, {}};
   for (std::size_t side = 0; side < 2; ++side) {
     out.features[side] = number_of(closest.features[side]);
     for (int k = 0; k < 3; ++k)

@@ -16,9 +16,9 @@
 
 namespace farcull {
 
-// Trees of boxes over triangles, for the enumerations of this folder. Boxes are minima and maxima
-// of the coordinates as given, so nothing is rounded.
-
+/// Trees of boxes over triangles. Boxes are minima and maxima of the coordinates as given, so
+/// nothing is rounded. verify/accounting has a tree of its own, since it compares the pairs that
+/// both find.
 struct BoundsTree {
   struct Bounds {
     std::array<double, 3> lo, hi;
@@ -27,8 +27,9 @@ struct BoundsTree {
   /// left one ends.
   struct Node {
     Bounds bounds;
-    std::uint32_t last_triangle = 0;  // the largest index below it
-    std::uint32_t first = 0;          // into order
+    std::uint32_t first_triangle = 0;  // the least index below it
+    std::uint32_t last_triangle = 0;   // the largest
+    std::uint32_t first = 0;           // into order
     std::uint32_t count = 0;
     std::uint32_t after = 0;  // the first node that is not below it
   };
@@ -40,6 +41,8 @@ struct BoundsTree {
   void add(std::uint32_t first, std::uint32_t count);
 
   bool is_leaf(std::uint32_t node) const { return nodes[node].after == node + 1; }
+  std::uint32_t left(std::uint32_t node) const { return node + 1; }
+  std::uint32_t right(std::uint32_t node) const { return nodes[node + 1].after; }
 
   std::vector<Bounds> bounds;  // per triangle
   std::vector<std::uint32_t> order;
@@ -72,47 +75,6 @@ class BoxPairs {
   BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
   std::uint32_t triangle_ = 0;  // the next to be asked
-};
-
-// ---- the pairs of triangles of two objects that may be within some distance, by their boxes ----
-//
-// For the checker of distances. Shares no code with core/proximity, which culls.
-
-/// Whether two boxes are farther apart than a length, in doubles whose rounding is bounded.
-class FarBoxes {
- public:
-  /// length: world units, >= 0, may be infinite.
-  explicit FarBoxes(double length);
-  /// True only if each point of one box is farther than the length from each of the other.
-  bool proved(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const;
-
- private:
-  double length_;
-  double scale_ = 1;    // a power of two
-  double squared_ = 0;  // above (length * scale)^2
-};
-
-/// Enumerates these pairs. Precondition: validate() accepts the scene. The scene must outlive the
-/// object.
-class NearBoxes {
- public:
-  explicit NearBoxes(const Scene& scene);
-
-  /// Begins with the objects a <= b. length: world units, >= 0, may be infinite.
-  void ask(std::uint32_t a, std::uint32_t b, double length);
-
-  /// Appends pairs of triangles, in no order, until there are at least `enough` or no more. If
-  /// a < b, a pair has one triangle of each object; if a == b, any two triangles of the object.
-  /// Since ask(), each pair whose boxes are not proved to be farther apart than the length is
-  /// appended once. False when no pair is left.
-  bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
-
- private:
-  const Scene& scene_;
-  BoundsTree tree_;
-  std::vector<std::uint32_t> roots_;  // by object; no root if the object has no triangles
-  FarBoxes far_{0};
-  std::vector<std::array<std::uint32_t, 2>> open_;  // pairs of nodes still to be looked into
 };
 
 }  // namespace farcull

@@ -190,8 +190,4 @@ struct CheckResult {
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene,
                               const WholeScene* whole = nullptr);
 
-/// "the certificate is of another scene: ..." with the difference; empty if the keys are the same
-/// but for the name.
-std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found);
-
 }  // namespace farcull

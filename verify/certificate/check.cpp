@@ -236,8 +236,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
   return tally.finish(certificate, scene, whole, decide_ms);
 }
 
-}  // namespace
-
+// Why the certificate is of another scene; empty if the keys are the same but for the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
   const auto differ = [](const char* what, const std::string& one, const std::string& other) {
     return std::string("the certificate is of another scene: ") + what + " " + one + ", given " +
@@ -252,6 +251,8 @@ std::string other_scene(const Certificate::SceneKey& claimed, const Certificate:
   if (claimed.hash == found.hash) return "";
   return differ("hash (coordinates, or which objects are self)", claimed.hash, found.hash);
 }
+
+}  // namespace
 
 std::string to_string(Verdict verdict) {
   switch (verdict) {

@@ -1,6 +1,6 @@
 // Computes the exact distance of two triangles with the features that realise it, and proves that
-// two triangles are no nearer than some length. Both in integers. For the checker of distances, so
-// this file uses neither CGAL nor verify/closest. docs/certificate.md has the theorems.
+// two triangles are no nearer than some length. Both in integers. For the accounting of distances,
+// so this file uses neither CGAL nor verify/closest. docs/proximity.md has the theorems.
 //
 // Semantics as in verify/exact.h: closed convex hulls of the three corners, degenerate triangles
 // included. Preconditions: finite coordinates; subnormals are not flushed to zero.
@@ -49,9 +49,8 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
 bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
                bool or_as_far);
 
-// Decides in integers whether one of two objects lies inside the other. For the checker of
-// distances and the accounting, so this part uses neither verify/inside nor
-// experiments/method/distances. docs/certificate.md has the proof.
+// Decides in integers whether one of two objects lies inside the other. For the accounting, so this
+// part uses neither verify/inside nor experiments/method/distances. docs/proximity.md has the proof.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
 // triangles; triangles with two equal corners do not count. It is *oriented* if they also pass each

@@ -44,12 +44,6 @@ std::optional<Fraction> parse_fraction(std::string_view text) {
   return out;
 }
 
-std::string text_of(const Fraction& fraction) {
-  const mpz_class common = gcd(fraction.over, fraction.under);
-  return mpz_class(fraction.over / common).get_str() + "/" +
-         mpz_class(fraction.under / common).get_str();
-}
-
 double root_above(const Fraction& fraction) {
   if (fraction.over == 0) return 0;
   // A quotient of about 128 bits gives a root of about 64 bits.

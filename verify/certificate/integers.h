@@ -166,9 +166,6 @@ Fraction square_of(double length);
 /// without leading zeros, each part at most kMostDigits long. Empty for any other text.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// The fraction in lowest terms, as parse_fraction() reads it.
-std::string text_of(const Fraction& fraction);
-
 /// A double that is at least the root, and hardly more; infinity if no finite double is so large.
 double root_above(const Fraction& fraction);
 

@@ -1,141 +1,18 @@
-// Certificates as text: the readers of JSON, and the format.
-#include "verify/certificate/json.h"
-
+// Certificates as text. The reader does not trust the text: a first pass goes over the syntax
+// alone.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "verify/certificate/certificate.h"
 
 namespace farcull {
-
-// ---- the readers of values, and the pass over the syntax ----
-
-using Json = nlohmann::ordered_json;
-
-std::string printable(std::string_view text, std::size_t most) {
-  std::string out;
-  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
-  if (text.size() > most) out += "...";
-  return out;
-}
-
-bool JsonSyntax::key(string_t& name) {
-  if (keys_.back().insert(name).second) return true;
-  return stop("the key '" + printable(name, 40) + "' occurs twice");
-}
-
-bool JsonSyntax::parse_error(std::size_t position, const std::string&,
-                             const nlohmann::json::exception& error) {
-  // Keeps the part of the library's message between "...column 2: " and "; last read: '...'". The
-  // latter would quote the text of the file.
-  std::string_view what = error.what();
-  for (const std::string_view mark : {"] ", "column "}) {
-    const std::size_t found = what.find(mark);
-    if (found != std::string_view::npos) what.remove_prefix(found + mark.size());
-  }
-  const std::size_t number = what.find_first_not_of("0123456789");
-  if (number != 0 && what.substr(std::min(number, what.size()), 2) == ": ")
-    what.remove_prefix(number + 2);
-  what = what.substr(0, what.find("; last read"));
-  return stop("not JSON at byte " + std::to_string(position) + ": " + printable(what, 120));
-}
-
-bool JsonSyntax::stop(std::string why) {
-  reason = std::move(why);
-  return false;
-}
-
-bool JsonSyntax::count() {
-  return ++values_ <= most_values_ || stop("more values than any certificate has");
-}
-
-bool JsonSyntax::enter() {
-  constexpr std::size_t kDeepest = 8;
-  if (keys_.size() == kDeepest) return stop("nested deeper than any certificate is");
-  keys_.emplace_back();
-  return count();
-}
-
-bool JsonSyntax::leave() {
-  keys_.pop_back();
-  return true;
-}
-
-Json JsonReader::parse(std::string_view text, std::uint64_t most_values) const {
-  if (text.find('\0') != text.npos)
-    fail("is not JSON, which has no byte 0");  // the parser would stop there
-  JsonSyntax syntax(most_values);
-  if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);
-  return Json::parse(text.begin(), text.end());
-}
-
-void JsonReader::fail(const std::string& reason) const { throw Error(name_, reason, remedy_); }
-
-void JsonReader::object(const Json& value, const std::string& place,
-                        std::initializer_list<const char*> keys) const {
-  const std::string of = place.empty() ? "" : place + ".";
-  if (!value.is_object()) fail((place.empty() ? "the certificate" : place) + " is no object");
-  for (const char* key : keys) {
-    if (!value.contains(key)) fail(of + key + " is missing");
-  }
-  if (value.size() == keys.size()) return;
-  for (const auto& item : value.items()) {
-    bool known = false;
-    for (const char* key : keys) known = known || item.key() == key;
-    if (!known) fail("the key '" + of + printable(item.key(), 40) + "' is unknown");
-  }
-}
-
-const Json& JsonReader::array(const Json& value, const std::string& place) const {
-  if (!value.is_array()) fail(place + " is no array");
-  return value;
-}
-
-std::string JsonReader::text(const Json& value, const std::string& place) const {
-  if (!value.is_string()) fail(place + " is no string");
-  return value.get<std::string>();
-}
-
-std::uint64_t JsonReader::count(const Json& value, const std::string& place) const {
-  if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
-  return value.get<std::uint64_t>();
-}
-
-void JsonReader::digits(const std::string& text, std::size_t size, const std::string& place) const {
-  if (text.size() != size || text.find_first_not_of("0123456789abcdef") != text.npos)
-    fail(place + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
-}
-
-double JsonReader::length(const Json& value, const std::string& place) const {
-  const double x = value.is_number() ? value.get<double>() : -1;
-  if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
-  return x;
-}
-
-Certificate::SceneKey read_scene_key(const JsonReader& reader, const Json& value) {
-  reader.object(value, "scene", {"name", "objects", "triangles", "hash"});
-  Certificate::SceneKey scene{reader.text(value["name"], "scene.name"),
-                              reader.count(value["objects"], "scene.objects"),
-                              reader.count(value["triangles"], "scene.triangles"),
-                              reader.text(value["hash"], "scene.hash")};
-  reader.digits(scene.hash, 16, "scene.hash");
-  return scene;
-}
-
-Json scene_key_json(const Certificate::SceneKey& scene) {
-  return {{"name", scene.name},
-          {"objects", scene.objects},
-          {"triangles", scene.triangles},
-          {"hash", scene.hash}};
-}
-
-// ---- writing and reading a certificate as text ----
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -146,7 +23,132 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile 
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
-using Reader = JsonReader;
+/// The text as printable ASCII of at most `most` characters, for a message.
+std::string printable(std::string_view text, std::size_t most) {
+  std::string out;
+  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
+  if (text.size() > most) out += "...";
+  return out;
+}
+
+/// Reads the syntax alone. Bounds the number of values and the depth before anything is built, so
+/// that memory stays in proportion to the text.
+class Syntax : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool start_object(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool key(string_t& name) override {
+    if (keys_.back().insert(name).second) return true;
+    return stop("the key '" + printable(name, 40) + "' occurs twice");
+  }
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::json::exception& error) override {
+    // Without the end of the message, which quotes the text of the file.
+    const std::string_view fault = json_fault(error.what());
+    return stop("not JSON at byte " + std::to_string(position) + ": " +
+                printable(fault.substr(0, fault.find("; last read")), 120));
+  }
+
+  std::string reason;  // why it stopped
+
+ private:
+  bool stop(std::string why) {
+    reason = std::move(why);
+    return false;
+  }
+  bool count() {
+    constexpr std::uint64_t kMostValues = 10'000;  // views and assumptions are few
+    return ++values_ <= kMostValues || stop("more values than any certificate has");
+  }
+  bool enter() {
+    constexpr std::size_t kDeepest = 8;
+    if (keys_.size() == kDeepest) return stop("nested deeper than any certificate is");
+    keys_.emplace_back();
+    return count();
+  }
+  bool leave() {
+    keys_.pop_back();
+    return true;
+  }
+
+  std::uint64_t values_ = 0;
+  std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
+};
+
+/// Readers of values. place: where the value is, as in unattested.views[1].width. Each throws Error
+/// naming the file if the value is of another kind.
+class Reader {
+ public:
+  /// name: of the file.
+  explicit Reader(const std::string& name) : name_(name) {}
+
+  [[noreturn]] void fail(const std::string& reason) const { throw Error(name_, reason, kRemedy); }
+
+  /// Parses the whole text as one JSON value.
+  Json parse(std::string_view text) const {
+    if (text.find('\0') != text.npos)
+      fail("is not JSON, which has no byte 0");  // the parser would stop there
+    Syntax syntax;
+    if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);
+    return Json::parse(text.begin(), text.end());
+  }
+
+  /// Throws unless the value is an object with exactly these keys.
+  void object(const Json& value, const std::string& place,
+              const std::vector<const char*>& keys) const {
+    const std::string of = place.empty() ? "" : place + ".";
+    if (!value.is_object()) fail((place.empty() ? "the certificate" : place) + " is no object");
+    for (const char* key : keys) {
+      if (!value.contains(key)) fail(of + key + " is missing");
+    }
+    for (const auto& item : value.items()) {
+      if (std::ranges::find(keys, item.key()) == keys.end())
+        fail("the key '" + of + printable(item.key(), 40) + "' is unknown");
+    }
+  }
+  const Json& array(const Json& value, const std::string& place) const {
+    if (!value.is_array()) fail(place + " is no array");
+    return value;
+  }
+  std::string text(const Json& value, const std::string& place) const {
+    if (!value.is_string()) fail(place + " is no string");
+    return value.get<std::string>();
+  }
+  std::uint64_t count(const Json& value, const std::string& place) const {
+    if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
+    return value.get<std::uint64_t>();
+  }
+  std::string digits(const Json& value, std::size_t size, const std::string& place) const {
+    std::string out = text(value, place);
+    if (out.size() != size || out.find_first_not_of("0123456789abcdef") != out.npos)
+      fail(place + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
+    return out;
+  }
+  double length(const Json& value, const std::string& place) const {
+    const double x = value.is_number() ? value.get<double>() : -1;
+    if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
+    return x;
+  }
+
+ private:
+  const std::string& name_;
+};
+
+Certificate::SceneKey read_scene_key(const Reader& reader, const Json& value) {
+  reader.object(value, "scene", {"name", "objects", "triangles", "hash"});
+  return {reader.text(value["name"], "scene.name"), reader.count(value["objects"], "scene.objects"),
+          reader.count(value["triangles"], "scene.triangles"),
+          reader.digits(value["hash"], 16, "scene.hash")};
+}
 
 Certificate::Unasked read_not_asked(const Reader& reader, const Json& value) {
   reader.object(value, "not_asked", {"objects", "pairs"});
@@ -250,8 +252,14 @@ std::string to_text(const Certificate& certificate) {
   const std::uint64_t version = certificate.tile            ? kVersionOfTile
                                 : certificate.clearance > 0 ? kVersionWithClearance
                                                             : kVersion;
-  Json json = {
-      {"format", kFormat}, {"version", version}, {"scene", scene_key_json(certificate.scene)}};
+  const Certificate::SceneKey& scene = certificate.scene;
+  Json json = {{"format", kFormat},
+               {"version", version},
+               {"scene",
+                {{"name", scene.name},
+                 {"objects", scene.objects},
+                 {"triangles", scene.triangles},
+                 {"hash", scene.hash}}}};
   if (version > kVersion) json["clearance"] = finite(certificate.clearance);
   if (certificate.tile) json["tile"] = tile_json(*certificate.tile);
   json["not_asked"] = {{"objects", certificate.not_asked.objects},
@@ -273,9 +281,8 @@ std::string to_text(const Certificate& certificate) {
 }
 
 Certificate parse_certificate(std::string_view text, const std::string& name) {
-  constexpr std::uint64_t kMostValues = 10'000;  // views and assumptions are few
-  const Reader reader(name, kRemedy);
-  const Json root = reader.parse(text, kMostValues);
+  const Reader reader(name);
+  const Json root = reader.parse(text);
   // Format and version are checked before the keys, since another version has other keys.
   if (!root.is_object()) reader.fail("the certificate is no object");
   if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
@@ -284,28 +291,19 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   if (!version.is_number_unsigned() || (version != kVersion && !clearance))
     reader.fail("version is not 3, 4 or 5");
   Certificate certificate;
-  if (tile) {
-    reader.object(root, "",
-                  {"format", "version", "scene", "clearance", "tile", "not_asked", "claims",
-                   "list_sha256", "unattested", "evidence"});
-    certificate.tile = read_tile(reader, root["tile"]);
-  } else if (clearance) {
-    reader.object(root, "",
-                  {"format", "version", "scene", "clearance", "not_asked", "claims", "list_sha256",
-                   "unattested", "evidence"});
-  } else {
-    reader.object(root, "",
-                  {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
-                   "evidence"});
-  }
+  std::vector<const char*> keys = {"format", "version",     "scene",      "not_asked",
+                                   "claims", "list_sha256", "unattested", "evidence"};
+  if (clearance) keys.push_back("clearance");
+  if (tile) keys.push_back("tile");
+  reader.object(root, "", keys);
+  if (tile) certificate.tile = read_tile(reader, root["tile"]);
   if (clearance) certificate.clearance = reader.length(root["clearance"], "clearance");
   if (clearance && !tile && certificate.clearance == 0)
     reader.fail("clearance is 0, which version 3 is for");
   certificate.scene = read_scene_key(reader, root["scene"]);
   certificate.not_asked = read_not_asked(reader, root["not_asked"]);
   certificate.claims = read_claims(reader, root["claims"]);
-  certificate.list_sha256 = reader.text(root["list_sha256"], "list_sha256");
-  reader.digits(certificate.list_sha256, 64, "list_sha256");
+  certificate.list_sha256 = reader.digits(root["list_sha256"], 64, "list_sha256");
   certificate.run = read_run(reader, root["unattested"]);
   auto evidence = from_base64(reader.text(root["evidence"], "evidence"));
   if (!evidence) reader.fail("evidence is not base64 (padded, without line breaks)");

@@ -9,15 +9,6 @@
 
 namespace farcull {
 
-std::size_t NearPoints::Hash::operator()(const Cell& cell) const {
-  std::uint64_t hash = 0;
-  for (const double x : cell) {
-    hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
-  }
-  return hash;
-}
-
 std::uint32_t NearPoints::number(const Vec3& p, std::uint32_t own) {
   // A tolerance of 0 has no cells: each position is one.
   const Cell centre = cell_of(p);

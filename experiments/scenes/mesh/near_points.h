@@ -10,9 +10,23 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/random.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
+
+/// For maps of positions. Equal positions need equal bits: add 0.0, which makes -0.0 0.0.
+struct PositionHash {
+  std::size_t operator()(const std::array<double, 3>& at) const {
+    std::uint64_t hash = 0;
+    for (const double x : at) {
+      // The high bits of a double vary most.
+      hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x)) * kGolden;
+      hash ^= hash >> 32;
+    }
+    return hash;
+  }
+};
 
 /// Numbers for points, of which near ones share one.
 class NearPoints {
@@ -26,13 +40,10 @@ class NearPoints {
 
  private:
   using Cell = std::array<double, 3>;
-  struct Hash {
-    std::size_t operator()(const Cell& cell) const;
-  };
   Cell cell_of(const Vec3& p) const;
 
   double tolerance_;
-  std::unordered_map<Cell, std::vector<std::pair<Vec3, std::uint32_t>>, Hash> cells_;
+  std::unordered_map<Cell, std::vector<std::pair<Vec3, std::uint32_t>>, PositionHash> cells_;
 };
 
 struct WeldHint {

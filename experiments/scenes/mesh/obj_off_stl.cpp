@@ -25,6 +25,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/near_points.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -341,9 +342,7 @@ class Welder {
   explicit Welder(MeshBuilder& mesh) : mesh_(mesh) {}
 
   std::uint32_t vertex(const Vec3& p, long line) {
-    const Key key{std::bit_cast<std::uint64_t>(p.x() + 0.0),
-                  std::bit_cast<std::uint64_t>(p.y() + 0.0),
-                  std::bit_cast<std::uint64_t>(p.z() + 0.0)};
+    const std::array<double, 3> key = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
     const auto [entry, is_new] =
         index_.try_emplace(key, static_cast<std::uint32_t>(mesh_.vertex_count()));
     if (is_new) mesh_.add_vertex(p, line);
@@ -351,20 +350,8 @@ class Welder {
   }
 
  private:
-  using Key = std::array<std::uint64_t, 3>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t hash = 0;
-      for (const std::uint64_t word : key) {
-        // The high bits of a double vary most; the multiplier is 2^64 over the golden ratio.
-        hash = (std::rotl(hash, 21) ^ word) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-      }
-      return hash;
-    }
-  };
   MeshBuilder& mesh_;
-  std::unordered_map<Key, std::uint32_t, Hash> index_;
+  std::unordered_map<std::array<double, 3>, std::uint32_t, PositionHash> index_;
 };
 
 std::uint32_t little_word(std::string_view bytes, std::size_t at) {

@@ -1,4 +1,4 @@
-"""farcull distance, and its certificates: what `check` proves, and a forged one it does not."""
+"""farcull distance: bad input, and what it answers."""
 from cli_lab import rows, write
 
 NUMBERS = ['0', '-1', '1.5', '', 'x', '99999999999999999999']
@@ -24,10 +24,9 @@ bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
 bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
 bad threads '{threads}' | --threads: | {two} --threads {threads}
 bad inside maybe | --inside: .*give yes, parity or no | {two} --inside maybe
-bad parity with {proof} | --inside: parity is not what | {two} --inside parity {*proof}
+bad parity with --verify | --inside: parity is not what | {two} --inside parity --verify
 bad nearest of ignored objects | [^:]*: the scene ignores .* nearest objects .*; leave ignore out | {three} --ignore small:right --pairs nearest
 bad an accounting of ignored objects | [^:]*: the scene ignores .* accounting | {three} --ignore small:right --verify
-bad a certificate of ignored objects | [^:]*: the scene ignores .* certificate | {three} --ignore small:right --certificate c.json
 bad all ignored | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer | {two} --ignore small:right
 bad no such name | --ignore: .*none | {two} --ignore small:none
 bad no such option | --clearance: farcull distance has no such option | {two} --clearance 1
@@ -40,18 +39,16 @@ bad cells '{cells}' | --resolution: | {two} --voronoi reliable --resolution {cel
 each {0}: has no meaning without --voronoi | {two} | --device cpu | --resolution 64
 bad no such device | --device: 'toaster' is no device | {two} --voronoi published --device toaster
 each {0}: has no meaning with --voronoi | {two} --voronoi published | --pairs nearest | --k 2 | --within 1 | --self | --inside no
-  | --verify | --frames 3 | --certificate c.json
+  | --verify | --frames 3
 many.json << {"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}
 bad more pairs of objects than are answered
   | scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest | distance many.json
 bad a full disk for {output} | /dev/full: cannot be written: No space left | {two} {output} /dev/full
-0 a certificate | {two} --certificate whole.json
-$ for size in 0 1 100 300; do head -c $size whole.json >cut$size.json; done
-bad {size} bytes of a certificate | cut{size}\.json: not JSON at byte | check cut{size}.json small.obj right.obj
+bad no certificate | --certificate: farcull distance has no such option | {two} --certificate c.json
 """, open=OPEN, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj',
-     proof=['--verify', '--certificate c.json'], output=['--json', '--csv', '--certificate'],
+     output=['--json', '--csv'],
      within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS, cells=[*NUMBERS, '16385'],
-     threads=['0', '-1', '1025', 'x', ''], size=['0', '1', '100', '300'])
+     threads=['0', '-1', '1025', 'x', ''])
 rows(r"""
 bad more pairs than are answered | within: has (more than )?[0-9]+ pairs .*; give a smaller distance
   | distance random-soup --pairs all --within 100
@@ -105,8 +102,7 @@ comes.json << {"name": "comes", "objects": [{"mesh": "small.obj"}, {"mesh": "com
 # A distance beyond the largest double.
 right_end.obj << v 1.7e308 0 0; v 1.6e308 0 0; v 1.7e308 1 0; f 1 2 3
 left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
-0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - --certificate ends.json | ^ +"distance": null,$
-0 beyond the doubles, proved | check ends.json right_end.obj left_end.obj
+0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - | ^ +"distance": null,$
 0 frames of a built-in scene | distance two-spheres --frames 2 --inside no
 0 a diagram | {three} --voronoi published | ^0 small +1 right +1 +
   | ^nearest +[3-6] nearest objects of 3 objects; the diagram lost [0-9]+$
@@ -120,41 +116,3 @@ left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
 """, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'],
      closed='f 1 3 2; f 1 2 4; f 1 4 3; f 2 3 4; f 5 7 6; f 5 6 8; f 5 8 7; f 6 7 8',
      pairs=['objects', 'nearest'], frame=['1', '2', '3', '4'], form=['published', 'reliable'])
-
-# ---- certificates: two squares of two triangles each, 2 apart; a third one 3 above
-
-rows(r"""
-{height}.obj << v 0 0 {height}; v 1 0 {height}; v 0 1 {height}; v 1 1 {height}; f 1 2 3; f 2 3 4
-0 objects | distance {scene} --certificate objects.json
-0 objects | check objects.json {scene} | #0 ^proved: these 3 pairs of objects are at exactly these distances, and there are
-0 within | distance {scene} --within 3 --certificate within.json
-0 within | check within.json {scene} | #0 ^proved: these 2 pairs of objects .* no others are at distance 3 or less$
-0 nearest | distance {scene} --pairs nearest --certificate nearest.json
-0 nearest | check nearest.json {scene} | #0 ^proved: these 2 pairs of objects .* each object's nearest, and no others$
-0 all | distance {scene} --pairs all --within 3 --certificate all.json
-0 all | check all.json {scene} | #0 ^proved: these [0-9]+ pairs of triangles .* at distance 3 or less$
-0 self | distance two-tori --self --certificate self.json
-0 self | check self.json two-tori --self | #0 ^proved: these 3 pairs of objects are at exactly
-0 a built-in scene | distance far-apart --certificate far.json
-0 a built-in scene | check far.json far-apart | #0 ^proved:
-# A false distance; an entry that is not there; a text cut short; another scene.
-$ sed 's|"4/1"|"5/1"|' objects.json >forged.json
-1 forged | check forged.json {scene} | #0 ^refuted: the square of the distance in distances\[0\]
-  | ^  pair: 0 triangle 0 and 2 triangle 0$ | ^  the exact square of its distance: 4/1, so about 2$
-$ sed '/"objects":\[0,1\]/d' objects.json >shorter.json
-1 left out | check shorter.json {scene} | #0 ^refuted: the objects of these triangles are not listed$
-$ head -c 400 objects.json >cut.json
-bad cut short | cut\.json: not JSON | check cut.json {scene}
-1 another scene | check objects.json 0.obj 2.obj | #0 ^not proved: the certificate is of another scene: objects[ ]
-list.csv << object_a,triangle_a,object_b,triangle_b
-bad with a list | --pairs: | check objects.json {scene} --pairs list.csv
-bad with a clearance | --clearance: | check objects.json {scene} --clearance 1
-bad over the scene | --certificate: | distance {scene} --certificate 0.obj
-# Frames: of the squares at heights 1 and 2.
-0 frames | distance 0.obj %d.obj --frames 1:2 --certificate f_%d.json
-0 frames | check f_%d.json 0.obj %d.obj --frames 1:2 | #0 ^ *frame[ ]
-  | ^proved: in each of 2 frames the distances are exactly these
-$ cp f_1.json f_2.json
-1 another frame | check f_%d.json 0.obj %d.obj --frames 2:2 | #0 ^ *frame[ ]
-  | not proved: the certificate is of another scene: hash
-""", height=['0', '1', '2', '5'], scene='0.obj 2.obj 5.obj')

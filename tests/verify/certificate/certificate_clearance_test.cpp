@@ -4,6 +4,7 @@
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
+#include "tests/lab/reference.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 

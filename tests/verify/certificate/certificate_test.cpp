@@ -6,6 +6,7 @@
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
+#include "tests/lab/reference.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/certificate/pair_list.h"

@@ -21,11 +21,6 @@ Proof.
   - intros d. rewrite (qdot_same _ _ _ P), qdot_mix. reflexivity.
 Qed.
 
-Lemma weighted_le w f g : (forall i, 0 <= w i) -> (forall i, w i * f i <= w i * g i) ->
-  weighted w f <= weighted w g.
-Proof.
-  intros W L. unfold weighted. pose proof (L I1). pose proof (L I2). pose proof (L I3). lra.
-Qed.
 (** If all values that have weight are at most m, and the mean is m, then those with weight are m. *)
 Lemma mean_tight w f m i :
   (forall i, 0 <= w i) -> weighted w (fun _ => 1) == 1 -> (forall i, w i == 0 \/ f i <= m) ->

@@ -1,4 +1,4 @@
 (** Writes the checker as OCaml. Integers become those of zarith. *)
 From Coq Require Import ExtrOcamlBasic ExtrOcamlZBigInt.
-Require Import Checker DistanceChecker.
-Extraction "checker.ml" check keep everything merge_tiles check_distances.
+Require Import Checker.
+Extraction "checker.ml" check keep everything merge_tiles.

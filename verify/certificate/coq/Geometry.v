@@ -114,11 +114,6 @@ Qed.
 (** * Distances *)
 Lemma square (a : Q) : 0 <= a * a.
 Proof. destruct (Qlt_le_dec a 0); nra. Qed.
-Lemma squared_distance_same p p' q q' : same p p' -> same q q' ->
-  squared_distance p q == squared_distance p' q'.
-Proof.
-  intros (A & B & C) (D & E & F). unfold squared_distance. now rewrite A, B, C, D, E, F.
-Qed.
 Lemma near_sym D a b : near D a b -> near D b a.
 Proof.
   intros (p & q & A & B & L). exists q, p. split; [assumption|]. split; [assumption|].

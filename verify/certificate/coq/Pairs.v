@@ -84,27 +84,6 @@ Proof.
   rewrite in_app_iff, E1, E2, A. simpl. tauto.
 Qed.
 
-Lemma divide_permutation f l : forall yes no yes' no', divide f l yes no = (yes', no') ->
-  Permutation (l ++ yes ++ no) (yes' ++ no').
-Proof.
-  induction l as [|a l IH]; intros yes no yes' no' E; cbn [divide] in E.
-  - injection E as <- <-. reflexivity.
-  - destruct (f a); apply IH in E; rewrite <- E; cbn [app].
-    + apply Permutation_middle.
-    + rewrite !app_assoc. apply Permutation_middle.
-Qed.
-Lemma build_permutation n : forall l, Permutation (leaves (build n l)) l.
-Proof.
-  assert (L : forall l, Permutation (leaves (leaf l)) l).
-  { intros l. destruct (leaf_sound l) as [_ ->]. reflexivity. }
-  induction n as [|n IH]; intros l; [apply L|]. cbn [build].
-  destruct l as [|a [|a2 [|a3 [|a4 [|a5 l]]]]]; try apply L.
-  set (m := a :: a2 :: a3 :: a4 :: a5 :: l).
-  destruct (divide (halve a m) m [] []) as [yes no] eqn:D. apply divide_permutation in D.
-  rewrite !app_nil_r in D. clearbody m.
-  destruct yes as [|u yes]; [apply L|]. destruct no as [|v no]; [apply L|].
-  unfold node. cbn [leaves]. rewrite (IH (u :: yes)), (IH (v :: no)). now symmetry.
-Qed.
 
 (** * The search for partners *)
 Lemma pick_all a l : forall found b,

@@ -249,9 +249,6 @@ let other_scene root found =
   not (Z.equal (number_of key "objects") (Z.of_int found.objects))
   || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
   || Json.text (Json.member "hash" key) <> found.fnv
-let say_hashes text found =
-  say "certificate sha256 %s" (sha256 text);
-  say "scene       sha256 %s" found.sha
 
 (* Of one certificate: the tile, the rows, the clearance and whether the scene has objects that are
    self, if it is proved; else what it is. *)
@@ -262,7 +259,8 @@ let check_file scene certificate =
   let clearance = Json.clearance root and piece = tile_of root in
   let reach, less = reach_of clearance in
   let found = read_scene scene piece reach in
-  say_hashes text found;
+  say "certificate sha256 %s" (sha256 text);
+  say "scene       sha256 %s" found.sha;
   let unasked = Json.member "not_asked" root in
   let has_self = found.has_self in
   if other_scene root found
@@ -291,56 +289,6 @@ let check_file scene certificate =
           (List.length rows);
         Ok (piece, rows, clearance, has_self)
       end
-
-(* Of a certificate of distances. *)
-let check_distance_file scene text =
-  let root = Json.distances text in
-  let found = read_scene scene everything zero in
-  say_hashes text found;
-  let query = Json.member "query" root in
-  let within = match Json.member "within" query with
-    | Json.Number s -> Some (double_of (Int64.bits_of_float (float_of_string s)))
-    | _ -> None in
-  let question = match Json.text (Json.member "pairs" query) with
-    | "nearest" -> Of_nearest (Json.whole (Json.member "k" query))
-    | "all" -> Of_all
-    | _ -> Of_objects in
-  let word_of = function
-    | Json.String "none" -> Neither | Json.String "a" -> First_in | Json.String "b" -> Second_in
-    | Json.String _ -> Not_closed | _ -> Unsaid in
-  let entry_of v =
-    let two key = match Json.member key v with
-      | Json.Array [ a; b ] -> (Json.whole a, Json.whole b) | _ -> bad "two numbers are missing" in
-    let object_a, object_b = two "objects" and triangle_a, triangle_b = two "triangles" in
-    let qnum, qden = Json.fraction (Json.member "squared" v) in
-    { nearest = { object_a; triangle_a; object_b; triangle_b; neighbours = false };
-      squared = { qnum; qden }; says = word_of (Json.member "inside" v) } in
-  let entries = match Json.member "distances" root with
-    | Json.Array l -> List.rev (List.rev_map entry_of l) | _ -> [] in
-  let key e = let r = e.nearest in
-    [ r.object_a; r.object_b ] @ if question = Of_all then [ r.triangle_a; r.triangle_b ] else [] in
-  let rec sorted = function
-    | e :: (e' :: _ as rest) -> List.compare Z.compare (key e) (key e') < 0 && sorted rest
-    | _ -> true in
-  if other_scene root found then not_proved "the certificate is of another scene"
-  else if not (sorted entries) then not_proved "an answer is there twice, or not in order"
-  else
-    (* Of all triangles: in the order in which the checker goes through the pairs. *)
-    let place e = let r = e.nearest in [ r.object_a; r.triangle_a; r.object_b; r.triangle_b ] in
-    let entries = if question <> Of_all then entries
-      else List.sort (fun e e' -> List.compare Z.compare (place e) (place e')) entries in
-    match check_distances found.kept question within entries with
-    | Bad_limit -> bad "the limit is negative"
-    | Bad_entries -> not_proved "an answer is beyond the limit, or not about nearest objects"
-    | Bad_entry e -> not_proved ("this is not the distance of the triangles: " ^ pair e.nearest)
-    | Bad_word e -> not_proved ("this is not so about what is inside: " ^ pair e.nearest)
-    | Bad_pair r -> not_proved ("a pair is missing, or nearer than its objects are said to be: " ^ pair r)
-    | Missing_objects -> not_proved "two objects are not there"
-    | Distances_proved ->
-      say "proved: these %d answers are right, and none%s is left out" (List.length entries)
-        (if within = None then "" else " within the limit");
-      say "features are not looked at";
-      Ok ()
 
 (* The certificates of all tiles of a scene, in the order of the tiles. *)
 let check_tiles scene certificates =
@@ -376,11 +324,7 @@ let () =
     | Bad text | Json.Bad text | Sys_error text -> failed 2 text
     | Stack_overflow -> failed 4 "the stack is too small (ulimit -s)"
     | Out_of_memory -> failed 4 "there is too little memory" in
-  let one certificate scene =
-    run (fun () ->
-        let text = read_file certificate in
-        if Json.is_of_distances text then check_distance_file scene text
-        else Result.map ignore (check_file scene certificate)) in
+  let one certificate scene = run (fun () -> Result.map ignore (check_file scene certificate)) in
   let rec each worst = function
     | certificate :: scene :: rest -> each (max worst (one certificate scene)) rest
     | _ -> worst in
