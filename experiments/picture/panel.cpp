@@ -143,9 +143,7 @@ std::string method_title(const RunOptions& options) {
 std::string panel_title(const RunOptions& options) {
   std::string out = method_title(options);
   if (out != to_string(options.method)) out += ",";
-  const int resolution = resolution_of(options);
-  const bool has = looks(options.method);
-  if (has && resolution > 0) out += fmt::format(" at {} px", resolution);
+  if (draws(options.method)) out += fmt::format(" at {} px", resolution_of(options));
   return out;
 }
 

@@ -85,20 +85,4 @@ R extent(const R& sum, const SlabConstants& k) {
   return sum + abs(sum) * R(k.eight_u);
 }
 
-// core/pairs/interval.glsl: its constants, and the steps.
-struct IntervalConstants {
-  double bound_unit, clip_unit;
-};
-
-/// By how much bounds grow; `size` is the largest |coordinate| along the axis.
-template <class R>
-R bound_error(const R& widen, const R& size, const IntervalConstants& k) {
-  return widen + R(k.bound_unit) * (size + widen);
-}
-/// By how much a rectangle and an interval of depths grow; `size` is that of the bounds.
-template <class R>
-R margin(const R& widen, const R& size, const IntervalConstants& k) {
-  return (widen + R(k.clip_unit) * size) + R(k.clip_unit);
-}
-
 }  // namespace farcull::proofs

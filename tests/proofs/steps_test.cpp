@@ -14,15 +14,11 @@ namespace farcull::glsl::proved {
 
 #include "offsets/minkowski.glsl"
 }  // namespace farcull::glsl::proved
-namespace farcull::glsl::proved_intervals {
-#include "core/pairs/interval.glsl"
-}  // namespace farcull::glsl::proved_intervals
 
 namespace farcull::proofs {
 namespace {
 
 namespace kernel = glsl::proved;
-namespace intervals = glsl::proved_intervals;
 using glsl::vec2;
 using glsl::vec4;
 
@@ -118,23 +114,6 @@ TEST(steps, OfTheExtentHaveTheBitsOfTheKernel) {
     }
     const float sum = most + e + ball(v[0].w, n.x * n.x, n.y * n.y, n.z * n.z, kSlab);
     EXPECT_TRUE(same(kernel::far_extent(n, v[0], v[1], v[2]), extent(sum, kSlab)));
-  }
-}
-
-TEST(steps, OfIntervalsHaveTheBitsOfTheKernel) {
-  Numbers number{RandomNumbers(4)};
-  const IntervalConstants k = {intervals::kBoundUnit, intervals::kClipUnit};
-  for (int i = 0; i < kCases; ++i) {
-    vec4 p[3];
-    for (vec4& corner : p) corner = {number(4096), number(4096), number(1e5), 0};
-    const float w = std::fabs(number(1)) + 0x1p-10f;
-    vec4 lo, hi;
-    intervals::far_bounds(p[0], p[1], p[2], {w, w, w, 0}, lo, hi);
-    const float least = min(min(p[0].x, p[1].x), p[2].x), most = max(max(p[0].x, p[1].x), p[2].x);
-    const float e = bound_error(w, max(std::fabs(least), std::fabs(most)), k);
-    EXPECT_TRUE(same(lo.x, least - e) && same(hi.x, most + e));
-    const vec4 grown = intervals::far_margin(lo, hi, {w, w, w, 0});
-    EXPECT_TRUE(same(grown.x, margin(w, max(std::fabs(lo.x), std::fabs(hi.x)), k)));
   }
 }
 

@@ -159,7 +159,7 @@ TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
     const SuitePairs pairs = asked_pairs(family);
     for (std::size_t i = 0; i < pairs.pairs.size(); i += 9) {
       const SuitePair& pair = pairs.pairs[i];
-      for (const Method method : {Method::far, Method::far_pairs}) {
+      for (const Method method : {Method::far, Method::boxes}) {
         EXPECT_EQ(found_by(method, session, scene_of(pair)), collides(pair.kind))
             << to_string(method) << ": " << family.name << " " << pair.id << ", "
             << to_string(pair.kind);
@@ -173,7 +173,7 @@ TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
   for (const SuiteMesh& mesh : asked_meshes()) {
     const std::string& name = mesh.name;
     RunOptions options;
-    options.method = Method::far_pairs;
+    options.method = Method::boxes;
     options.device = asked_device();
     options.verify = false;
     const Record record = run(mesh.scene, options, session);
