@@ -23,7 +23,7 @@ std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std:
 
 // Pairs of blocks that overlap and of which one moved, each once. moved: per block; moved_blocks:
 // the blocks that did, ascending.
-BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<Meeting>& meetings,
+BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectMeeting>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
   struct Question {
@@ -36,7 +36,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<Meeting>& m
          k != moved_blocks.end() && *k < blocks.first[of + 1]; ++k)
       questions.push_back({*k, of, with, second});
   };
-  for (const Meeting& meeting : meetings) {
+  for (const ObjectMeeting& meeting : meetings) {
     ask(meeting.a, meeting.b, false);
     if (meeting.a != meeting.b) ask(meeting.b, meeting.a, true);
   }

@@ -41,9 +41,9 @@ ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
 }
 
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
-                                   std::span<const Meeting> meetings) {
+                                   std::span<const ObjectMeeting> meetings) {
   std::vector<Box> out(blocks.objects.size(), Box::empty());
-  for (const Meeting& meeting : meetings) {
+  for (const ObjectMeeting& meeting : meetings) {
     const Box common = intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
     out[meeting.a].add(common);
     out[meeting.b].add(common);
@@ -63,7 +63,7 @@ namespace {
 // Whether a stretched object can meet another one or itself.
 bool is_uneven(const TriangleBlocks& blocks, const ObjectMeetings& meetings) {
   if (blocks.stretched.empty()) return false;
-  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const Meeting& meeting) {
+  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectMeeting& meeting) {
            return blocks.is_stretched(meeting.a) || blocks.is_stretched(meeting.b);
          });
 }
@@ -78,13 +78,13 @@ constexpr std::uint32_t kBlocksOfPart = 256;
 
 // The most pairs of blocks of a meeting: kPairsPerBlock for each block, whether or not it overlaps
 // any.
-std::size_t most_pairs(const TriangleBlocks& blocks, const Meeting& meeting) {
+std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectMeeting& meeting) {
   const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
   return kPairsPerBlock * (blocks.count(meeting.a) + b);
 }
 
 std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
-                                  const std::vector<Meeting>& meetings) {
+                                  const std::vector<ObjectMeeting>& meetings) {
   std::vector<MeetingPart> parts;
   for (std::uint32_t k = 0; k < meetings.size(); ++k) {
     const std::uint32_t a = meetings[k].a, end = blocks.first[a] + blocks.count(a);
@@ -120,7 +120,8 @@ void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
 }
 
 // Puts the pairs of each meeting where they belong. Returns false if too many of a meeting overlap.
-bool sort_in(const std::vector<Meeting>& all, std::span<MeetingPart> parts, BlockMeetings& out) {
+bool sort_in(const std::vector<ObjectMeeting>& all, std::span<MeetingPart> parts,
+             BlockMeetings& out) {
   BlockCounter counter(out.of->ranges.size());
   std::size_t between = 0, inside = 0;
   for (const MeetingPart& part : parts)
@@ -129,7 +130,7 @@ bool sort_in(const std::vector<Meeting>& all, std::span<MeetingPart> parts, Bloc
   out.pairs.inside.reserve(inside);
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const std::uint32_t own = parts[begin].meeting;
-    const Meeting& meeting = all[own];
+    const ObjectMeeting& meeting = all[own];
     std::size_t pairs = 0;
     counter.start();
     for (; end < parts.size() && parts[end].meeting == own; ++end) {
@@ -161,7 +162,7 @@ enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 // pair more than they may have, so that the answer does not depend on threads. find(meeting, part,
 // most): appends pairs to the part, as pair_blocks().
 template <class Find>
-Found find_blocks(const TriangleBlocks& blocks, const std::vector<Meeting>& meetings,
+Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectMeeting>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
   std::vector<std::atomic<std::size_t>> found(meetings.size());
   std::atomic<std::size_t> sum = 0;
@@ -173,7 +174,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<Meeting>& meet
     MeetingPart scratch;  // so that a part has room for its own pairs only
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
-      const Meeting& meeting = meetings[part.meeting];
+      const ObjectMeeting& meeting = meetings[part.meeting];
       std::atomic<std::size_t>& of_meeting = found[part.meeting];
       const std::size_t most = std::min(most_pairs(blocks, meeting), most_of_all);
       if (sum > most_of_all) return;
@@ -218,7 +219,7 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
 
 // All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
-                                               const std::vector<Meeting>& meetings,
+                                               const std::vector<ObjectMeeting>& meetings,
                                                std::span<const Box> regions, double clearance,
                                                unsigned threads) {
   BlockMeetings out;
@@ -226,11 +227,11 @@ std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
   if (!out.oriented) return std::nullopt;
   out.of = {out.oriented, &out.oriented->blocks};
   std::vector<MeetingPart> parts = parts_of(*out.of, meetings);
-  const Found found = find_blocks(*out.of, meetings, threads, parts,
-                                  [&](const Meeting& meeting, MeetingPart& part, std::size_t most) {
-                                    pair_oriented(*out.oriented, meeting.a, meeting.b, part.from,
-                                                  part.to, most, part.pairs);
-                                  });
+  const Found found = find_blocks(
+      *out.of, meetings, threads, parts,
+      [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
+        pair_oriented(*out.oriented, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      });
   if (found != Found::all || !sort_in(meetings, parts, out) ||
       overlaps_often(scene, out, clearance, kOrientedPerTriangle)) {
     return std::nullopt;
@@ -260,7 +261,7 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings
   std::vector<MeetingPart> parts = parts_of(blocks, meetings.all);
   const Found found =
       find_blocks(blocks, meetings.all, threads, parts,
-                  [&](const Meeting& meeting, MeetingPart& part, std::size_t most) {
+                  [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
                     pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
                   });
   if (found == Found::all && sort_in(meetings.all, parts, out.blocks) &&

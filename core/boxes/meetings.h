@@ -18,13 +18,13 @@ namespace farcull {
 
 /// Two objects whose boxes, grown by half the clearance, overlap, or one that is tested against
 /// itself (a == b). a has no more blocks than b.
-struct Meeting {
+struct ObjectMeeting {
   std::uint32_t a, b;
 };
 
 /// All meetings of a scene.
 struct ObjectMeetings {
-  std::vector<Meeting> all;
+  std::vector<ObjectMeeting> all;
   std::uint64_t pairs = 0;  // of two objects
   std::uint64_t self = 0;   // of an object with itself
   bool crowded = false;     // there are more pairs of objects than 8 for each block. They are not
@@ -35,7 +35,8 @@ ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored);
 
 /// Per object the box in which it can meet another one or itself; empty if it cannot.
-std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks, std::span<const Meeting> meetings);
+std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
+                                   std::span<const ObjectMeeting> meetings);
 
 /// Boxes of blocks decide if at most so many pairs of them overlap for each block that overlaps
 /// any, in each meeting.

@@ -281,7 +281,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
                        const Scene& scene, const Truth& truth, Session& session,
                        const GlContext& context) {
   const View view = parse_view(*arguments.depth_view);
-  const bool promised = promises(options) && session.verdict(Reliance::drawing).holds;
+  const bool promised = promises(options) && session.verdict().holds;
   const ViewRun run = look(options, *arguments.depth_view, scene, session);
   const std::vector<std::uint8_t>& bits = run.found.bits;
 
