@@ -206,7 +206,9 @@ BlockMeetings along_axes(const Scene& scene, double clearance,
   const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
   gather_scattered(scene, clearance, regions, 2, *blocks);
   const BlockTrees trees(*blocks, regions);
-  BlockMeetings out{.of = blocks, .meetings = meetings.all.size()};
+  BlockMeetings out;
+  out.of = blocks;
+  out.meetings = meetings.all.size();
   for (const auto& [a, b] : meetings.all) {
     pair_blocks(trees, a, b, blocks->first[a], blocks->first[a] + blocks->count(a), SIZE_MAX,
                 a == b ? out.pairs.inside : out.pairs.between);

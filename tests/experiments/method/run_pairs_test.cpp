@@ -1,4 +1,4 @@
-// FAR pairs as a method of farcull run, on the CPU.
+// The method boxes as farcull run has it.
 #include <mutex>
 #include <nlohmann/json.hpp>
 

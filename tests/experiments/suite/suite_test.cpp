@@ -153,7 +153,7 @@ bool found_by(Method method, Session& session, const Scene& scene) {
   return record.collisions.pairs.size() + record.collisions.neighbour_pairs.size() > 0;
 }
 
-TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
+TEST(SuiteAnswers, FarAndBoxesAreRightAboutASampleThatIsDrawn) {
   Session session(asked_device(), 1, {});
   for (const PairFamily& family : pair_families()) {
     const SuitePairs pairs = asked_pairs(family);
@@ -168,7 +168,7 @@ TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
   }
 }
 
-TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
+TEST(SuiteAnswers, BoxesFindTheListsOfAllMeshes) {
   Session session(asked_device(), 0, {});
   for (const SuiteMesh& mesh : asked_meshes()) {
     const std::string& name = mesh.name;
