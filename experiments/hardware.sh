@@ -142,11 +142,11 @@ if [[ ! -e $out/steps/doctor ]]; then
   refuse "farcull doctor --device $device has no result; --device software tries the script without a GPU"
 fi
 step misses 3 "missed pairs of two bunnies" build/farcull compare two-bunnies \
-  --methods far,far-pairs,cullide,exact --offsets obb,exact --resolutions 128,512 --device "$device" --json "$out/misses.json"
+  --methods far,boxes,cullide,exact --offsets obb,exact --resolutions 128,512 --device "$device" --json "$out/misses.json"
 bench 3 two-bunnies
 for size in 10000 30000 100000 300000 1000000 3000000 10000000; do
-  step "field-$size" 3 "far-pairs on a field of $size triangles" build/farcull bench "field:$size" \
-    --peers none --methods far-pairs --device "$device" --json "$out/field-$size.json"
+  step "field-$size" 3 "boxes on a field of $size triangles" build/farcull bench "field:$size" \
+    --peers none --methods boxes --json "$out/field-$size.json"
 done
 mapfile -t moving < <(moving_scenes)
 for scene in "${moving[@]}"; do
@@ -160,10 +160,6 @@ else
 fi
 for scene in two-bunnies armadillo-elephant dragon-bunny near-copy bunnies-far-apart; do
   step "reliability-$scene" 3 "missed pairs of $scene, and of its copies" bash experiments/reliability.sh "$scene"
-done
-mapfile -t runs < <(bash experiments/reliability.sh pairs --list)
-for run in "${runs[@]}"; do
-  step "pairs-$(safe "$run")" 3 "missed pairs of far-pairs, $run" bash experiments/reliability.sh pairs "$run"
 done
 for scene in "${moving[@]}"; do
   step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability.sh motion "$scene"

@@ -5,10 +5,9 @@
 #     on the packaged scenes, at resolutions 64 to 2048; with fewer resolutions copies of the scenes as well: moved by 1e6 along the
 #     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. It also prints how many pairs are at risk (lost
 #     with 0.9 of the radius). About half an hour on two cores without a GPU.
-#   bash experiments/reliability.sh pairs [SCENE...]       build/reliability-pairs: far-pairs at 32 to 4096 px, in one view, in three,
-#     and as the scene decides, by both back ends, on packaged meshes, on needles and inside objects. --list prints all scenes. The
-#     back ends are the cores of the CPU and Mesa's software device; DEVICE=hardware asks for another second one.
-#   bash experiments/reliability.sh motion [SCENE...]      build/reliability-motion: far-pairs, i-collide and FAR with both offsets on
+#   bash experiments/reliability.sh boxes [SCENE...]       build/reliability-boxes: boxes on packaged meshes, on needles and inside
+#     objects; the accounting decides every pair. --list prints all scenes.
+#   bash experiments/reliability.sh motion [SCENE...]      build/reliability-motion: boxes, i-collide and FAR with both offsets on
 #     every frame of every built-in scene that moves (FRAMES=100, METHODS); the accounting decides every pair of each frame. Hours.
 #   bash experiments/reliability.sh distances [SCENE...]   build/reliability-distances: distances of every built-in scene, with the
 #     second half of its objects moved away by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene, and of 100,000 small random scenes
@@ -19,20 +18,20 @@
 set -euo pipefail
 
 form=meshes
-case ${1-} in pairs | motion | distances)
+case ${1-} in boxes | motion | distances)
   form=$1
   shift
   ;;
 esac
-# Scenes of far-pairs with their options.
-pairs_runs=(
+# Scenes of boxes with their options.
+boxes_runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"
   "crumpled:20000" "rope:20000" "spheres:40000" "fans:8000" "funnel"
   "mannequin-devil --self" "armadillo --self" "bunny --self" "degenerate --self" "two-spheres --clearance 0.01"
 )
-if [[ $form == pairs && ${1-} == --list ]]; then
-  printf '%s\n' "${pairs_runs[@]}"
+if [[ $form == boxes && ${1-} == --list ]]; then
+  printf '%s\n' "${boxes_runs[@]}"
   exit 0
 fi
 
@@ -83,34 +82,24 @@ risk_of() {
   printf 'at risk at 0.9 of the radius, boxes of %s:%s\n\n' "$2" "${risk%,}"
 }
 
-# pairs_run SCENE [OPTIONS]: far-pairs by both back ends.
-pairs_run() {
-  local on views resolutions record
-  for on in cpu "${DEVICE:-software}"; do
-    if [[ $on == native ]]; then continue; fi # that is cpu
-    for views in auto z x,y,z; do
-      resolutions=auto
-      if [[ $views != auto ]]; then resolutions=32,128,512,2048,4096; fi
-      # The accounting of the box-hostile scenes decides tens of millions of pairs each time.
-      if [[ $1 == needles-* && $views != auto ]]; then resolutions=128; fi
-      record="$out/${*// /_}"
-      record="${record// /_}.$on.${views//,/}.json"
-      # A row ends in: resolution, objects, triangles, candidates, colliding, (+ and neighbours,) missed, two times.
-      build/farcull compare "$@" --methods far-pairs --device "$on" --views "$views" --resolutions "$resolutions" --json "$record" |
-        awk -v run="$*" -v device="$on" -v views="$views" '/^method / { colliding = /neighbours/ ? 5 : 3 }
-          $1 == "far-pairs" && $2 == "-" {
-            pairs = $(NF - colliding); candidates = $(NF - colliding - 1)
-            row = sprintf("%-30s %-9s %-6s %11s %11s %10s", run, device, views, $(NF - colliding - 4), candidates, pairs)
-            gsub(",", "", pairs); gsub(",", "", candidates)
-            printf "%s %12s %7s\n", row, (pairs > 0 ? sprintf("%.2f", candidates / pairs) : "-"), $(NF - 2)
-          }' || failed+=("$* $on $views")
-    done
-  done
+# boxes_run SCENE [OPTIONS]
+boxes_run() {
+  local record="$out/${*// /_}"
+  record="${record// /_}.json"
+  # A row ends in: candidates, colliding, (+ and neighbours,) missed, two times.
+  build/farcull compare "$@" --methods boxes --json "$record" |
+    awk -v run="$*" '/^method / { colliding = /neighbours/ ? 5 : 3 }
+      $1 == "boxes" && $2 == "-" {
+        pairs = $(NF - colliding); candidates = $(NF - colliding - 1)
+        row = sprintf("%-30s %11s %10s", run, candidates, pairs)
+        gsub(",", "", pairs); gsub(",", "", candidates)
+        printf "%s %12s %7s\n", row, (pairs > 0 ? sprintf("%.2f", candidates / pairs) : "-"), $(NF - 2)
+      }' || failed+=("$*")
 }
 
 # moving_scene SCENE: all frames by METHODS.
 moving_scene() {
-  local frames=${FRAMES:-100} methods=${METHODS:-far-pairs,i-collide,far}
+  local frames=${FRAMES:-100} methods=${METHODS:-boxes,i-collide,far}
   local record="$out/$1.$frames.$methods.$commit"
   if [[ -s $record.json ]]; then
     echo "$1: done before, see $record.txt"
@@ -160,12 +149,12 @@ case $form in
     if ((!$#)); then scenes=(two-bunnies armadillo-elephant dragon-bunny near-copy bunnies-far-apart); fi
     for scene in "${scenes[@]}"; do mesh_scene "$scene"; done
     ;;
-  pairs)
-    if ((!$#)); then scenes=("${pairs_runs[@]}"); fi
-    printf '%-30s %-9s %-6s %11s %11s %10s %12s %7s\n' scene device views resolution candidates colliding cand./coll. missed
+  boxes)
+    if ((!$#)); then scenes=("${boxes_runs[@]}"); fi
+    printf '%-30s %11s %10s %12s %7s\n' scene candidates colliding cand./coll. missed
     for run in "${scenes[@]}"; do
       read -ra words <<<"$run"
-      pairs_run "${words[@]}"
+      boxes_run "${words[@]}"
     done
     ;;
   motion)

@@ -4,12 +4,12 @@
 #   bash experiments/results.sh [OPTIONS]            studies.md: every study of `farcull experiment all`. About twenty minutes on
 #                                                    two cores without a GPU; the page was measured on such a machine.
 #   bash experiments/results.sh cloth [OPTIONS]      cloth.md: 500 frames of a cloth of 20,000 triangles at each of four
-#                                                    stiffnesses, every frame accounted for pair by pair by far-pairs, and every
+#                                                    stiffnesses, every frame accounted for pair by pair by boxes, and every
 #                                                    tenth by far. Hours on one core. --quick: 200 triangles, 12 frames, seconds.
 #   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
 #   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 20 scenes.
-#   bash experiments/results.sh profile [SCENE...]   profile.md: the stages of far-pairs beside the least that the machine must
+#   bash experiments/results.sh profile [SCENE...]   profile.md: the stages of boxes beside the least that the machine must
 #                                                    do, and beside the fastest library, with one and two threads. Minutes.
 # OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
 # the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit; frames of

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures far-pairs on fields of 10^4 to 10^7 triangles of constant density. Prints time, memory beyond the input, candidates for
+# Measures boxes on fields of 10^4 to 10^7 triangles of constant density. Prints time, memory beyond the input, candidates for
 # each true pair, and the exponent of time over triangles: the slope of a least-squares line through the logarithms, 1 for linear
 # growth. The arguments are the numbers of triangles.
 #   SCENE=crumpled bash experiments/scaling.sh 10000 100000 1000000     another scene that takes a number
@@ -17,7 +17,7 @@ scene=${SCENE:-field}
 record=build/scaling.json
 printf '%12s %10s %10s %10s %9s %12s %10s %11s\n' triangles ms min max MiB candidates pairs cand./pairs
 for size in "${sizes[@]}"; do
-  build/farcull bench "$scene:$size" --peers none --methods far-pairs --device cpu --repeat 5 --json "$record" >/dev/null
+  build/farcull bench "$scene:$size" --peers none --methods boxes --device cpu --repeat 5 --json "$record" >/dev/null
   value() { sed -nE "0,/\"$1\": /s/.*\"$1\": *(-?[0-9.e+-]+).*/\1/p" "$record"; }
   printf '%s %s %s %s %s %s %s\n' "$(value triangles)" "$(value median)" "$(value min)" "$(value max)" "$(value peak_mib)" \
     "$(value candidate_pairs)" "$(value pairs)"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Is a commit slower than another? Builds both, each from a clone in build/speed-guard/, and measures them in turn: the single
-# kernels (farcull_kernels_bench, CPU time) and far-pairs on the CPU on scenes (farcull bench). The time of a scene in a turn is that
+# kernels (farcull_kernels_bench, CPU time) and boxes on scenes (farcull bench). The time of a scene in a turn is that
 # of its fastest run, which other load on the machine disturbs least. For each row it prints the fastest time of each commit, and the
 # median over the turns of the time of HEAD over that of BASE in the same turn, with the least and the greatest of these ratios.
 #
@@ -11,7 +11,7 @@
 # is skipped and named. Settings are variables of the environment:
 #   TURNS=5         how often both are measured; they start alternately
 #   REPEAT=5        runs of a scene in a turn, of which the fastest counts
-#   THREADS=N       cores of far-pairs; default all there are. Where others use them, 1 is disturbed far less
+#   THREADS=N       cores of boxes; default all there are. Where others use them, 1 is disturbed far less
 #   PERCENT=10      a row is a warning if the median ratio is that much above 1,
 #   MS=0.3          and the fastest time is also that many milliseconds longer on a scene,
 #   KERNEL_NS=5     or that many nanoseconds longer in a kernel
@@ -71,7 +71,7 @@ clone_and_build() {
 run_scene() {
   local -a scene
   read -ra scene <<<"$2"
-  "${tree[$1]}/build/farcull" bench "${scene[@]}" --peers none --methods far-pairs --device cpu --threads "$threads" \
+  "${tree[$1]}/build/farcull" bench "${scene[@]}" --peers none --methods boxes --device cpu --threads "$threads" \
     --repeat "$3" --json "$out/run.json" >"$out/run.log" 2>&1 || return
   awk -F'[:,]' '/"min"/ && !ns { ns = $2 * 1e6 } /"pairs"/ && pairs == "" { pairs = $2 + 0 }
     END { printf "%.0f %d\n", ns, pairs }' "$out/run.json"

@@ -12,8 +12,8 @@ from pathlib import Path
 # a * stands for every folder. A file belongs to the longest folder of the table that its path begins with.
 MAY_INCLUDE = {row.split(':')[0].strip(): row.split(':')[1].split() for row in '''
 core/base:;  core/scene: core/base;  core/boxes: core/scene;  core/view: core/boxes;  core/canvas: core/view;
-core/cull: core/canvas;  core/sweep: core/boxes;  core/pairs: core/view;  core/proximity: core/boxes;
-core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/pairs core/proximity core/voronoi;
+core/cull: core/canvas;  core/sweep: core/boxes;  core/proximity: core/boxes;
+core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/proximity core/voronoi;
 offsets: core/native;  verify/certificate: core/scene;  verify: core/canvas verify/certificate;  experiments/system: core/base;
 experiments/scenes/mesh: experiments/system core/gl;  experiments/scenes/cloth: experiments/scenes/mesh;
 experiments/scenes/builtin: experiments/scenes/mesh experiments/scenes/cloth;  experiments/scenes: experiments/scenes/builtin;
@@ -249,12 +249,12 @@ TREE = {'CMakeLists.txt': 'top', 'README.md': 'top', 'docs/index.md': 'page', 'b
 # Folders or files, what they include, and the reason why not; = stands for: the table does not let them; . for none.
 INCLUDING = [row.split(':') for row in r'''
 core/base:core/scene tests:= | core/scene:core/view core/boxes offsets experiments/command:=
-core/boxes:core/view core/pairs:= | core/proximity:core/pairs:= | core/voronoi:core/proximity:=
-core/pairs:verify core/canvas:= | core/canvas:core/gl offsets:=
+core/boxes:core/view:= | core/proximity:core/view:= | core/voronoi:core/proximity:=
+core/canvas:core/gl offsets:=
 core/view:core/canvas core/cull verify tests ../canvas/canvas.h:= | core/cull:offsets core/sweep experiments/command tests:=
 core/gl:offsets verify experiments/method tests:= | core/gl/canvas/cull.frag:offsets/obb.glsl:=
-offsets:core/gl core/pairs verify experiments/command tests:= | verify/certificate:verify core/view:=
-verify:offsets core/cull core/sweep core/pairs core/gl experiments/system tests ../offsets/obb.glsl:=
+offsets:core/gl verify experiments/command tests:= | verify/certificate:verify core/view:=
+verify:offsets core/cull core/sweep core/gl experiments/system tests ../offsets/obb.glsl:=
 verify/canvas.h verify/deep/canvas.h:<offsets/obb.h> offsets/obb.h:= | experiments/system:core/scene:=
 experiments/scenes:experiments/record:= | experiments/scenes/mesh:experiments/scenes:=
 experiments/scenes/cloth:experiments/scenes/builtin:= | experiments/method:experiments/record experiments/scenes:=
@@ -275,7 +275,7 @@ experiments/picture:experiments/measure/compare.h:. | experiments/command:experi
 experiments/peers/cgal.cpp experiments/peers/contest_cgal.cpp:<CGAL/Kernel.h>:.
 tests/verify:offsets/obb.glsl <CGAL/Kernel.h>:. | tests/faults:<epoxy/gl.h>:.
 core/scene core/canvas core/cull offsets verify experiments/command tests/core/gl:<epoxy/gl.h> <EGL/egl.h>:may use EGL/OpenGL
-core/scene core/pairs core/gl offsets verify/certificate experiments/command experiments/peers:<CGAL/box.h>:may use CGAL
+core/scene core/gl offsets verify/certificate experiments/command experiments/peers:<CGAL/box.h>:may use CGAL
 core/scene core/gl offsets experiments/command experiments/peers:<gmpxx.h> <mpfr.h>:may use GMP/MPFR
 '''.strip().replace('\n', ' | ').split(' | ')]
 CYCLE = 'core/view/left: a cycle of includes, with .h and .cpp of one name as one file: core/view/left, core/view/'

@@ -28,7 +28,7 @@ campaigns=(
   "model FARCULL_MODEL_TRIALS=1000000 ctest --test-dir build --output-on-failure -R CullModel"
   "strays cmake --build build --target farcull_strays && build/tests/farcull_strays 100"
   "reliability bash experiments/reliability.sh"
-  "reliability_pairs bash experiments/reliability.sh pairs"
+  "reliability_boxes bash experiments/reliability.sh boxes"
   "reliability_motion bash experiments/reliability.sh motion"
   "reliability_distances bash experiments/reliability.sh distances"
   "odr bash tests/odr.sh"

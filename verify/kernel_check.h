@@ -1,6 +1,6 @@
 // Decides with rationals whether a kernel's answer is right: the answer has to contain the part of
-// the real solid or triangle on the line or in the pixel, and must not be much wider. The answers
-// may come from a device or from this CPU.
+// the real solid on the line, and must not be much wider. The answers may come from a device or
+// from this CPU.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,6 @@ void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, Ker
 /// Checks an answer about the solid of offsets/minkowski.glsl: a triangle fattened by a ball.
 void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
                      KernelTally& tally);
-/// Checks an answer about a triangle of FAR pairs.
-void check_interval(const IntervalCase& c, const IntervalAnswer& answer, KernelTally& tally);
-/// Checks slices and pixels: the slices have to be exactly those computed with rationals, the pixel
-/// the integer part.
-void check_slices(const std::vector<SliceCase>& cases, const std::vector<SliceAnswer>& answers,
-                  KernelTally& tally);
 
 /// A triangle near a pixel centre, of one of the kinds that have been hard. ordinary: of moderate
 /// size and slope.
@@ -48,8 +42,5 @@ struct KernelTriangle {
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);
-std::vector<IntervalCase> interval_kernel_cases(std::uint64_t seed, std::size_t count);
-/// Cases of one window, in the order of z, along which slices never decrease.
-std::vector<SliceCase> slice_kernel_cases(std::uint64_t seed, std::size_t count);
 
 }  // namespace farcull

@@ -21,9 +21,7 @@ std::string verb_of(StageKind kind) {
     case StageKind::boxes:
       return "boxes";
     case StageKind::blocks:
-      return "runs";
-    case StageKind::choose:
-      return "choose";
+      return "blocks";
     case StageKind::setup:
       return "setup";
     case StageKind::draw:
@@ -36,8 +34,6 @@ std::string verb_of(StageKind kind) {
       return "sub-object level";
     case StageKind::view:
       return "view";
-    case StageKind::views:
-      return "views";
     case StageKind::fatten:
       return "fatten";
     case StageKind::cull:
@@ -82,8 +78,6 @@ std::string to_string(Unit unit) {
       return "triangles";
     case Unit::pairs:
       return "pairs";
-    case Unit::views:
-      return "views";
   }
   return "";
 }
@@ -115,15 +109,13 @@ std::string reason_of(const Stage& stage) {
              "whole; objects tested against themselves: " +
              m;
     case Reason::block_pairs:
-      return "pairs of runs (of at most 16 triangles) whose boxes overlap: " + n +
+      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n +
              (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
              "; pairs of objects, and objects with themselves: " + m;
     case Reason::oriented_pairs:
-      return "pairs of runs (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
+      return "pairs of blocks (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
              n + (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
              "; pairs of objects, and objects with themselves: " + m;
-    case Reason::only_blocks:
-      return "boxes of runs decide: no view is needed";
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::boxes_decide_little:
@@ -135,9 +127,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::no_triangle_meets:
       return "no triangle meets the box of another object";
     case Reason::nothing_to_look_at:
-      return "boxes decide: no device is needed";
-    case Reason::device:
-      return stage.detail;
+      return "boxes leave nothing to draw: no device is needed";
     case Reason::shaders:
       return "canvas for " + stage.detail;
     case Reason::fattener:
@@ -145,8 +135,6 @@ std::string reason_of(const Stage& stage) {
              (stage.n > 0 ? "; " + triangles(stage.n) + " beyond the budget, kept" : std::string());
     case Reason::unresolvable:
       return "double arithmetic cannot resolve the region in pixels; nothing is culled here";
-    case Reason::unresolvable_view:
-      return "pixel space cannot resolve the scene in this view";
     case Reason::nothing_left:
       return "nothing is left";
     case Reason::set_unchanged:
@@ -183,24 +171,8 @@ std::string reason_of(const Stage& stage) {
       return triangles(stage.n) + ", at most " + m;
     case Reason::clusters_flags:
       return "flags: a question costs nothing";
-    case Reason::views_chosen:
-      return "views chosen by the scene";
-    case Reason::views_given:
-      return "views given";
-    case Reason::chosen:
-      return stage.detail + (stage.n > 0 ? ": " + number(stage.n) + " x " + number(stage.m) + " px"
-                                         : std::string());
     case Reason::tests_instead:
       return "exact tests on the cores of a CPU take less time than drawing there";
-    case Reason::few_candidates:
-      return "exact tests of " + counted(stage.n, "candidate", "candidates") +
-             " are cheaper than a further view";
-    case Reason::enough_views:
-      return "enough views were looked at";
-    case Reason::given_up:
-      return "given up after " + n + " units of work: this view removes no candidate";
-    case Reason::keeps_sample:
-      return "it keeps all of a sample of the candidates";
     case Reason::sweep:
       if (stage.detail.empty()) return "boxes of objects, then of their triangles";
       return "boxes of " + objects(stage.n) + " overlap, which have " + triangles(stage.m) + "; " +
@@ -213,17 +185,18 @@ std::string reason_of(const Stage& stage) {
       return "boxes of what is kept, and of all pairs inside a patch";
     case Reason::join_all:
       return "boxes of all triangles";
-    case Reason::join_unresolvable:
-      return "no view can resolve the scene: pairs by their boxes alone";
     case Reason::join_uneven:
       return "triangles lie unevenly, most of them in a small part of their object's box: pairs by "
              "a tree over the boxes of all triangles";
+    case Reason::join_crowded:
+      return "boxes of too many pairs of objects overlap: pairs by a tree over the boxes of all "
+             "triangles";
+    case Reason::join_often:
+      return "boxes of blocks overlap too often, oriented ones too: pairs by a tree over the boxes "
+             "of all triangles";
     case Reason::join_many_blocks:
       return "boxes of more than " + n +
-             " pairs of runs overlap: pairs by a tree over the boxes of all triangles";
-    case Reason::join_many_tests:
-      return "view " + stage.detail + " was given up after " + n +
-             " units of work: pairs by a tree over the boxes of all triangles";
+             " pairs of blocks overlap: pairs by a tree over the boxes of all triangles";
     case Reason::predicates:
       return "exact predicates on the candidates";
     case Reason::no_candidates:
@@ -238,17 +211,12 @@ std::string reason_of(const Stage& stage) {
       return spelled("{inside} no");
     case Reason::if_more_left:
       return stage.n > 0 ? "if more than " + triangles_left(stage.n) : "if any triangle is left";
-    case Reason::if_more_candidates:
-      return "if more than " + counted(stage.n, "candidate is", "candidates are") +
-             " left for each triangle that takes part";
     case Reason::if_changed:
       return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
       return "if the round before culled at least one triangle in " + n + at_most_rounds(stage);
     case Reason::if_candidates:
       return "if there are candidates";
-    case Reason::if_more_tests:
-      return "if a view takes more than " + n + " units of work: a tree over all boxes";
   }
   return "";
 }

@@ -15,15 +15,13 @@ using Progress = std::function<void(const std::string&)>;
 
 enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
-  blocks,          // objects that are compared without a view, by boxes of blocks of triangles
-  choose,          // directions and resolutions of views
+  blocks,          // boxes of blocks of triangles
   setup,           // the device: context, shaders, threads
   draw,            // all drawing; a stage of its own only where nothing is drawn
   patches,         // owners inside objects that are tested against themselves
   objects,         // whether objects are asked as a whole before their triangles
   clusters,        // whether there is a level between objects and triangles
   view,            // a view as a whole
-  views,           // all views; a stage of its own only where none is looked at
   fatten,          // the primitives of one view
   cull,            // the passes of one level in one view
   agreement,       // what every view of a round has cleared
@@ -40,7 +38,7 @@ enum class StageKind : std::uint8_t {
 };
 
 /// The things that a stage counts.
-enum class Unit : std::uint8_t { none, triangles, pairs, views };
+enum class Unit : std::uint8_t { none, triangles, pairs };
 
 /// Why a stage runs, was left out, or how it went. n, m and `detail` are those of Stage.
 enum class Reason : std::uint8_t {
@@ -52,18 +50,15 @@ enum class Reason : std::uint8_t {
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // `detail` were compared, since a corner moved; empty: all
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
-  only_blocks,     // nothing else can meet: no view is needed
   boxes_meet,      // n pairs of triangles are asked about; triangles in none take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
-  nothing_to_look_at,   // the boxes decide: no device is needed
-  device,               // `detail` answered
+  nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
   shaders,              // the canvas, on GL with context and shaders, for the fattener `detail`
   fattener,             // `detail`; n triangles are beyond its budget and kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
-  unresolvable_view,    // pixel space cannot resolve the scene in the view
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
   passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
@@ -80,23 +75,16 @@ enum class Reason : std::uint8_t {
   clusters_large,       // occlusion queries on many triangles
   clusters_small,       // occlusion queries on n triangles or fewer
   clusters_flags,       // flags are read back at once
-  views_chosen,         // by the scene
-  views_given,          // by the caller
-  chosen,               // the view is looked at, for `detail`, n x m px
   tests_instead,        // on the cores of a CPU exact tests take less time than drawing
-  few_candidates,       // exact tests of n candidates are cheaper than a further view
-  enough_views,         // as many as a run looks at
-  given_up,             // the view removes no candidate: it is more work than n pairs of intervals
-  keeps_sample,         // the view keeps all of a sample of the candidates
   sweep,                // boxes of n objects overlap, which have m triangles; `detail`
   not_cleared,          // pairs that boxes found, but for those that drawing cleared
   join_kept,            // boxes of what is kept
   join_patches,         // boxes of what is kept in different patches, and of all in one patch
   join_all,             // boxes of all triangles
-  join_unresolvable,    // no view can resolve the scene
-  join_uneven,          // triangles lie too unevenly for blocks and views; a tree of boxes decides
+  join_uneven,          // triangles lie too unevenly for blocks; a tree of boxes decides
+  join_crowded,         // too many pairs of objects' boxes overlap: as above
+  join_often,           // boxes of blocks overlap too often, also oriented ones: as above
   join_many_blocks,     // boxes of more than n pairs of blocks overlap: as above
-  join_many_tests,      // the view `detail` is more work than n pairs of intervals: as above
   predicates,           // exact predicates on the candidates
   no_candidates,        // there is no candidate to decide
   every_pair,           // every pair is accounted for
@@ -104,12 +92,10 @@ enum class Reason : std::uint8_t {
   near_boxes,           // of n pairs of objects; m bounds of boxes were compared
   inside_not_asked,     // --inside no
   // In a plan: conditions that pixels will decide.
-  if_more_left,        // if more than n triangles are left (n = 0: any)
-  if_more_candidates,  // if more than n candidates are left for each triangle that takes part
-  if_changed,          // if the round before changed something
-  if_culled,           // if the round before culled at least one triangle in n
-  if_candidates,       // if there are candidates
-  if_more_tests,       // if the first view is more work than n pairs of intervals
+  if_more_left,   // if more than n triangles are left (n = 0: any)
+  if_changed,     // if the round before changed something
+  if_culled,      // if the round before culled at least one triangle in n
+  if_candidates,  // if there are candidates
 };
 
 struct Stage {

@@ -1,4 +1,4 @@
-// Patches are runs of triangles along a Morton curve; each is joined with itself by boxes.
+// Patches are stretches of triangles along a Morton curve; each is joined with itself by boxes.
 #include "core/cull/patches.h"
 
 #include <algorithm>

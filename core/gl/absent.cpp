@@ -4,7 +4,6 @@
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"
-#include "core/gl/pairs/pairs.h"
 #include "core/gl/picture/picture.h"
 #include "core/gl/probe/probe.h"
 #include "core/gl/voronoi/voronoi.h"
@@ -37,8 +36,6 @@ std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgra
   refuse();
 }
 
-std::unique_ptr<PairBackend> gl_pair_backend(const GlContext&, std::size_t) { refuse(); }
-
 std::unique_ptr<VoronoiDevice> gl_voronoi_device(const GlContext&, const GlVoronoiOptions&) {
   refuse();
 }
@@ -53,17 +50,11 @@ std::vector<SolidAnswer> device_solids(const GlContext&, const SolidProgram&,
   refuse();
 }
 
-std::vector<IntervalAnswer> device_intervals(const GlContext&, std::span<const IntervalCase>,
-                                             const std::string&) {
-  refuse();
-}
-
 std::vector<std::uint8_t> device_seen(const GlContext&, const SolidProgram&,
                                       std::span<const SolidCase>, std::span<const SolidCase>,
                                       double) {
   refuse();
 }
-std::vector<SliceAnswer> device_slices(const GlContext&, std::span<const SliceCase>) { refuse(); }
 
 Image draw_picture(const GlContext&, const Scene&, const Window&, std::span<const PictureTriangle>,
                    const PictureSettings&) {

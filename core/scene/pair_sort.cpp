@@ -149,19 +149,8 @@ void GatheredPairs::add(std::span<const TrianglePair> some) {
   }
 }
 
-PairPool::PairPool(std::size_t lists, std::size_t buffer, Narrow narrow)
-    : buffer_(buffer),
-      narrow_(std::move(narrow)),
-      limit_(std::max<std::size_t>(buffer / lists, 1)),
-      lists_(lists) {}
-
-std::span<TrianglePair> PairPool::append(std::size_t list, std::size_t count,
-                                         const TrianglePair& value) {
-  std::vector<TrianglePair>& pairs = lists_[list].pairs;
-  const std::size_t before = pairs.size();
-  pairs.resize(before + count, value);
-  return std::span(pairs).subspan(before);
-}
+PairPool::PairPool(std::size_t lists, std::size_t buffer)
+    : buffer_(buffer), limit_(std::max<std::size_t>(buffer / lists, 1)), lists_(lists) {}
 
 std::size_t PairPool::held() const {
   std::size_t count = distinct_.size();
@@ -172,7 +161,6 @@ std::size_t PairPool::held() const {
 void PairPool::shrink(std::size_t list) {
   std::vector<TrianglePair> sorted = sorted_unique(std::span(&lists_[list].pairs, 1), 1);
   lists_[list].pairs.clear();
-  if (narrow_) narrow_(sorted);
   const std::lock_guard lock(mutex_);
   std::vector<TrianglePair> all;
   all.reserve(distinct_.size() + sorted.size());

@@ -1,11 +1,10 @@
-// Pairs of triangle indices: collected in bounded memory although they repeat, and sorted into the
-// one order in which FAR pairs answers.
+// Pairs of triangle indices: collected in bounded memory although they repeat, and sorted by
+// (a, b).
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <functional>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -46,27 +45,13 @@ class GatheredPairs {
 /// added.
 class PairPool {
  public:
-  /// Removes pairs that are not asked for from sorted ones, which stay sorted; in any thread.
-  using Narrow = std::function<void(std::vector<TrianglePair>&)>;
-  /// lists: as many as threads add at the same time; buffer: pairs in all lists together; narrow:
-  /// applied to a full list before its pairs join the distinct ones; null: not applied.
-  PairPool(std::size_t lists, std::size_t buffer, Narrow narrow = {});
+  /// lists: as many as threads add at the same time; buffer: pairs in all lists together.
+  PairPool(std::size_t lists, std::size_t buffer);
 
   void add(std::size_t list, const TrianglePair& pair) {
     std::vector<TrianglePair>& pairs = lists_[list].pairs;
     pairs.push_back(pair);
     if (pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
-  }
-  void add(std::size_t list, std::span<const TrianglePair> added) {
-    std::vector<TrianglePair>& pairs = lists_[list].pairs;
-    pairs.insert(pairs.end(), added.begin(), added.end());
-    shrink_if_full(list);
-  }
-  /// Room for `count` more pairs at the end of a list, all `value`, for the caller to overwrite;
-  /// then call shrink_if_full().
-  std::span<TrianglePair> append(std::size_t list, std::size_t count, const TrianglePair& value);
-  void shrink_if_full(std::size_t list) {
-    if (lists_[list].pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
   }
   /// Pairs in the lists and in that of the distinct pairs; only while no thread adds.
   std::size_t held() const;
@@ -80,7 +65,6 @@ class PairPool {
     std::vector<TrianglePair> pairs;
   };
   std::size_t buffer_;
-  Narrow narrow_;
   std::atomic<std::size_t> limit_;  // pairs of one list
   std::vector<List> lists_;
   std::mutex mutex_;  // of distinct_

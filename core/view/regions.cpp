@@ -45,4 +45,20 @@ Regions find_regions(const Scene& scene, const RegionRules& rules) {
   return out;
 }
 
+Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs) {
+  Regions out;
+  out.triangles = members_of(pairs, scene.triangles.size());
+  out.triangle_boxes.assign(scene.triangles.size(), Box::empty());
+  for (const std::uint32_t t : out.triangles) out.triangle_boxes[t] = grown_box(scene, t, 0);
+  const std::vector<std::uint32_t> object = owners(scene);
+  std::vector<Box> places(scene.objects.size(), Box::empty());
+  for (const auto& [a, b] : pairs) {
+    places[object[a]].add(intersection(out.triangle_boxes[a], out.triangle_boxes[b]));
+  }
+  for (const Box& place : places) {
+    if (!place.is_empty()) out.places.push_back(place);
+  }
+  return out;
+}
+
 }  // namespace farcull

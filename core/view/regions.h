@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -36,5 +37,10 @@ struct RegionRules {
 /// of its triangles take part. With `full` the places are the same, or the box of the scene if
 /// there is no such place, so that the views are the same, and every triangle takes part.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
+
+/// The regions that drawing needs to decide about these pairs: their triangles, and the places in
+/// which boxes of two overlap, one for each object that is the first one of a pair. Every common
+/// point of a pair is in one of the places.
+Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

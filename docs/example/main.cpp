@@ -17,7 +17,7 @@ int main() try {
   for (int frame = 1; frame < 4; ++frame) {
     poses[1].t[0] -= 0.9;  // the second object moves
     const farcull::Result found = collider.find({.poses = poses});
-    std::printf("frame %d, on %s: %zu\n", frame, found.report.device.c_str(), found.pairs.size());
+    std::printf("frame %d: %zu\n", frame, found.pairs.size());
     for (const farcull::Pair& pair : found.pairs) std::printf("  %u and %u\n", pair.a, pair.b);
   }
   farcull::Input apart = input;

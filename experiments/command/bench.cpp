@@ -61,7 +61,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
                 "for triangles that share a vertex position"},
                ignore_row(scene_.ignore),
                {"--peers", &peers_, "LIST", "all, none, or names by commas; default all"},
-               {"--methods", &methods_, "LIST", "of far-pairs,far,exact; all or none; default all"},
+               {"--methods", &methods_, "LIST", "of boxes,far,exact; all or none; default all"},
                {"--threads", &threads_, "N", "cores for each of them; default all there are"},
                {"--repeat", &repeat_, "N", "runs of each after a cold one; default 5"},
                {"--limit", &limit_, "SECONDS",
@@ -82,7 +82,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
         return "Examples:\n"
                "  farcull bench two-bunnies\n"
                "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
-               "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n"
+               "  farcull bench field:1000000 --peers none --methods boxes --json field.json\n"
                "  farcull bench bunnies-far-apart --distances objects\n\n" +
                peers_text() +
                "farcull help terms explains the columns; docs/bench.md says what is\n"

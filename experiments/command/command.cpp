@@ -206,11 +206,11 @@ Rows MethodOptions::rows(const std::vector<std::string>& names) {
     const char* word = words_.emplace_back(option_word(option.name)).c_str();
     out.push_back({word, &text, option.type, spelled(option.help)});
     if (*option.type == 0) out.back().value = &flag;
-    const auto looks_or_lacks = [&](Method method) {
-      return looks(method) || !option.serves(traits(method));
+    const auto draws_or_lacks = [&](Method method) {
+      return draws(method) || !option.serves(traits(method));
     };
-    if (std::ranges::all_of(all_methods(), looks_or_lacks))
-      out.back().group = "Options of methods that draw or look along views";
+    if (std::ranges::all_of(all_methods(), draws_or_lacks))
+      out.back().group = "Options of methods that draw";
   }
   return out;
 }

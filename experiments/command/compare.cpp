@@ -27,10 +27,9 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
       app, "compare", "methods and resolutions side by side",
       scene_rows(scene_) +
           Rows{{"--methods", &arguments_.methods, "LIST",
-                "separated by commas;\ndefault far,cullide,far-pairs,exact"},
+                "separated by commas;\ndefault far,cullide,boxes,exact"},
                {"--resolutions", &arguments_.resolutions, "LIST",
-                "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
-                "far-pairs: with a number views decide"},
+                "separated by commas, for methods that draw;\ndefault 128,256,512,1024,2048"},
                {"--offsets", &arguments_.offsets, "LIST",
                 "for far, separated by commas: obb, exact;\ndefault obb"},
                {"--repeat", &arguments_.repeat, "N",
@@ -42,7 +41,7 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
       "  farcull compare two-tori\n"
       "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
       "  farcull compare two-tori --methods cullide,far --rounds 1 --clear all\n"
-      "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
+      "  farcull compare mannequin-devil --methods boxes,exact --self\n\n"
       "farcull help terms explains the columns, farcull help methods the methods.\n\n"
       "Exit status 1: a method that promises missed a pair.");
 }
@@ -52,10 +51,7 @@ int CompareCommand::run() const {
   RunOptions& options = arguments.options;
   arguments.self = options_.has("self");
   options.seed = seed_of(scene_.names);
-  // The scene may choose the views only if far-pairs is among the methods.
-  const bool pairs =
-      !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
-  options.method = pairs ? Method::far_pairs : Method::far;
+  options.method = Method::far;  // which has all options but the clearance
   for (const auto& [name, text] : options_.given()) {
     if (run_option(name).take) take_option(name, text, options);
   }

@@ -1,5 +1,5 @@
-// Probes the native canvas and the device, measures FAR pairs on both back ends, and prints the
-// findings. Each probe of the native canvas counts events that must not happen, so its bound is 0.
+// Probes the native canvas and the device, and prints the findings. Each probe of the native canvas
+// counts events that must not happen, so its bound is 0.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,9 +22,7 @@
 #include "experiments/command/command.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/device_verdict.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/output_file.h"
 #include "offsets/offsets.h"
 #include "verify/kernel_check.h"
@@ -207,30 +205,11 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
   return out;
 }
 
-// Both verdicts come from the results of one run of the probes.
-struct Verdicts {
-  DeviceVerdict drawing, pairs;
-};
-
-Verdicts keep(const GlInfo& device, const std::vector<ProbeResult>& probes, double ms) {
-  std::vector<ProbeResult> drawing, pairs;
-  for (const ProbeResult& p : probes) {
-    if (p.drawing) drawing.push_back(p);
-    if (p.pairs) pairs.push_back(p);
-  }
-  return {keep_verdict(device, Reliance::drawing, drawing, ms),
-          keep_verdict(device, Reliance::pairs, pairs, ms)};
-}
-
-std::string verdicts_text(const Verdicts& verdicts) {
-  const auto line = [](const char* who, const DeviceVerdict& v, Reliance reliance) {
-    return fmt::format("{}: {}; {}\n", who, to_string(v, reliance),
-                       !v.file.empty()  ? "kept in " + v.file
-                       : v.note.empty() ? "not kept"
-                                        : "not kept: " + v.note);
-  };
-  return "\n" + line("far", verdicts.drawing, Reliance::drawing) +
-         line("far-pairs", verdicts.pairs, Reliance::pairs);
+std::string verdict_text(const DeviceVerdict& verdict) {
+  return fmt::format("\nfar: {}; {}\n", to_string(verdict),
+                     !verdict.file.empty()  ? "kept in " + verdict.file
+                     : verdict.note.empty() ? "not kept"
+                                            : "not kept: " + verdict.note);
 }
 
 Json probes_json(const std::vector<ProbeResult>& probes) {
@@ -239,74 +218,6 @@ Json probes_json(const std::vector<ProbeResult>& probes) {
     if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // JSON has no number for it
     return out;
   });
-}
-
-// Compares the two back ends of FAR pairs on one scene with views: which is faster on this machine.
-struct PairAdvice {
-  double cpu_ms = 0;  // median of the runs after a warm-up
-  double gl_ms = 0;
-  bool equal = false;   // the same candidates
-  std::string problem;  // why the device cannot run it
-  bool gl_is_faster() const { return problem.empty() && gl_ms < cpu_ms; }
-};
-constexpr const char* kPairScene = "needles-layers";
-
-PairAdvice advise(const std::string& device) {
-  const Scene scene = make_builtin_scene(kPairScene);
-  std::vector<TrianglePair> candidates;
-  const auto measure = [&](const std::string& on) {
-    // With a resolution views decide.
-    const RunOptions options{.method = Method::far_pairs, .resolution = 256, .device = on};
-    Session session(on, 0, Say());
-    constexpr int kRuns = 5;
-    std::vector<double> ms;
-    for (int run = 0; run <= kRuns; ++run) {
-      const Stopwatch start;
-      Candidates found = find(scene, plan(scene, options), session);
-      if (found.pair_views().empty()) {
-        throw std::logic_error("doctor: no view was looked along, so nothing was compared");
-      }
-      candidates = std::move(found.pairs);
-      ms.push_back(start.ms());
-    }
-    // The first run, which compiles and allocates, is left out.
-    std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());
-    return ms[1 + kRuns / 2];
-  };
-  PairAdvice out;
-  out.cpu_ms = measure("cpu");
-  const std::vector<TrianglePair> by_cpu = candidates;
-  try {
-    out.gl_ms = measure(device.empty() ? "gl" : device);
-    out.equal = candidates == by_cpu;
-  } catch (const Error& error) {
-    out.problem = error.what();
-  }
-  return out;
-}
-
-std::string advice_text(const PairAdvice& advice, const std::string& renderer) {
-  std::string out = fmt::format("\nFAR pairs on {}: cpu {:.1f} ms, ", kPairScene, advice.cpu_ms);
-  if (!advice.problem.empty()) {
-    out += fmt::format("not on this device ({})", advice.problem);
-  } else {
-    out += fmt::format("{} {:.1f} ms{}", renderer, advice.gl_ms,
-                       advice.equal ? ""
-                                    : "; other candidates, since its arithmetic differs, which the "
-                                      "proofs allow");
-  }
-  return out +
-         fmt::format("\nrecommended: {}\n", advice.gl_is_faster() ? "this device" : "--device cpu");
-}
-
-Json advice_json(const PairAdvice& advice) {
-  const bool ran = advice.problem.empty();
-  return {{"scene", kPairScene},
-          {"cpu_ms", advice.cpu_ms},
-          {"gl_ms", json_if(ran, advice.gl_ms)},
-          {"equal_candidates", json_if(ran, advice.equal)},
-          {"problem", text_json(advice.problem)},
-          {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
 }
 
 // For each of lane_targets(), tests the kernels of both offsets. Counts answers that lose a part of
@@ -390,10 +301,8 @@ class DoctorCommand {
         "Examples:\n  farcull doctor\n  farcull doctor --device native\n"
         "  farcull doctor --device software --json -\n\n"
         "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
-        "~/.cache/farcull: far on OpenGL promises where all of A1 to A10 pass, far-pairs\n"
-        "where A4, A7, A8 and A10 do. A run without such a verdict on its device, driver and build "
-        "makes\n"
-        "one itself.\n\n"
+        "~/.cache/farcull: far on OpenGL promises where all of A1 to A10 pass. A run without\n"
+        "such a verdict on its device, driver and build makes one itself.\n\n"
         "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"
         "promises nothing.");
   }
@@ -439,10 +348,7 @@ int DoctorCommand::run() const {
         if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
       });
   if (terminal) std::fprintf(stderr, "\r\033[K");
-  const Verdicts verdicts = keep(gl, probes, probing.ms());
-
-  const PairAdvice advice = advise(arguments.device);
-
+  const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
   const bool pass =
       native.pass && std::ranges::all_of(probes, [](const ProbeResult& p) { return p.pass; });
   if (!arguments.json.empty()) {
@@ -454,13 +360,10 @@ int DoctorCommand::run() const {
         {"limits", limits_json(gl, resolution)},
         {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
         {"probes", probes_json(probes)},
-        {"verdict_files", {{"drawing", verdicts.drawing.file}, {"pairs", verdicts.pairs.file}}},
-        {"far_pairs", advice_json(advice)}};
+        {"verdict_file", verdict.file}};
     write_report(std::move(report), pass, arguments);
   }
-  if (people)
-    write_output("-",
-                 probes_table(probes) + verdicts_text(verdicts) + advice_text(advice, gl.renderer));
+  if (people) write_output("-", probes_table(probes) + verdict_text(verdict));
   return pass ? 0 : 1;
 }
 

@@ -71,8 +71,7 @@ CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
       {{"SCENE", &arguments_.scenes, "", kMovingHelp},
        {"--methods", &arguments_.methods, "LIST", "by commas; default all that apply"},
        {"--frames", &frames_, "N|A:B", "of each scene; default 30"},
-       {"--resolution", &resolution_, "N",
-        "px, of the methods that draw; default 512; far-pairs\nchooses by the scene"},
+       {"--resolution", &resolution_, "N", "px, of the methods that draw; default 512"},
        {"--views", &views_, "VIEWS", "of the methods that draw; default x,y,z"},
        {"--query", &query_, "flags|occlusion", "how visibility is asked; default flags"},
        {"--device", &device_, "DEVICE", kDeviceHelp},
@@ -84,7 +83,7 @@ CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
         "output"},
        {"--json", &outputs_.json, "FILE", kJsonHelp}},
       "Examples:\n"
-      "  farcull experiment family tree-leaves --methods far-pairs,i-collide --frames 100\n"
+      "  farcull experiment family tree-leaves --methods boxes,i-collide --frames 100\n"
       "  farcull experiment family breaking-dragon --methods far,i-collide --csv efficiency.csv\n"
       "  farcull experiment family --json family.json\n\n"
       "Exit status 1: a method that promises missed a pair.");
@@ -128,14 +127,14 @@ CLI::App* SavingsCommand::add_to(CLI::App& experiments) {
       experiments, "savings", "what leaving out saves: times as planned over times with --full",
       {{"SCENE", &arguments_.scenes, "",
         "built-in scenes or scene files; default all built-in\nones but the costly"},
-       {"--methods", &arguments_.methods, "LIST", "by commas; default far-pairs"},
+       {"--methods", &arguments_.methods, "LIST", "by commas; default boxes"},
        {"--repeat", &repeat_, "N", "runs of each; default 15"},
        {"--resolution", &resolution_, "N", "px, of the methods that draw; default 512"},
        {"--device", &device_, "DEVICE", kDeviceHelp},
        {"--json", &outputs_.json, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull experiment savings\n"
-      "  farcull experiment savings two-bunnies --methods far,far-pairs --repeat 15\n\n"
+      "  farcull experiment savings two-bunnies --methods far,boxes --repeat 15\n\n"
       "Exit status 1: a method that promises finds other pairs with --full than without.");
 }
 
@@ -163,7 +162,7 @@ class ExperimentCommand {
         app, "experiment", "studies for publication, and their premises", {},
         "Examples:\n  farcull experiment all --quick\n  farcull experiment accuracy --out results\n"
         "  farcull experiment lemma --points 1000000\n  farcull experiment oracles "
-        "--pairs 100000\n  farcull experiment family tree-leaves --methods far-pairs,i-collide\n"
+        "--pairs 100000\n  farcull experiment family tree-leaves --methods boxes,i-collide\n"
         "  farcull experiment savings two-bunnies");
     allow_one_command(*command);
     commands_ = add_studies(*command);

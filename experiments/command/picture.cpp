@@ -48,7 +48,7 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   RunOptions options = usual;
   const std::size_t colon = text.find(':');
   options.method = parse_method(text.substr(0, colon), "{compare}");
-  const bool takes = looks(options.method);
+  const bool takes = draws(options.method);
   if (!takes) options.resolution = 0;
   if (colon == std::string::npos) return options;
   if (!takes) {
@@ -94,7 +94,7 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
       app, "picture", "what a method finds and misses, as a picture (PNG) or a page",
       scene_rows(scene_) +
           Rows{{"-o,--output", &output_, "FILE", "where the PNG goes; - for standard output"},
-               {"--method", &method_, "METHOD", "as farcull run takes it; default far-pairs"},
+               {"--method", &method_, "METHOD", "as farcull run takes it; default boxes"},
                {"--compare", &compare_, "LIST",
                 "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
                 "cullide:128,far:128"},
@@ -178,7 +178,7 @@ PictureArguments PictureCommand::arguments() const {
       out.panels.push_back(parse_panel(word, usual));
     } else {
       usual.method = parse_method(word);
-      if (usual.resolution > 0 && !looks(usual.method)) {
+      if (usual.resolution > 0 && !draws(usual.method)) {
         throw Error("--resolution", "has no meaning for --method " + word,
                     "leave --resolution out");
       }

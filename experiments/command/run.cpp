@@ -64,7 +64,7 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
       "  farcull run two-tori --method cullide --rounds 1 --views x,-x,y,-y,z,-z\n\n"
       "farcull help methods: which method does what; farcull help terms: the words of the\n"
       "table; farcull help pairs: the columns of --pairs.\n\n"
-      "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
+      "Exit status 1: a method that promises missed a pair. i-collide and boxes promise,\n"
       "and far at the budget radius or more with fragment depth; on OpenGL only where the\n"
       "probes of the device pass (farcull doctor), but the status is 1 all the same.\n"
       "farcull verify asks it of every method."},
@@ -204,12 +204,11 @@ Rows RunCommand::output_rows() {
                 "`farcull check`; with --frames one for each, with %d\n"
                 "or %04d in the name"}};
   if (kind_ != Kind::run) return rows;
-  rows.insert(
-      rows.begin() + 1,
-      {"--tiles", &tiles_, "K/N",
-       "only the Kth of N parts of the scene, which is read\ntwice and never held; far-pairs "
-       "only. "
-       "With --json and\n--pairs farcull merge joins all parts"});
+  rows.insert(rows.begin() + 1,
+              {"--tiles", &tiles_, "K/N",
+               "only the Kth of N parts of the scene, which is read\ntwice and never held; boxes "
+               "only. "
+               "With --json and\n--pairs farcull merge joins all parts"});
   return rows;
 }
 
@@ -427,10 +426,10 @@ void RunCommand::refuse_with_tiles(const RunOptions& options) const {
     throw Error(option, "cannot be answered in tiles: " + why,
                 "leave " + option + " or --tiles out");
   };
-  if (options.method != Method::far_pairs) {
+  if (options.method != Method::boxes) {
     throw Error("--tiles",
-                "are of far-pairs: " + to_string(options.method) + " looks at all of a scene",
-                "leave --tiles out, or use --method far-pairs");
+                "are of boxes: " + to_string(options.method) + " looks at all of a scene",
+                "leave --tiles out, or use --method boxes");
   }
   refuse("--frames", frames_.has_value(), "a tile is of a scene that stands still");
   refuse("--limit", options_.has("limit"), "no tile knows how many pairs the others have");

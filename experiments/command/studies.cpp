@@ -109,7 +109,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
                           "ask about this suite, which may be without labels,\n"
                           "instead of the one that farcull suite makes"},
                          {"--contestants", &contestants_, "NAMES",
-                          "ask these alone, as in far,far-pairs,exact; default all.\n"
+                          "ask these alone, as in far,boxes,exact; default all.\n"
                           "Methods of farcull run on native unless --device is given"}};
     }
     commands_.push_back(

@@ -2,11 +2,10 @@
 //
 //   const farcull::Result found = farcull::collide({vertices, triangles, object_starts});
 //
-// Candidates come from FAR pairs (docs/library.md). If Report::promises is true, FAR pairs misses
-// no pair that collides. Exact predicates on the doubles as given decide the candidates. Triangles
-// are closed sets, so touching counts, and a degenerate triangle is the segment or the point that
-// it is. If `promises` is true, the answer is the same on every device, for any number of threads,
-// views and pixels: these change only the time.
+// Candidates come from boxes of blocks of triangles (docs/library.md), which miss no pair that
+// collides. Exact predicates on the doubles as given decide the candidates. Triangles are closed
+// sets, so touching counts, and a degenerate triangle is the segment or the point that it is. The
+// answer is the same for any number of threads.
 //
 // Each function throws an Error, which says where, why and what to do (error.h), or std::bad_alloc
 // if memory runs out; there is no answer then. Distances are in distance.h, and eigen.h takes
@@ -31,24 +30,11 @@ namespace farcull {
 /// "0.1".
 const char* version();
 
-enum class Device {
-  cpu,   // threads
-  gl,    // OpenGL 4.3 without a window, through EGL: hardware first, then a software renderer
-  best,  // the CPU if boxes of runs decide (docs/methods.md), else gl if a hardware device answers,
-         // else the CPU; the report says which, and why
-};
-
 /// How much contact detail to report.
 enum class Contacts {
   none,      // nothing, at no cost
   kinds,     // Contact::kind
   segments,  // the kind, and the points that the triangles have in common
-};
-
-/// What most callers leave as it is. These options change the time, never the answer.
-struct Advanced {
-  std::string views = "auto";  // directions to look along, as in "x,-y,1:1:0.5"; auto: by the scene
-  int resolution = 0;          // px along a view's larger side, 1 to 16384; 0: by the scene
 };
 
 /// Asked with the name of the step that a call is at: at once, and then about every 50 ms, in the
@@ -63,7 +49,6 @@ class Cancelled : public Error {
 };
 
 struct Options {
-  Device device = Device::cpu;
   unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
   bool self = false;     // every object is tested against itself as well
   std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
@@ -75,7 +60,6 @@ struct Options {
   std::uint64_t limit = 0;  // only the first so many pairs, neighbours included, in the order of
                             // Pair; 0: all
   MayGoOn may_go_on = {};
-  Advanced advanced = {};
 };
 
 /// Moves an object: each of its vertices (x, y, z) becomes the point whose first coordinate is
@@ -146,20 +130,9 @@ struct Report {
     std::string reason;  // why the stage ran or was left out
     double ms = 0;
     std::uint64_t in = 0, out = 0;  // how many items entered, and how many were left
-    std::string unit;               // what the items are: triangles, views or pairs
-  };
-  struct View {
-    std::string name;           // as in Advanced::views
-    bool looked = false;        // false: pixels cannot resolve the scene in this direction
-    std::string reason;         // why this direction and this resolution
-    int width = 0, height = 0;  // px
+    std::string unit;               // what the items are: triangles or pairs
   };
 
-  std::string device;            // "cpu", or the renderer
-  std::string device_reason;     // why this device
-  bool promises = false;         // a pair that collides is never left out; false if a probe of an
-                                 // assumption fails on the device, or broke off
-  std::string promises_reason;   // why, or why not
   double candidates_ms = 0;      // wall clock, from the input to the candidates
   double exact_ms = 0;           // wall clock of the exact tests
   std::uint64_t candidates = 0;  // without those of ignored objects
@@ -168,7 +141,6 @@ struct Report {
   std::uint64_t neighbours = 0;   // decided candidates that are neighbours, colliding or not
   double contacts_ms = 0;         // wall clock of the kinds of contact
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
-  std::vector<View> views;
   std::vector<Stage> stages;
 
   /// The floating-point environment of the calling thread, as in "rounds upward, keeps subnormals";
@@ -195,16 +167,13 @@ struct Result {
 /// Finds the colliding pairs of one input; keeps nothing. Throws as Collider does.
 Result collide(const Input& input, const Options& options = {});
 
-/// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
+/// Finds colliding pairs again and again: buffers and results about triangles that did not move
 /// stay from call to call. An object serves one call at a time, from any thread. A second call at
 /// the same time, or a call of an object that was moved from, throws Error and changes nothing.
-/// Moving and destroying are not protected: no other thread may use the object then. The EGL
-/// context that was current in the caller is current again after each call.
+/// Moving and destroying are not protected: no other thread may use the object then.
 class Collider {
  public:
-  /// Opens the device. A GL device without a kept verdict is probed, which takes about a second
-  /// on Mesa llvmpipe, and several seconds if Mesa's cache of shaders is empty (docs/library.md).
-  /// Throws Error naming the option that is bad, or if the device does not answer.
+  /// Throws Error naming the option that is bad.
   explicit Collider(const Options& options);
   Collider();  // default options
   ~Collider();
@@ -213,11 +182,10 @@ class Collider {
 
   /// Throws Error for input that is not as Input says, for input in which there is nothing to test
   /// (one object without `self`, or fewer than two triangles), for a self_objects that does not
-  /// have one value for each object, for ignored objects that the input does not have, and for any
-  /// fault of the device; Cancelled if Options::may_go_on says so. The object can be used again
-  /// after each of these. The calling thread may round in any direction and flush subnormals: the
-  /// call sets its floating-point environment (rounding, flushing, traps) and restores it at the
-  /// end.
+  /// have one value for each object, and for ignored objects that the input does not have;
+  /// Cancelled if Options::may_go_on says so. The object can be used again after each of these. The
+  /// calling thread may round in any direction and flush subnormals: the call sets its
+  /// floating-point environment (rounding, flushing, traps) and restores it at the end.
   Result find(const Input& input);
 
  private:
@@ -245,9 +213,8 @@ struct StreamedPair {
 /// all pairs are wanted. An object serves one call at a time, as a Collider does.
 class Stream {
  public:
-  /// Copies the input. Throws Error as Collider::find(), and for device gl, which a stream does not
-  /// use. Ignores the options of `advanced`; may_go_on is an error, since a loop
-  /// can be left.
+  /// Copies the input. Throws Error as Collider::find(); may_go_on is an error, since a loop can be
+  /// left.
   explicit Stream(const Input& input, const Options& options = {});
   ~Stream();
   Stream(Stream&&) noexcept;

@@ -336,8 +336,6 @@ void take(const Input& input, bool self, const std::vector<bool>& self_objects, 
 
 namespace {
 
-constexpr int kMostResolution = 16384;
-
 // The enumerations of farcull.h have the order of the internal ones.
 static_assert([] {
   using Given = Contact::Kind;
@@ -358,9 +356,6 @@ void check(const Options& options) {
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
   if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
     throw Error("clearance", "is no distance", "give a finite number, 0 or more");
-  const int resolution = options.advanced.resolution;
-  if (resolution < 0 || resolution > kMostResolution)
-    throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
 }
 
 ContactDetail detail_of(Contacts contacts) { return static_cast<ContactDetail>(contacts); }

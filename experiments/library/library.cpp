@@ -10,8 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
-#include "core/gl/base/context.h"
-#include "core/view/view.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/method/asked.h"
@@ -21,28 +19,13 @@
 namespace farcull {
 namespace {
 
-std::string device_of(const Options& options) {
-  if (options.device == Device::cpu) return "cpu";
-  return options.device == Device::gl ? "gl" : "";
-}
-
 RunOptions run_options(const Options& options) {
   check(options);
-  const std::string& views = options.advanced.views;
-  RunOptions out{.method = Method::far_pairs,
-                 .resolution = options.advanced.resolution,
-                 .views = views == "auto" ? "" : views,
-                 .clearance = options.clearance,
-                 .verify = false,
-                 .limit = options.limit,
-                 .contacts = detail_of(options.contacts)};
-  out.device = device_of(options);
-  try {
-    if (views != "auto") parse_views(views);
-  } catch (const Error& error) {
-    throw Error("views", error.reason, error.remedy);
-  }
-  return out;
+  return {.method = Method::boxes,
+          .clearance = options.clearance,
+          .verify = false,
+          .limit = options.limit,
+          .contacts = detail_of(options.contacts)};
 }
 
 std::vector<Pair> given_out(const std::vector<TrianglePair>& pairs) {
@@ -67,52 +50,18 @@ struct Collider::State {
   std::atomic_flag used;
 
   explicit State(const Options& given)
-      : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
-    device();
-    promise();
-  }
-
-  // Opens the device if it is not open: at first, and after a failure.
-  PairDevice& device() { return session.pairs(); }
-
-  // The promise on the device that is open now, not on an earlier one.
-  Promise promise() {
-    const std::optional<Reliance> relies =
-        device().gl ? std::optional(Reliance::pairs) : std::nullopt;
-    return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies},
-                      session);
-  }
-  // Reports the device of an answer; `used` may have none.
-  void report_device(const UsedDevice& used, Report& report);
+      : options(given), run(run_options(given)), session("native", given.threads, Say()) {}
 
   // Takes the scene of a call; from the third call on, what is new in it as well.
   void take_scene(const Input& input);
-  // The collisions of the scene. start: when the call began; callers: its environment. After an
-  // exception nothing on the device can be trusted.
+  // The collisions of the scene. start: when the call began; callers: its environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
-
-void Collider::State::report_device(const UsedDevice& used, Report& report) {
-  const PairDevice& open = device();
-  if (open.gl && !used.gl) {
-    report.device = "cpu";
-    report.device_reason = used.note;
-  } else {
-    report.device = open.backend->name();
-    report.device_reason = options.device == Device::best ? open.reason : "asked for";
-  }
-  const Promise kept = promise_of(run, used, session);
-  report.promises = kept.holds;
-  report.promises_reason = "on the CPU nothing rests on a device";
-  if (!used.gl) return;
-  const std::string risk = risk_of_threads(used.gl->renderer);
-  report.promises_reason = kept.reason + (risk.empty() ? "" : "; " + risk);
-}
 
 void Collider::State::take_scene(const Input& input) {
   // Remembering takes more memory, which is of no use to a single call.
   if (++calls == 2) session.remember_frames();
-  const PairMemory* const memory = session.pair_memory();
+  const FrameMemory* const memory = session.frame_memory();
   const bool compares = memory && !memory->moved.waits();
   change = {};
   take(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
@@ -120,7 +69,6 @@ void Collider::State::take_scene(const Input& input) {
 
 Result Collider::State::find(const Stopwatch& start, const FloatingPoint& callers,
                              const Progress& progress) {
-  device();
   run.ignored = ignored_of(options.ignore, taken.scene.objects.size());
   require_asked(taken.scene, run.ignored, "ignore", "test objects against themselves (self)");
   const Record record = farcull::run(
@@ -141,12 +89,9 @@ Result Collider::State::find(const Stopwatch& start, const FloatingPoint& caller
   out.neighbour_contacts = given_out(record.neighbour_contacts);
   out.complete = record.complete;
   if (callers != kProved) report.callers_arithmetic = to_string(callers);
-  report_device(record.found.device, report);
   for (const Stage& s : record.trace)
     report.stages.push_back(
         {name_of(s), s.ran, reason_of(s), s.ms, s.in, s.out, to_string(s.unit)});
-  for (const PairView& v : record.found.pair_views())
-    report.views.push_back({v.name, v.looked, v.reason, v.width, v.height});
   return out;
 }
 
@@ -198,8 +143,6 @@ struct Stream::State {
   State(const Input& input, const Options& of)
       : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
     check(options);
-    if (options.device == Device::gl)
-      throw Error("device", "gl is not used by a stream", "give cpu or best");
     if (options.may_go_on)
       throw Error("may_go_on", "is not asked by a stream", "leave the loop to end it");
     TakenInput taken;

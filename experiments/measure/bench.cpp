@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::string> kMethods = {"far-pairs", "far", "exact"};
+const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
 std::vector<std::string> names_of(const std::vector<Peer>& peers) {
   std::vector<std::string> names;
@@ -49,7 +49,7 @@ double build_ms_of(const std::vector<Stage>& trace) {
 // Runs without neighbours, since the peers leave them out too.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
-  options.device = device;
+  if (draws(method)) options.device = device;
   return [=](const Scene& scene) {
     const Stopwatch watch;
     Record record = run(scene, options, *session, {}, {.answer_only = true});
@@ -94,8 +94,7 @@ class ContestantList {
 void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.methods != "all";
   const bool no_gl = is_cpu(options.device);
-  // If --device is not given, methods that draw are measured on GL only if hardware answers;
-  // far-pairs is measured on any GL device.
+  // If --device is not given, methods that draw are measured on GL only if hardware answers.
   const bool gl_by_name = by_name && !options.device.empty();
   const std::string gl_device = options.device.empty() ? "gl" : options.device;
   std::shared_ptr<Session> gl;  // shared by all methods on GL
@@ -111,16 +110,12 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
     list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](BenchContestant& c) {
       c.run = method_run(method, std::make_shared<Session>("native", options.threads), "native");
     });
-    const bool slow = draws(method) && options.device.empty() && !GlContext::hardware_listed();
-    if (!looks(method) || no_gl || slow) continue;
+    const bool slow = options.device.empty() && !GlContext::hardware_listed();
+    if (!draws(method) || no_gl || slow) continue;
     list.add({.name = name, .device = "gl", .left_out = refused}, gl_by_name, "--methods",
              [&](BenchContestant& c) {
                on_gl(c, method);
-               if (draws(method)) {
-                 gl->canvas(obb_fattener(), {});
-               } else {
-                 gl->pairs();
-               }
+               gl->canvas(obb_fattener(), {});
              });
   }
 }
@@ -180,14 +175,10 @@ BenchRow cold_row(const BenchContestant& c, const BenchAnswer& answer) {
   return row;
 }
 
-/// The fastest row of far-pairs.
-const BenchRow* best_far_pairs(const BenchResult& result) {
-  const BenchRow* best = nullptr;
-  for (const BenchRow& row : result.rows) {
-    if (row.name != "far-pairs") continue;
-    if (best == nullptr || row.total_ms.median < best->total_ms.median) best = &row;
-  }
-  return best;
+/// The row of boxes; null if it was not measured.
+const BenchRow* row_of_boxes(const BenchResult& result) {
+  const auto row = std::ranges::find(result.rows, "boxes", &BenchRow::name);
+  return row == result.rows.end() ? nullptr : &*row;
 }
 
 Json row_json(const BenchResult& result, const BenchRow& row) {
@@ -313,7 +304,7 @@ std::string describe(const Scene& scene, const Disagreement& disagreement) {
 
 nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
                                const BenchResult& result) {
-  const BenchRow* best = best_far_pairs(result);
+  const BenchRow* best = row_of_boxes(result);
   const std::optional<double> ratio = best ? ratio_to_fastest(result, *best) : std::nullopt;
   return {
       {"scene", scene.name},
@@ -343,11 +334,11 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
   std::string out = bench_title(scene, options.threads);
   if (const std::string line = not_asked_line(scene); !line.empty())
     out.insert(out.size() - 1, line);
-  const BenchRow* best = best_far_pairs(result);
+  const BenchRow* best = row_of_boxes(result);
   Table table("llrrrrrrrrrrrrrr");
   table.add({"", "device", "ms", "low", "high", "n", "cold", "setup", "build", "find", "exact",
              "candidates", "pairs", "MiB", result.fastest_peer ? "x fastest" : "",
-             best ? "x far-pairs" : ""});
+             best ? "x boxes" : ""});
   for (const BenchRow& row : result.rows) {
     const std::optional<double> ratio = ratio_to_fastest(result, row);
     std::vector<std::string> cells = time_cells(row);

@@ -77,10 +77,10 @@ std::vector<std::string> chosen_names(const std::string& option, const std::stri
 /// Throws Error naming the option for unknown names, a repeat below 1 or a limit below 0.
 void validate(const BenchOptions& options);
 
-/// Our methods and the peers that the options name, set up. Our methods are far-pairs, far and
-/// exact on the CPU, and far-pairs and far on GL if there is a device (far without --device only on
-/// hardware). Throws Error for a contestant that was asked for by name and cannot run at all in
-/// this build or on this machine.
+/// Our methods and the peers that the options name, set up. Our methods are boxes, far and exact on
+/// the CPU, and far on GL if there is a device (without --device only on hardware). Throws Error
+/// for a contestant that was asked for by name and cannot run at all in this build or on this
+/// machine.
 std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions& options,
                                          const Progress& progress = {});
 

@@ -21,30 +21,17 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kAllMethods = "far,cullide,far-pairs,exact";
-constexpr const char* kSelfMethods = "far,far-pairs,exact";
-constexpr const char* kClearanceMethods = "far-pairs,exact";
+constexpr const char* kAllMethods = "far,cullide,boxes,exact";
+constexpr const char* kSelfMethods = "far,boxes,exact";
+constexpr const char* kClearanceMethods = "boxes,exact";
 constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
-constexpr const char* kAuto = "auto";
 
-// The resolutions of a method; only 0 for a method without resolutions, such as `exact`.
+// The resolutions of a method; only 0 for a method that does not draw.
 std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
-  const bool pairs = chooses_views(method);
-  if (!pairs && !draws(method)) return {0};
-  const std::string text = arguments.resolutions.value_or(pairs ? kAuto : kUsualResolutions);
+  if (!draws(method)) return {0};
   std::vector<int> out;
-  for (const std::string& resolution : split_list(text)) {
-    if (resolution != kAuto) {
-      out.push_back(parse_resolution(resolution, "--resolutions"));
-      if (pairs) require_pair_resolution(out.back(), "--resolutions");
-    } else if (pairs) {
-      out.push_back(0);
-    }
-  }
-  if (out.empty()) {
-    throw Error("--resolutions", "auto has no meaning for " + to_string(method),
-                "give a number of pixels as well, or --methods far-pairs");
-  }
+  for (const std::string& text : split_list(arguments.resolutions.value_or(kUsualResolutions)))
+    out.push_back(parse_resolution(text, "--resolutions"));
   return out;
 }
 

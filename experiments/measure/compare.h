@@ -12,10 +12,10 @@
 namespace farcull {
 
 struct CompareArguments {
-  /// Names with commas. Empty: far, cullide, far-pairs and exact, without those that do not support
+  /// Names with commas. Empty: far, cullide, boxes and exact, without those that do not support
   /// the clearance, or objects tested against themselves if the scene has such objects.
   std::optional<std::string> methods;
-  /// px, with commas; `auto` is only for far-pairs, and is its default.
+  /// px, with commas, for methods that draw.
   std::optional<std::string> resolutions;
   std::string offsets = "obb";  // for far
   bool self = false;            // every object was made to be tested against itself
@@ -35,17 +35,17 @@ struct Comparison {
 /// Throws Error naming the option for bad arguments, before a scene is read.
 void validate(const CompareArguments& arguments);
 
-/// Runs every method at every resolution (`exact` once; far with every offset), each `repeat`
-/// times. far and cullide skip `auto` where they have another resolution. Throws Error
-/// for bad arguments, and before the first run for a resolution beyond the device.
+/// Runs every method that draws at every resolution (far with every offset), and the others once,
+/// each `repeat` times. Throws Error for bad arguments, and before the first run for a resolution
+/// beyond the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 
 nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison);
 
 struct SavingsArguments {
-  std::vector<std::string> scenes;    // listed by `farcull scenes`; empty: all but costly ones
-  std::string methods = "far-pairs";  // with commas
+  std::vector<std::string> scenes;  // listed by `farcull scenes`; empty: all but costly ones
+  std::string methods = "boxes";    // with commas
   int repeat = 15;
   RunOptions options;  // resolution, device and so on, of all
 };

@@ -11,9 +11,7 @@
 #include <vector>
 
 #include "core/boxes/oriented.h"
-#include "core/pairs/backend.h"
-#include "core/pairs/grid.h"
-#include "core/pairs/pairs.h"
+#include "core/boxes/search.h"
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -39,42 +37,6 @@ std::vector<Corners> triangles(double half, double size, std::uint64_t seed) {
   }
   return all;
 }
-
-interval::vec4 pixel_vertex(const Vec3& p) {
-  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0};
-}
-
-// Times all work for a triangle of some pixels: its bounds, a strip for each row, depths for each
-// pixel. An item is the interval of depths of a pixel.
-void interval_kernel(benchmark::State& state) {
-  const std::vector<Corners> all = triangles(64, static_cast<double>(state.range(0)), 1);
-  const interval::vec4 widen = {1e-4f, 1e-4f, 1e-4f, 0};
-  std::size_t at = 0;
-  std::int64_t intervals = 0;
-  for (auto _ : state) {
-    const Corners& corners = all[at++ % kCount];
-    const interval::vec4 a = pixel_vertex(corners[0]);
-    const interval::vec4 b = pixel_vertex(corners[1]);
-    const interval::vec4 c = pixel_vertex(corners[2]);
-    interval::vec4 lo, hi;
-    interval::far_bounds(a, b, c, widen, lo, hi);
-    const interval::vec4 margin = interval::far_margin(lo, hi, widen);
-    for (float y = std::floor(lo.y); y <= hi.y; ++y) {
-      interval::FarStrip strip;
-      interval::far_strip(a, b, c, y - margin.y, y + 1 + margin.y, strip);
-      for (float x = std::floor(lo.x); x <= hi.x; ++x) {
-        float near, far;
-        bool some = interval::far_depths(strip, x - margin.x, x + 1 + margin.x, near, far);
-        benchmark::DoNotOptimize(some);
-        benchmark::DoNotOptimize(near);
-        benchmark::DoNotOptimize(far);
-        ++intervals;
-      }
-    }
-  }
-  state.SetItemsProcessed(intervals);
-}
-BENCHMARK(interval_kernel)->Arg(1)->Arg(4)->Arg(16);
 
 // Times where a line through the middle of a triangle enters and leaves the triangle's solid.
 void solid_kernel(benchmark::State& state, const Fattener& fattener,
@@ -144,24 +106,23 @@ BENCHMARK(filter_alone)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_with_filter)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_without_filter)->Arg(0)->Arg(1)->Arg(4);
 
-// Times far-pairs and the exact tests on one frame, in one thread; `range` percent of the vertices
+// Times boxes and the exact tests on one frame, in one thread; `range` percent of the vertices
 // moved since the previous frame. remembers: uses data kept from the previous frame.
 void frame(benchmark::State& state, const char* name, bool self, bool remembers) {
   Scene scene = make_builtin_scene(name);
   for (Object& object : scene.objects) object.self = self;
   const auto moving = scene.vertices.size() * static_cast<std::size_t>(state.range(0)) / 100;
-  const auto backend = cpu_pair_backend(1);
-  const PairSettings settings{.neighbours = false};
+  const BoxesSettings settings{.neighbours = false};
   const ExactQuestion question{.threads = 1, .neighbours = false};
-  PairWorkspace workspace;
+  FrameMemory kept;
   FrameDecider decider;
   double by = 1e-4;
   std::size_t pairs = 0;
   const auto show = [&] {
-    PairMemory* memory = remembers ? &workspace.memory : nullptr;
+    FrameMemory* memory = remembers ? &kept : nullptr;
     if (remembers) memory->moved.update(scene);
-    const PairPlan plan = plan_pairs(scene, settings, 1, memory);
-    const auto found = find_pairs(scene, plan, *backend, workspace).candidates;
+    const BoxesPlan plan = plan_boxes(scene, settings, 1, memory);
+    const auto found = find_boxes(scene, plan, memory).candidates;
     pairs = (remembers ? decider.decide(scene, found, memory->moved, question)
                        : decide(scene, found, question))
                 .pairs.size();
@@ -186,14 +147,14 @@ BENCHMARK_CAPTURE(frame, crumpled_next, "crumpled", true, true)->Apply(percents)
 BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)->Apply(percents);
 BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)->Apply(percents);
 
-// ---- Kernels of scenes: the least that a stage of far-pairs does for one of its items
+// ---- Kernels of scenes: the least that a stage of boxes does for one of its items
 // (experiments/report/floors.py). All but read_triangles() use a part of the scene that stays in
 // caches.
 
-/// A scene, and what far-pairs finds in it.
+/// A scene, and what boxes finds in it.
 struct Prepared {
   Scene scene;
-  PairPlan plan;
+  BoxesPlan plan;
   std::vector<TrianglePair> candidates;
 };
 const Prepared& prepared(const std::string& name) {
@@ -202,11 +163,8 @@ const Prepared& prepared(const std::string& name) {
   Prepared& out = at->second;
   if (!is_new) return out;
   out.scene = make_builtin_scene(name);
-  const PairSettings settings{.neighbours = false};
-  const auto backend = cpu_pair_backend(1);
-  PairWorkspace workspace;
-  out.plan = plan_pairs(out.scene, settings, 1);
-  out.candidates = find_pairs(out.scene, out.plan, *backend, workspace).candidates;
+  out.plan = plan_boxes(out.scene, {.neighbours = false}, 1);
+  out.candidates = find_boxes(out.scene, out.plan).candidates;
   return out;
 }
 
@@ -259,13 +217,13 @@ void box_triangles(benchmark::State& state, const std::string& name) {
   set_items(state, blocks * kWide);
 }
 
-// Sorts as many codes as the scene has runs that meet others. An item is a code.
-void order_runs(benchmark::State& state, const std::string& name) {
+// Sorts as many codes as the scene has blocks that meet others. An item is a code.
+void order_blocks(benchmark::State& state, const std::string& name) {
   struct Coded {
-    std::uint32_t code, run;
+    std::uint32_t code, block;
   };
   Random random(6);
-  std::vector<Coded> given(prepared(name).plan.blocks.triangles / kWide);
+  std::vector<Coded> given(prepared(name).plan.decision.blocks.triangles / kWide);
   for (Coded& one : given)
     one = {static_cast<std::uint32_t>(random.below(1 << 24)),
            static_cast<std::uint32_t>(&one - given.data())};
@@ -287,26 +245,26 @@ void order_runs(benchmark::State& state, const std::string& name) {
   set_items(state, given.size());
 }
 
-// As many pairs of blocks as far-pairs compares at a time.
+// As many pairs of blocks as boxes compares at a time.
 constexpr std::size_t kBlockPairs = 2048;
 
-// Compares the boxes of the triangles of pairs of runs. An item is a pair of runs.
-void compare_runs(benchmark::State& state, const std::string& name) {
+// Compares the boxes of the triangles of pairs of blocks. An item is a pair of blocks.
+void compare_block_pairs(benchmark::State& state, const std::string& name) {
   const auto& [scene, plan, candidates] = prepared(name);
-  const BlockPairs& all = plan.blocks.pairs;
+  const BlockPairs& all = plan.decision.blocks.pairs;
   BlockPairs some;
   const bool inside = all.inside.size() > all.between.size();
   (inside ? some.inside : some.between) = some_of(inside ? all.inside : all.between, kBlockPairs);
-  if (plan.blocks.oriented) {
+  if (plan.decision.blocks.oriented) {
     for (auto _ : state) {
       give_pairs_of_oriented(
-          scene, *plan.blocks.oriented, some, 0, false, 1,
+          scene, *plan.decision.blocks.oriented, some, 0, false, 1,
           [](std::vector<TrianglePair>& found) { benchmark::DoNotOptimize(found.data()); });
     }
     return set_items(state, some.size());
   }
   if (some.size() == 0) return set_items(state, 0);
-  const TriangleBlocks& blocks = *plan.blocks.of;
+  const TriangleBlocks& blocks = *plan.decision.blocks.of;
   const std::vector<std::uint32_t> used = blocks_in(some, blocks.ranges.size());
   UninitializedVector<BlockLanes> lanes(used.size());
   UninitializedVector<VertexBlock> vertices(used.size());
@@ -336,7 +294,7 @@ void compare_runs(benchmark::State& state, const std::string& name) {
   set_items(state, pairs.size());
 }
 
-// Compares the box of a run with the sixteen boxes of another one that lies apart.
+// Compares the box of a block with the sixteen boxes of another one that lies apart.
 void compare_apart(benchmark::State& state) {
   UninitializedVector<BlockLanes> lanes(2);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -369,8 +327,8 @@ void register_kernels(const std::string& name) {
   };
   add("read_triangles", read_triangles);
   add("box_triangles", box_triangles);
-  add("order_runs", order_runs);
-  add("compare_runs", compare_runs);
+  add("order_blocks", order_blocks);
+  add("compare_block_pairs", compare_block_pairs);
   add("filter_candidates", filter_candidates);
 }
 

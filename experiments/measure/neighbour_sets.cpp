@@ -349,9 +349,9 @@ class Asked {
     if (options.device.empty() || is_cpu(options.device)) return;
     session_.emplace(options.device, options.threads);
     const GlContext& context = session_->context();
-    const DeviceVerdict& verdict = session_->verdict(Reliance::drawing);
+    const DeviceVerdict& verdict = session_->verdict();
     record.gl = context.info();
-    record.probes = to_string(verdict, Reliance::drawing);
+    record.probes = to_string(verdict);
     if (!verdict.holds)
       throw Error("--device " + options.device, record.probes, "use --device cpu");
     device_ = gl_voronoi_device(context);

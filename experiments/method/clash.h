@@ -1,5 +1,5 @@
 // Which objects of a scene clash: one row for each pair of objects that meet, lie in one another or
-// are near, as one function from a scene to a record. One run of far-pairs over all objects finds
+// are near, as one function from a scene to a record. One run of boxes over all objects finds
 // the pairs of triangles that meet; exact tests decide the rest.
 #pragma once
 

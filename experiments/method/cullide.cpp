@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
+#include "core/boxes/meetings.h"
 #include "core/native/lanes.h"
-#include "core/pairs/regions.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 #include "offsets/offsets.h"
@@ -120,7 +120,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
       out.device.lanes = lane_target();
     } else {
       out.device.gl = session.context().info();
-      out.device.relies = Reliance::drawing;
+      out.device.relies = true;
     }
     Stage stage = setup_stage(fattener);
     stage.depends = further;

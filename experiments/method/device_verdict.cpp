@@ -35,9 +35,8 @@
 
 namespace farcull {
 
-// The probes of A4 (docs/reliability.md). For FAR pairs the device computes all intervals in one
-// dispatch, and the slices of each window in one dispatch. For both offsets the canvas's fragment
-// program computes intervals of fattened triangles and of solids whose floats are drawn directly.
+// The probes of A4 (docs/reliability.md). For both offsets the canvas's fragment program computes
+// intervals of fattened triangles and of solids whose floats are drawn directly.
 // verify/kernel_check draws the cases and counts the losses.
 
 namespace {
@@ -116,42 +115,6 @@ std::vector<SolidKernel> solid_kernels() {
            adversarial_minkowski, check_minkowski}};
 }
 
-std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
-                                            const KernelProbeOptions& options) {
-  std::vector<ProbeResult> out;
-  out.push_back(result(
-      "intervals of FAR pairs",
-      "far_bounds, far_margin, far_strip, far_depths; real triangles at their limit, over a pixel",
-      [&] {
-        const std::size_t count = options.brief ? 600 : 1800;
-        KernelTally tally;
-        const std::vector<IntervalCase> cases = interval_kernel_cases(options.seed, count);
-        const std::vector<IntervalAnswer> answers = device_intervals(
-            context, cases, options.bare ? "#define FAR_PAIR_ROUNDING 0.0f\n" : "");
-        for (std::size_t i = 0; i < cases.size(); ++i) check_interval(cases[i], answers[i], tally);
-        return tally;
-      }));
-  out.push_back(result(
-      "depth slices, float to int",
-      "far_slice as rationals give it, at borders of steps and beside them", [&] {
-        KernelTally tally;
-        for (std::uint64_t window = 0; window < (options.brief ? 3 : 8); ++window) {
-          const std::vector<SliceCase> cases = slice_kernel_cases(options.seed * 64 + window, 8192);
-          std::vector<SliceCase> sent = cases;
-          if (options.reversed_slices) {
-            for (SliceCase& c : sent) c.steps_per_px = -c.steps_per_px;
-          }
-          check_slices(cases, device_slices(context, sent), tally);
-        }
-        return tally;
-      }));
-  for (ProbeResult& r : out) {
-    r.drawing = false;
-    r.pairs = true;
-  }
-  return out;
-}
-
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options) {
   const std::string tried =
@@ -164,12 +127,13 @@ std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
   return out;
 }
 
-std::vector<ProbeResult> all_probes(const GlContext& context,
-                                    const std::function<void(const std::string&)>& started) {
-  std::vector<ProbeResult> out = run_probes(context, {}, started);
+namespace {
+
+std::vector<ProbeResult> probes_of(const GlContext& context, bool brief,
+                                   const std::function<void(const std::string&)>& started) {
+  std::vector<ProbeResult> out = run_probes(context, {.brief = brief}, started);
   if (started) started("kernels");
-  for (ProbeResult& r : pair_kernel_probes(context)) out.push_back(std::move(r));
-  for (ProbeResult& r : solid_kernel_probes(context)) out.push_back(std::move(r));
+  for (ProbeResult& r : solid_kernel_probes(context, {.brief = brief})) out.push_back(std::move(r));
   std::stable_sort(out.begin(), out.end(), [](const ProbeResult& a, const ProbeResult& b) {
     return std::pair(a.assumption.size(), a.assumption) <
            std::pair(b.assumption.size(), b.assumption);  // A10 after A2
@@ -177,10 +141,15 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
   return out;
 }
 
-std::vector<ProbeResult> drawing_probes(const GlContext& context) {
-  std::vector<ProbeResult> out = run_probes(context, {.brief = true, .use = ProbeUse::drawing});
-  for (ProbeResult& r : solid_kernel_probes(context, {.brief = true})) out.push_back(std::move(r));
-  return out;
+}  // namespace
+
+std::vector<ProbeResult> all_probes(const GlContext& context,
+                                    const std::function<void(const std::string&)>& started) {
+  return probes_of(context, false, started);
+}
+
+std::vector<ProbeResult> brief_probes(const GlContext& context) {
+  return probes_of(context, true, {});
 }
 
 }  // namespace farcull
@@ -390,10 +359,6 @@ Json probe_json(const ProbeResult& p) {
           {"samples", p.samples}};
 }
 
-const char* assumptions(Reliance reliance) {
-  return reliance == Reliance::pairs ? "A4, A7, A8 and A10" : "A1 to A10";
-}
-
 }  // namespace
 
 std::string utc_now() {
@@ -406,7 +371,7 @@ std::string utc_now() {
   return text;
 }
 
-std::string to_string(const DeviceVerdict& verdict, Reliance reliance) {
+std::string to_string(const DeviceVerdict& verdict) {
   if (!verdict.failed.empty()) {
     std::string out = "a probe fails on this device: ";
     for (std::size_t i = 0; i < verdict.failed.size(); ++i)
@@ -414,14 +379,13 @@ std::string to_string(const DeviceVerdict& verdict, Reliance reliance) {
     return out;
   }
   if (!verdict.holds) return "the probes of this device broke off: " + verdict.problem;
-  return counted(static_cast<std::uint64_t>(verdict.probes), "probe", "probes") + " of " +
-         assumptions(reliance) + (verdict.probes == 1 ? " passes" : " pass") +
-         " on this device (probed " + verdict.made + (verdict.remembered ? ", remembered)" : ")");
+  return counted(static_cast<std::uint64_t>(verdict.probes), "probe", "probes") + " of A1 to A10" +
+         (verdict.probes == 1 ? " passes" : " pass") + " on this device (probed " + verdict.made +
+         (verdict.remembered ? ", remembered)" : ")");
 }
 
-VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance) {
-  return {{"relied on", reliance == Reliance::pairs ? "pairs" : "drawing"},
-          {"kind", device.kind},
+VerdictInputs verdict_inputs(const GlInfo& device) {
+  return {{"kind", device.kind},
           {"vendor", device.vendor},
           {"renderer", device.renderer},
           {"version", device.version},
@@ -445,34 +409,27 @@ std::string verdict_folder() {
   return absolute(home) ? std::string(home) + "/.cache/farcull" : "";
 }
 
-std::vector<ProbeResult> pair_probes(const GlContext& context) {
-  std::vector<ProbeResult> out = run_probes(context, {.brief = true, .use = ProbeUse::pairs});
-  for (ProbeResult& r : pair_kernel_probes(context, {.brief = true})) out.push_back(std::move(r));
-  return out;
-}
-
-DeviceVerdict device_verdict(const GlInfo& device, Reliance reliance, const Probes& probes,
-                             const Say& say) {
-  const VerdictInputs inputs = verdict_inputs(device, reliance);
+DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say) {
+  const VerdictInputs inputs = verdict_inputs(device);
   const std::string file = file_of(inputs);
   std::string useless;
   if (const std::optional<DeviceVerdict> known = read(file, inputs, useless)) return *known;
   if (say) {
     const std::string unkept = unwritable(file);
-    say("probing " + device.renderer + " for " + assumptions(reliance) +
+    say("probing " + device.renderer + " for A1 to A10" +
         (unkept.empty() ? ", once for this device, driver and build"
                         : "; the verdict cannot be kept, so every run does it: " + unkept) +
         (useless.empty() ? "" : "; " + useless + " and is written anew"));
   }
   const Stopwatch start;
   const std::vector<ProbeResult> results = probes();
-  DeviceVerdict out = keep_verdict(device, reliance, results, start.ms());
+  DeviceVerdict out = keep_verdict(device, results, start.ms());
   if (!useless.empty()) out.note = useless + (out.note.empty() ? "" : "; " + out.note);
   return out;
 }
 
-DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
-                           const std::vector<ProbeResult>& results, double ms) {
+DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>& results,
+                           double ms) {
   DeviceVerdict out;
   out.made = utc_now();
   out.probes = results.size();
@@ -488,7 +445,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
   }
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
-  const VerdictInputs inputs = verdict_inputs(device, reliance);
+  const VerdictInputs inputs = verdict_inputs(device);
   const std::string file = file_of(inputs);
   // This comes first, so that no later failure leaves an older promise that these results refute.
   if (!out.holds) out.note = forget(file);

@@ -1,4 +1,4 @@
-// Decides whether a device keeps the assumptions that a method's promise rests on
+// Decides whether a device keeps the assumptions A1 to A10 that the promise of far rests on
 // (docs/reliability.md), as far as probes can tell. The probes run once for a device, a driver and
 // a build of farcull; a file keeps their findings.
 #pragma once
@@ -33,18 +33,13 @@ std::vector<SolidKernel> solid_kernels();
 /// The members after the first two are deliberate defects, so that tests can see the probes fail.
 struct KernelProbeOptions {
   std::uint64_t seed = 1;
-  bool brief = false;            // about a third of the samples
-  bool bare = false;             // kernels that widen nothing
-  bool reversed_slices = false;  // depth slices from far to near
-  bool late_stores = false;      // another solid is stored than is asked about
+  bool brief = false;        // about a third of the samples
+  bool bare = false;         // kernels that widen nothing
+  bool late_stores = false;  // another solid is stored than is asked about
 };
 
-/// Probes what FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles
-/// of every kind, far_slice, and the conversion of a float to an integer. All functions here make
-/// the context current while they run.
-std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
-                                            const KernelProbeOptions& options = {});
-/// Probes solid_interval of both offsets, which drawing relies on as well.
+/// Probes solid_interval of both offsets. All functions here make the context current while they
+/// run.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
@@ -52,16 +47,12 @@ std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
 /// run_probes().
 std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {});
-/// Runs brief probes of the assumptions that drawing relies on.
-std::vector<ProbeResult> drawing_probes(const GlContext& context);
+/// The same, but brief: about a third of the samples.
+std::vector<ProbeResult> brief_probes(const GlContext& context);
 
 // ---- the verdict ----
 
 struct ProbeResult;  // core/gl/probe/probe.h
-
-/// Which assumptions of a device a method relies on. pairs: those of FAR pairs on GL (A4 in compute
-/// shaders, A7, A8, A10). drawing: those of far (A1 to A10).
-enum class Reliance { pairs, drawing };
 
 /// The time now: UTC, ISO 8601, in seconds.
 std::string utc_now();
@@ -79,13 +70,13 @@ struct DeviceVerdict {
 };
 
 /// One sentence without a full stop: what the probes found.
-std::string to_string(const DeviceVerdict& verdict, Reliance reliance);
+std::string to_string(const DeviceVerdict& verdict);
 
 /// Names and values of all that code generation and arithmetic on this device depend on: the
 /// device, its driver, threads and limits, the sources of kernels and probes, the features of the
 /// processor (for a software device), and the variables of the environment that drivers read.
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
-VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance);
+VerdictInputs verdict_inputs(const GlInfo& device);
 
 /// The folder of verdicts: $XDG_CACHE_HOME/farcull, else $HOME/.cache/farcull; "" if neither is an
 /// absolute path.
@@ -93,8 +84,6 @@ std::string verdict_folder();
 
 /// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;
-/// The brief probes of Reliance::pairs.
-std::vector<ProbeResult> pair_probes(const GlContext& context);
 
 /// Receives one line before probes run, which says that they run, and why.
 using Say = std::function<void(const std::string& line)>;
@@ -102,12 +91,11 @@ using Say = std::function<void(const std::string& line)>;
 /// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by
 /// keep_verdict(). A file that is damaged, of somebody else, or about something else is ignored and
 /// written anew. Errors of the file system do not throw; what `probes` throws passes through.
-DeviceVerdict device_verdict(const GlInfo& device, Reliance reliance, const Probes& probes,
-                             const Say& say = {});
+DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say = {});
 
 /// Makes a verdict from the results of probes and keeps it in place of an older one. Keeps nothing
 /// if a probe broke off and none failed. If the verdict does not hold, first removes the older one.
-DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
-                           const std::vector<ProbeResult>& results, double ms);
+DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>& results,
+                           double ms);
 
 }  // namespace farcull

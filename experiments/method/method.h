@@ -14,8 +14,8 @@ namespace farcull {
 
 /// far: FAR (2004), CULLIDE's passes on fattened primitives. cullide: CULLIDE (2003).
 /// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), every triangle an owner.
-/// i_collide: sweep and prune (I-COLLIDE, 1995). far_pairs: boxes of runs, or interval
-/// pairs. exact: no culling.
+/// i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks of triangles. exact: no
+/// culling.
 /// docs/methods.md tells each one's source and where it can miss.
 enum class Method {
   far,
@@ -23,7 +23,7 @@ enum class Method {
   quick_cullide,
   s_cullide,
   i_collide,
-  far_pairs,
+  boxes,
   exact,
   // A new method goes here.
 };
@@ -47,12 +47,11 @@ struct Traits {
   Method method;
   const char* name;  // the value of --method
   Promises promises = Promises::never;
-  bool draws = false;          // on a canvas, in views at a resolution
-  bool fattens = false;        // fattens what it draws, by an offset and a radius
-  bool quick = false;          // keeps visibility bits between passes
-  bool chooses_views = false;  // chosen by the scene; needs no canvas; also on the cores of the CPU
-  bool culls = true;           // false: tests every pair whose boxes overlap
-  bool tests_self = false;     // can test an object's triangles against each other
+  bool draws = false;             // on a canvas, in views at a resolution
+  bool fattens = false;           // fattens what it draws, by an offset and a radius
+  bool quick = false;             // keeps visibility bits between passes
+  bool culls = true;              // false: tests every pair whose boxes overlap
+  bool tests_self = false;        // can test an object's triangles against each other
   bool tests_self_alone = false;  // tests only an object's triangles against each other
   bool takes_clearance = false;
 
@@ -72,12 +71,9 @@ std::string method_names(const std::function<bool(const Traits&)>& can = {});
 
 inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
-inline bool chooses_views(Method method) { return traits(method).chooses_views; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
 /// Whether boxes of objects or of triangles decide what the method draws.
 inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
-/// Whether the method looks along views, on a canvas or without one.
-inline bool looks(Method method) { return draws(method) || chooses_views(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }
 inline bool takes_clearance(Method method) { return traits(method).takes_clearance; }

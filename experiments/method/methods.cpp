@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/pairs/backend.h"
+#include "core/boxes/search.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -52,14 +52,13 @@ constexpr std::array kTable = {
            .tests_self = true,
            .plan = plan_sweep,
            .find = find_by_sweep},
-    Traits{.method = Method::far_pairs,
-           .name = "far-pairs",
+    Traits{.method = Method::boxes,
+           .name = "boxes",
            .promises = Promises::always,
-           .chooses_views = true,
            .tests_self = true,
            .takes_clearance = true,
-           .plan = plan_far_pairs,
-           .find = find_far_pairs},
+           .plan = plan_by_boxes,
+           .find = find_by_boxes},
     Traits{.method = Method::exact,
            .name = "exact",
            .culls = false,
@@ -96,7 +95,9 @@ Method parse_method(const std::string& name, const std::string& option) {
   for (const Method method : all_methods()) {
     if (name == to_string(method)) return method;
   }
-  throw Error(option, "'" + name + "' is no method", "give " + method_names());
+  const bool renamed = name == "far-pairs";
+  throw Error(option, "'" + name + "' is no method",
+              (renamed ? "far-pairs is now called boxes; " : "") + ("give " + method_names()));
 }
 
 std::string method_names(const std::function<bool(const Traits&)>& can) {
@@ -208,87 +209,34 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   return out;
 }
 
-// Far-pairs (core/pairs/pairs.h): boxes of runs on the CPU, or interval pairs on the device of the
-// session.
+// Boxes (core/boxes/search.h).
 
-void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
+void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
   const RunOptions& options = plan.options;
-  PairSettings settings{.views = {},
-                        .resolution = resolution_of(options),
-                        .clearance = options.clearance,
-                        .full = options.full,
-                        // If the user names a GL device, views are looked at and no boxes decide.
-                        .blocks = options.device.empty() || is_cpu(options.device),
-                        .neighbours = options.neighbours,
-                        // The accounting is about all candidates.
-                        .lists = options.verify,
-                        .ignored = options.ignored};
-  if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
-  PairPlan pairs = plan_pairs(scene, settings, threads, plan.memory);
-  plan.trace = pairs.trace;
-  Stage setup{.kind = StageKind::setup};
-  if (pairs.choices.empty()) {
-    setup.reason = Reason::nothing_to_look_at;
-  } else {
-    setup.ran = true;
-    setup.reason = Reason::device;
-    setup.detail = options.device.empty() ? "OpenGL compute where hardware answers, else the cpu"
-                                          : options.device;
-  }
-  plan.ahead.push_back(setup);
-  const std::vector<Stage> views = planned_stages(pairs);
-  plan.ahead.insert(plan.ahead.end(), views.begin(), views.end());
-  plan.work = std::move(pairs);
+  BoxesPlan boxes = plan_boxes(scene,
+                               {.clearance = options.clearance,
+                                .full = options.full,
+                                .neighbours = options.neighbours,
+                                // The accounting is about all candidates.
+                                .lists = options.verify,
+                                .ignored = options.ignored},
+                               threads, plan.memory);
+  plan.trace = boxes.trace;
+  plan.ahead.push_back(planned_stage(boxes));
+  plan.work = std::move(boxes);
 }
 
-namespace {
-
-void move_to(Candidates& out, PairResult&& result) {
+Candidates find_by_boxes(const Scene& scene, const Plan& plan, Session&, const Progress& progress,
+                         const TakePairs& take) {
+  const Stopwatch watch;
+  BoxesResult result =
+      find_boxes(scene, std::get<BoxesPlan>(plan.work), plan.memory, progress, take);
+  Candidates out;
+  out.device.note = "the method draws nothing";
   out.pairs = std::move(result.candidates);
   out.given = result.given;
   out.count = result.count;
-  out.by = std::move(result.views);
-  out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
-}
-
-}  // namespace
-
-Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session,
-                          const Progress& progress, const TakePairs& take) {
-  const auto& pairs = std::get<PairPlan>(plan.work);
-  Candidates out;
-  out.by = std::vector<PairView>();
-  if (pairs.nothing_can_meet()) {
-    out.device.note = plan.options.ignored.empty()
-                          ? "no two objects' boxes overlap, and none is tested against itself"
-                          : "no two objects' boxes overlap, ignored ones apart, and none is tested "
-                            "against itself";
-    out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
-    return out;
-  }
-  if (pairs.choices.empty()) {
-    out.device = {.gl = {}, .cpu = true, .note = "boxes of runs decide: no view", .relies = {}};
-    out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
-    const Stopwatch watch;
-    move_to(out, find_pairs(scene, pairs, *cpu_pair_backend(session.threads()),
-                            session.pair_workspace(), progress, take));
-    out.ms = watch.ms();
-    return out;
-  }
-  if (progress) progress("opening the device");
-  const Stopwatch setup;
-  PairDevice& device = session.pairs();
-  out.setup_ms = setup.ms();
-  out.device = {.gl = device.gl, .cpu = !device.gl, .note = device.reason, .relies = {}};
-  if (device.gl) out.device.relies = Reliance::pairs;
-  out.trace.push_back({.kind = StageKind::setup,
-                       .ran = true,
-                       .reason = Reason::device,
-                       .detail = device.backend->name(),
-                       .ms = out.setup_ms});
-
-  const Stopwatch watch;
-  move_to(out, find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress, take));
+  out.trace.push_back(std::move(result.stage));
   out.ms = watch.ms();
   return out;
 }

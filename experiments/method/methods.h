@@ -7,8 +7,8 @@
 
 namespace farcull {
 
-PlanFunction plan_drawing, plan_sweep, plan_far_pairs, plan_exact;
-FindFunction find_by_drawing, find_by_sweep, find_far_pairs, find_exact;
+PlanFunction plan_drawing, plan_sweep, plan_by_boxes, plan_exact;
+FindFunction find_by_drawing, find_by_sweep, find_by_boxes, find_exact;
 // The functions of a new method go here.
 
 }  // namespace farcull

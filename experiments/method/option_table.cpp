@@ -82,22 +82,9 @@ bool take_radius(const std::string& text, RunOptions& options) {
          (take_number_from(0.0, text, options.radius.factor) && options.radius.factor <= 1e5);
 }
 
-bool take_resolution(const std::string& text, RunOptions& options) {
-  if (text != "auto") return take_number_from(1, text, options.resolution);
-  if (!chooses_views(options.method)) {
-    throw Error("{resolution}", "auto has no meaning for {method} " + to_string(options.method),
-                "give a number of pixels, or use {method} far-pairs");
-  }
-  return true;
-}
-
 bool take_views(const std::string& text, RunOptions& options) {
   if (text.empty()) throw empty_value("{views}", "give directions, as in x,y,z");
-  if (text == "auto" && !chooses_views(options.method)) {
-    throw Error("{views}", "auto has a meaning for far-pairs alone",
-                "give directions, as in x,y,z, or use far-pairs");
-  }
-  options.views = text == "auto" ? "" : text;
+  options.views = text;
   return true;
 }
 
@@ -116,7 +103,6 @@ bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
 bool drawing_levels(const Traits& t) { return takes_boxes(t.method); }
 bool drawing_triangles(const Traits& t) { return t.draws && !t.fattens; }
-bool looking(const Traits& t) { return t.draws || t.chooses_views; }
 
 std::optional<std::string> only_if(bool unusual, std::string value) {
   return unusual ? std::optional(std::move(value)) : std::nullopt;
@@ -136,24 +122,20 @@ using Run = const RunOptions&;
 const Option kOptions[] = {
     {.name = "method",
      .type = "METHOD",
-     .help = "far-pairs, far, cullide, quick-cullide, s-cullide,\ni-collide or exact (see farcull "
-             "help methods); default\nfar-pairs",
+     .help = "boxes, far, cullide, quick-cullide, s-cullide,\ni-collide or exact (see farcull "
+             "help methods); default\nboxes",
      .serves = any,
      .take = [](Given text, RunOptions& o) { return o.method = parse_method(text), true; },
      .words = all_method_names()},
     {.name = "resolution",
-     .type = "N|auto",
+     .type = "N",
      .help =
-         "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
-         "chosen by the scene;\nfar-pairs: with a number views decide",
-     .serves = looking,
-     .take = take_resolution,
+         "pixels along the larger side of each view's window,\nfor methods that draw; default 512",
+     .serves = drawing,
+     .take = [](Given text, RunOptions& o) { return take_number_from(1, text, o.resolution); },
      .kind = "resolution",
      .remedy = "give a whole number of pixels from 1, such as 512",
-     .value = [](Run o) -> OptionValue {
-       const bool chosen = chooses_views(o.method) && o.resolution == 0;
-       return chosen ? std::string("auto") : value_if(looks(o.method), resolution_of(o));
-     }},
+     .value = [](Run o) { return value_if(draws(o.method), resolution_of(o)); }},
     {.name = "radius",
      .type = "RADIUS",
      .help = "of the ball that fattens a primitive, for far: budget,\n"
@@ -269,11 +251,10 @@ const Option kOptions[] = {
     {.name = "views",
      .type = "VIEWS",
      .help = "axes or directions to look along, by commas, as in\n"
-             "x,-y,1:1:0.5; default x,y,z; for far-pairs auto: the\n"
-             "scene decides whether views are needed, and which",
-     .serves = looking,
+             "x,-y,1:1:0.5, for methods that draw; default x,y,z",
+     .serves = drawing,
      .take = take_views,
-     .words = {"auto", "x", "y", "z", "x,y,z"}},
+     .words = {"x", "y", "z", "x,y,z"}},
     {.name = "rounds",
      .type = "N",
      .help = "at most N rounds over all views, for methods that draw;\n"
@@ -343,8 +324,8 @@ const Option kOptions[] = {
      .value = [](Run o) { return value_if(drawing_triangles(traits(o.method)), o.conservative); }},
     {.name = "device",
      .type = "DEVICE",
-     .help = std::string(kDeviceHelp) + ";\nfar-pairs: with a GL device views decide",
-     .serves = looking,
+     .help = "which draws: " + std::string(kDeviceHelp),
+     .serves = drawing,
      .take = take_device,
      .kind = "device",
      .remedy = "give native, gl, software, hardware or a number that `farcull doctor` lists",
@@ -352,13 +333,13 @@ const Option kOptions[] = {
     {.name = "self",
      .type = "",
      .help = "every object is tested against itself as well\n"
-             "(far, far-pairs, s-cullide, i-collide, exact); collisions\n"
+             "(far, boxes, s-cullide, i-collide, exact); collisions\n"
              "of triangles that share a vertex position are listed apart",
      .serves = [](const Traits& t) { return t.tests_self; }},
     {.name = "clearance",
      .type = "D",
      .help = "pairs at this distance or less collide, in world\n"
-             "units (far-pairs, exact); default 0",
+             "units (boxes, exact); default 0",
      .serves = [](const Traits& t) { return t.takes_clearance; },
      .take =
          [](Given text, RunOptions& o) {
@@ -395,8 +376,7 @@ const Option kOptions[] = {
     {.name = "full",
      .type = "",
      .help = "leave nothing out that the scene does not need, to\n"
-             "measure what leaving out saves (see farcull plan);\n"
-             "far-pairs: with this option views decide",
+             "measure what leaving out saves (see farcull plan)",
      .serves = [](const Traits& t) { return t.culls; },
      .take = [](Given, RunOptions& o) { return o.full = true; },
      .why_not = [](const Traits&) { return "leaves nothing out"; },
@@ -444,7 +424,6 @@ void require_range(const RunOptions& options) {
     throw Error("{offset}", "'" + options.offset + "' is no offset",
                 "give one of " + offset_names());
   }
-  if (chooses_views(options.method)) require_pair_resolution(options.resolution);
   if (!options.views.empty()) parse_views(options.views);
 }
 
@@ -465,14 +444,6 @@ int parse_repeat(const std::string& text) {
   int value = 0;
   if (take_number_from(1, text, value)) return value;
   throw Error("{repeat}", "'" + text + "' is no number of runs", "give 1 or more");
-}
-
-void require_pair_resolution(int resolution, const std::string& option) {
-  if (resolution <= kMostPairResolution) return;
-  throw Error(option,
-              std::to_string(resolution) + " is outside 1 .. " +
-                  std::to_string(kMostPairResolution) + ", the limit of far-pairs",
-              "give a number in that range, or auto");
 }
 
 }  // namespace farcull

@@ -68,13 +68,11 @@ void validate(const RunOptions& options, const GivenOptions& given) {
 }
 
 int resolution_of(const RunOptions& options) {
-  if (options.resolution > 0 || chooses_views(options.method)) return options.resolution;
-  return kUsualResolution;
+  return options.resolution > 0 ? options.resolution : kUsualResolution;
 }
 
 std::string views_of(const RunOptions& options) {
-  if (!options.views.empty() || chooses_views(options.method)) return options.views;
-  return kUsualViews;
+  return options.views.empty() ? kUsualViews : options.views;
 }
 
 DepthMode depth_of(const RunOptions& options) {
@@ -138,10 +136,9 @@ std::string radius_text(const RadiusRule& radius) {
 }
 
 std::string describe(const RunOptions& options) {
-  const int resolution = resolution_of(options);
-  if (!looks(options.method) || resolution == 0) return to_string(options.method);
+  if (!draws(options.method)) return to_string(options.method);
   const std::string form = form_text(options);
-  return to_string(options.method) + " at " + std::to_string(resolution) + " px" +
+  return to_string(options.method) + " at " + std::to_string(resolution_of(options)) + " px" +
          (form.empty() ? "" : ", " + form);
 }
 

@@ -20,7 +20,7 @@ namespace farcull {
 
 /// The method if the user names none, on every device. It misses nothing, and on most scenes it is
 /// the fastest (docs/bench.md).
-inline constexpr Method kDefaultMethod = Method::far_pairs;
+inline constexpr Method kDefaultMethod = Method::boxes;
 
 /// How much contact detail to report (verify/contact.h). segments: kinds, and the points that the
 /// triangles have in common.
@@ -35,10 +35,9 @@ enum class BoxLevel : std::uint8_t { objects, triangles, enough };
 struct RunOptions {
   Method method = kDefaultMethod;
   bool method_is_default = false;  // the user named no method; the record says why it is this one
-  int resolution = 0;      // px along the larger side of a view's window; 0: 512, but chosen by the
-                           // scene for far-pairs
-  RadiusRule radius = {};  // far only
-  std::string offset = "obb";           // far only
+  int resolution = 0;              // px along the larger side of a view's window; 0: 512
+  RadiusRule radius = {};          // far only
+  std::string offset = "obb";      // far only
   std::optional<DepthMode> depth = {};  // default: fragment for far, fixed for the CULLIDE family
   DepthFormat depth_format = DepthFormat::float32;
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
@@ -50,14 +49,14 @@ struct RunOptions {
   bool objects_alone = false;          // culls only objects, not triangles; not s-cullide
   bool conservative = false;           // a fragment in each pixel touched; not far
   std::optional<BoxLevel> boxes = {};  // default: enough if far promises, else objects
-  std::string views = {};              // "": x,y,z, but chosen by the scene for far-pairs
+  std::string views = {};              // "": x,y,z
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even if only a software
                             // renderer answers; hardware, software or a number: that GL device;
                             // "": GL if a hardware device answers, else the cores of the CPU
-  double clearance = 0;     // world units, finite, >= 0; far-pairs and exact only
+  double clearance = 0;     // world units, finite, >= 0; boxes and exact only
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
-                           // candidates of far and far-pairs nor decided
+                           // candidates of far and boxes nor decided
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
                                          // in_order() gives them
   std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours included; 0: all
@@ -126,13 +125,7 @@ RadiusRule parse_radius(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming repeat.
 int parse_repeat(const std::string& text);
 
-/// The largest resolution of far-pairs, in px. It only limits time, since a window has up to its
-/// square of pixels.
-constexpr int kMostPairResolution = 16384;
-/// Throws Error naming `option` if the resolution is above kMostPairResolution.
-void require_pair_resolution(int resolution, const std::string& option = "{resolution}");
-
-/// Whether a device is the cores of the CPU: "native", or "cpu" as far-pairs calls it.
+/// Whether a device is the cores of the CPU: "native", or its other name "cpu".
 inline bool is_cpu(const std::string& device) { return device == "native" || device == "cpu"; }
 inline constexpr const char* kDeviceHelp =
     "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
@@ -140,14 +133,13 @@ inline constexpr const char* kDeviceHelp =
     "lists; default GL where hardware answers and keeps the\n"
     "assumptions, else native";
 
-/// The value that was given, else the default. If the scene chooses, resolution_of() returns 0, and
-/// views_of() returns "".
+/// The value that was given, else the default.
 int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
 BoxLevel boxes_of(const RunOptions& options);
-/// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
+/// Whether the method promises to miss nothing: boxes and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);
 /// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
@@ -161,7 +153,7 @@ std::string radius_text(const RadiusRule& radius);
 /// The method in words for messages, such as "cullide at 512 px, --rounds 1".
 std::string describe(const RunOptions& options);
 
-/// Why the method was run, as "--method" or "no --method: far-pairs misses nothing, ...".
+/// Why the method was run, as "--method" or "no --method: boxes misses nothing, ...".
 std::string method_reason(const RunOptions& options);
 
 }  // namespace farcull

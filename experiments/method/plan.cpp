@@ -18,7 +18,7 @@ std::vector<Stage> Plan::stages() const {
 }
 
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads, const Progress& progress,
-          PairMemory* memory) {
+          FrameMemory* memory) {
   const FloatingPointGuard guard;
   const Stopwatch watch;
   validate(options);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/base/stage.h"
+#include "core/boxes/search.h"
 #include "core/cull/cull.h"
 #include "core/cull/patches.h"
-#include "core/pairs/pairs.h"
 #include "core/view/regions.h"
 #include "experiments/method/options.h"
 
@@ -29,21 +29,21 @@ struct DrawPlan {
 
 struct Plan {
   RunOptions options;
-  std::variant<std::monostate, DrawPlan, PairPlan> work;
+  std::variant<std::monostate, DrawPlan, BoxesPlan> work;
   std::vector<Stage> trace;  // the stages of planning itself: they have run
   std::vector<Stage> ahead;  // the stages to come, in order; those that pixels decide are marked
   double ms = 0;             // time of planning
-  PairMemory* memory = nullptr;  // of the scene's last frame, for far-pairs
+  FrameMemory* memory = nullptr;  // of the scene's last frame, for boxes
 
   /// The stages of `trace`, then those of `ahead`.
   std::vector<Stage> stages() const;
 };
 
 /// Plans the run. The same scene and options give the same plan. No device is opened. threads: of
-/// the CPU; 0: as many as there are cores. memory: as plan_pairs(). Throws Error for options that
+/// the CPU; 0: as many as there are cores. memory: as plan_boxes(). Throws Error for options that
 /// are out of range or do not go together, and for a scene that the method has no use for.
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
-          const Progress& progress = {}, PairMemory* memory = nullptr);
+          const Progress& progress = {}, FrameMemory* memory = nullptr);
 
 /// Throws Error if an object is tested against itself and the method cannot do that, or if none is
 /// and the method can do nothing else.

@@ -10,10 +10,10 @@
 #include "core/base/fields.h"
 #include "core/base/floating_point.h"
 #include "core/base/stage.h"
+#include "core/boxes/join.h"
 #include "core/canvas/canvas.h"
 #include "core/cull/cull.h"
 #include "core/gl/base/context.h"
-#include "core/pairs/pairs.h"
 #include "experiments/method/device_verdict.h"
 #include "experiments/method/options.h"
 #include "verify/accounting.h"
@@ -26,12 +26,12 @@ namespace farcull {
 
 /// The device that answered.
 struct UsedDevice {
-  std::optional<GlInfo> gl;        // the GL device; empty: none, or the cores of the CPU
-  bool cpu = false;                // the cores of the CPU answered
-  std::string lanes = {};          // the instruction set of the native canvas; empty for others
-  int depth_bits = 0;              // of the canvas
-  std::string note;                // why no device was used; for far-pairs, why this one
-  std::optional<Reliance> relies;  // what the promise relies on; empty: on no GL device
+  std::optional<GlInfo> gl;  // the GL device; empty: none, or the cores of the CPU
+  bool cpu = false;          // the cores of the CPU answered
+  std::string lanes = {};    // the instruction set of the native canvas; empty for others
+  int depth_bits = 0;        // of the canvas
+  std::string note;          // why no device was used, or why this one
+  bool relies = false;       // the promise relies on the GL device
 };
 
 /// For sweep and prune: the number of triangles of the objects that are left after comparing boxes
@@ -45,14 +45,14 @@ struct Candidates {
   bool given = false;                    // they were decided as they were found, and not listed
   std::uint64_t count = 0;               // of candidate pairs
   std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
-  std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for far-pairs
+  std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for boxes
                                          // run() fills it from the pairs; empty for a method that
                                          // culls nothing, as all are kept
   std::uint64_t triangle_count = 0;      // of the potentially colliding set
   std::uint64_t object_count = 0;
   std::optional<Collisions> decided;  // set if they were given
-  /// The views of a drawing method, or of far-pairs; or the objects of a sweep.
-  std::variant<std::monostate, std::vector<ViewReport>, std::vector<PairView>, SweptObjects> by;
+  /// The views of a drawing method, or the objects of a sweep.
+  std::variant<std::monostate, std::vector<ViewReport>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
   UsedDevice device;
   CanvasWork asked;  // work of the GL device in drawing; all 0 for other methods
@@ -62,19 +62,14 @@ struct Candidates {
   double decided_ms = 0;  // of deciding, if they were given; not part of ms
 
   /// The views in `by`; empty if it holds another kind.
-  const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }
-  const std::vector<PairView>& pair_views() const { return all_of<PairView>(); }
+  const std::vector<ViewReport>& views() const {
+    static const std::vector<ViewReport> none;
+    const auto* views = std::get_if<std::vector<ViewReport>>(&by);
+    return views ? *views : none;
+  }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
     return swept ? std::optional(swept->triangles) : std::nullopt;
-  }
-
- private:
-  template <class View>
-  const std::vector<View>& all_of() const {
-    static const std::vector<View> none;
-    const auto* views = std::get_if<std::vector<View>>(&by);
-    return views ? *views : none;
   }
 };
 

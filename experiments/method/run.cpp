@@ -95,7 +95,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
                 const ExactQuestion* question, const FrameChange* change, bool marks,
                 Record& record) {
   const Stopwatch comparing;
-  PairMemory* const memory = session.pair_memory();
+  FrameMemory* const memory = session.frame_memory();
   if (memory) memory->moved.update(scene, change);
   const double compared_ms = comparing.ms();
   const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
@@ -135,7 +135,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     FrameDecider* const frames = options.limit == 0 ? session.frame_decider() : nullptr;
     FirstCollisions first =
         frames ? FirstCollisions{.collisions = frames->decide(
-                                     scene, pairs, session.pair_memory()->moved, question),
+                                     scene, pairs, session.frame_memory()->moved, question),
                                  .decided = pairs.size()}
                : decide(scene, pairs, question, options.limit);
     record.collisions = std::move(first.collisions);
@@ -144,7 +144,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     ran(watch.ms());
   }
   record.trace.push_back(stage);
-  if (PairMemory* const memory = session.pair_memory())
+  if (FrameMemory* const memory = session.frame_memory())
     memory->moved.notify(mostly_unmoved(memory->moved, record.found.pairs));
 }
 
@@ -213,13 +213,13 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
       promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
   if (!promise.holds || !device.relies) return promise;
   try {
-    promise.verdict = session.verdict(*device.relies);
+    promise.verdict = session.verdict();
   } catch (...) {
     session.forget_device();
     throw;
   }
   promise.holds = promise.verdict->holds;
-  promise.reason = to_string(*promise.verdict, *device.relies);
+  promise.reason = to_string(*promise.verdict);
   return promise;
 }
 

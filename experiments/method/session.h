@@ -1,8 +1,6 @@
-// The session: the GL context, canvases, device of FAR pairs and workspaces that the runs of one
-// process share.
+// The session: the GL context, canvases and memories that the runs of one process share.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,12 +8,11 @@
 #include <thread>
 #include <tuple>
 
+#include "core/boxes/frames.h"
 #include "core/canvas/fatten.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"
 #include "core/native/canvas.h"
-#include "core/pairs/backend.h"
-#include "core/pairs/pairs.h"
 #include "core/sweep/sweep_prune.h"
 #include "experiments/method/device_verdict.h"
 #include "verify/exact.h"
@@ -31,22 +28,14 @@ struct CanvasDevice {
   std::string reason;
 };
 
-/// The device of FAR pairs.
-struct PairDevice {
-  std::unique_ptr<PairBackend> backend;  // keeps its buffers from call to call
-  std::optional<GlInfo> gl;              // the GL device; empty: the CPU
-  std::string reason;                    // why this device
-};
-
 /// Each part is made when first needed, and kept from run to run. Not to be used by two threads at
 /// once.
 class Session {
  public:
-  /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers (and,
-  /// for canvases, keeps the assumptions); else the cores of the CPU are used, since a software
-  /// renderer would use the same cores more slowly. threads: of the CPU, for far-pairs; 0: as many
-  /// as there are cores. say: receives one line if the device is probed, which says why; may be
-  /// empty.
+  /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers and
+  /// keeps the assumptions; else the cores of the CPU are used, since a software renderer would use
+  /// the same cores more slowly. threads: of the CPU; 0: as many as there are cores. say: receives
+  /// one line if the device is probed, which says why; may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
@@ -58,7 +47,7 @@ class Session {
   const GlContext& context();
   /// Whether the context's device keeps the assumptions; probes the device if no verdict is kept.
   /// Does not restore the GL state.
-  const DeviceVerdict& verdict(Reliance reliance);
+  const DeviceVerdict& verdict();
   /// Where canvases draw: on the cores of the CPU, or on the GL device of context().
   const CanvasDevice& canvas_device();
   /// The canvas for the drawables of this fattener. There is one for each name of a fattener. Only
@@ -66,34 +55,29 @@ class Session {
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   /// The largest resolution of the session's canvases, in px.
   int max_resolution();
-  /// The device of FAR pairs. Throws Error if a device that was named does not answer.
-  PairDevice& pairs();
-  PairWorkspace& pair_workspace() { return pair_workspace_; }
-  /// From now on runs are frames of a scene, one after the other: far-pairs and the exact tests
+  /// From now on runs are frames of a scene, one after the other: boxes and the exact tests
   /// reuse their results about triangles that did not move. Answers stay the same.
   void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
   /// Null if frames are not remembered.
-  PairMemory* pair_memory() { return frames_ ? &pair_workspace_.memory : nullptr; }
+  FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases, the pair device and the context, since nothing on a device is trusted
-  /// after a failure. Also drops the results of the last frame, which a device helped to find. Each
-  /// is made again when it is next needed.
+  /// Drops the canvases and the context, since nothing on a device is trusted after a failure, and
+  /// the results of the last frame. Each is made again when it is next needed.
   void forget_device();
 
  private:
-  CanvasDevice choose_device(const std::function<void()>& open, bool probe);
+  CanvasDevice choose_device();
 
   std::string device_;
   unsigned threads_;
   Say say_;
   std::unique_ptr<GlContext> context_;
-  std::map<Reliance, DeviceVerdict> verdicts_;
+  std::optional<DeviceVerdict> verdict_;
   std::optional<CanvasDevice> canvas_device_;
   std::map<std::tuple<std::string, DepthFormat, QueryMode, bool>, std::unique_ptr<Canvas>>
       canvases_;
-  std::optional<PairDevice> pairs_;  // destroyed before context_, as canvases_ are
-  PairWorkspace pair_workspace_;
+  FrameMemory frame_memory_;
   std::unique_ptr<FrameDecider> frames_;
   SweepPrune sweep_;
 };

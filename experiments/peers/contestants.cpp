@@ -30,7 +30,7 @@ std::vector<KnownContestant> make_list() {
     for (const char* name : names) all.push_back({name, program, package, answers});
   };
   constexpr const char* kNode = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
-  add("ours", "", "pair mesh", {"far-pairs"});
+  add("ours", "", "pair mesh", {"boxes"});
   add("ours", "", "pair mesh distance self inside clash", {"exact"});
   add("ours", "", "pair mesh", {"far", "far-drawn", "i-collide", "far-drawn-at-0.9"});
   add("cgal", "libcgal-dev", "pair mesh inside", {"cgal-exact"});

@@ -299,7 +299,7 @@ class PageMaker {
     const PanelResult& result = answer.result;
     json entry = {{"frame", frames_.size() - 1},
                   {"method", method_title(options)},
-                  {"resolution", looks(options.method) ? resolution_of(options) : 0},
+                  {"resolution", draws(options.method) ? resolution_of(options) : 0},
                   {"title", result.title},
                   {"headline", result.headline},
                   {"missedPairs", result.missed},

@@ -143,9 +143,7 @@ std::string method_title(const RunOptions& options) {
 std::string panel_title(const RunOptions& options) {
   std::string out = method_title(options);
   if (out != to_string(options.method)) out += ",";
-  const int resolution = resolution_of(options);
-  const bool has = looks(options.method);
-  if (has && resolution > 0) out += fmt::format(" at {} px", resolution);
+  if (draws(options.method)) out += fmt::format(" at {} px", resolution_of(options));
   return out;
 }
 
@@ -283,7 +281,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
                        const Scene& scene, const Truth& truth, Session& session,
                        const GlContext& context) {
   const View view = parse_view(*arguments.depth_view);
-  const bool promised = promises(options) && session.verdict(Reliance::drawing).holds;
+  const bool promised = promises(options) && session.verdict().holds;
   const ViewRun run = look(options, *arguments.depth_view, scene, session);
   const std::vector<std::uint8_t>& bits = run.found.bits;
 

@@ -13,7 +13,6 @@
 #include "core/canvas/canvas.h"
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
-#include "core/pairs/grid.h"
 #include "core/view/budget.h"
 #include "core/view/view.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -310,17 +309,14 @@ PaperFigure entry_and_exit_figure() {
     d.dot(centres.near[i], 4, R"(fill="#b30")");
     d.dot(centres.far[i], 4, R"(fill="#b30")");
   }
-  // The triangle over the row: the result of its interval kernel between y = 0 and y = 1.
-  interval::FarStrip strip;
-  const auto corner = [&](int i) {
-    return glsl::vec4{static_cast<float>(corners[i][0]), static_cast<float>(corners[i][1]),
-                      static_cast<float>(corners[i][2]), 0};
-  };
-  interval::far_strip(corner(0), corner(1), corner(2), 0, 1, strip);
-  for (int i = 0; i < strip.count; ++i) {
-    const glsl::vec4& s = strip.segment[i];
-    d.line({{s.x, s.y}, {s.z, s.w}}, R"(stroke="#234" stroke-width="2.5")");
+  // The triangle in the plane y = 0.5: from edge to edge.
+  std::vector<DrawnPoint> cut;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &a = corners[i], &b = corners[(i + 1) % 3];
+    const double t = (0.5 - a[1]) / (b[1] - a[1]);
+    if (t >= 0 && t <= 1) cut.push_back({a[0] + t * (b[0] - a[0]), a[2] + t * (b[2] - a[2])});
   }
+  d.line(cut, R"(stroke="#234" stroke-width="2.5")");
   // A point of the triangle in the pixel of the centre (0.5, 0.5).
   const Vec3 q = 0.2 * corners[0] + 0.62 * corners[1] + 0.18 * corners[2];
   d.dot({q[0], q[2]}, 4, R"(fill="#000")");
@@ -336,47 +332,9 @@ PaperFigure entry_and_exit_figure() {
   return {"paper-entry-exit", d.svg()};
 }
 
-PaperFigure strip_figure() {
-  const std::array<glsl::vec4, 3> t = {
-      glsl::vec4{0.6f, 0.3f, 0.7f, 0}, {6.3f, 1.4f, 1.4f, 0}, {2.2f, 4.6f, 3.2f, 0}};
-  const float x0 = 3, x1 = 4, y0 = 2, y1 = 3;
-  interval::FarStrip strip;
-  interval::far_strip(t[0], t[1], t[2], y0, y1, strip);
-  float near = 0, far = 0;
-  interval::far_depths(strip, x0, x1, near, far);
-  Drawing d(
-      720, 620, "A strip of the interval kernel",
-      "Above, the image of a triangle and a row of pixels. Below, the part of the triangle in "
-      "this row, seen along y: its boundary, and the depths over one pixel.");
-  d.begin({10, 10, 700, 340, {0, 0}, {7, 3.4 / 7 * 10}});
-  d.outline({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, kPixel);
-  d.pixels();
-  d.outline({{t[0].x, t[0].y}, {t[1].x, t[1].y}, {t[2].x, t[2].y}},
-            R"(fill="#9ab" fill-opacity="0.5" stroke="#234" stroke-width="2")");
-  for (const double y : {y0, y1}) d.line({{0, y}, {7, y}}, R"(stroke="#07a" stroke-width="2.5")");
-  d.words({0, y1}, 6, 18, "the strip: a row of pixels", "start", R"(fill="#07a")");
-  d.words({x0, y0}, 6, -6, "X");
-  d.words({7, 0}, -6, -8, "image: x to the right, y up", "end");
-  d.begin({10, 370, 700, 240, {0, 0.6}, {7, 3}});
-  for (int x = 0; x <= 7; ++x)
-    d.line({{x * 1.0, 0.6}, {x * 1.0, 3}}, R"(stroke="#ccc" stroke-width="1")");
-  d.outline({{x0, near}, {x1, near}, {x1, far}, {x0, far}}, kPixel);
-  for (int i = 0; i < strip.count; ++i) {
-    const glsl::vec4& s = strip.segment[i];
-    d.line({{s.x, s.y}, {s.z, s.w}}, R"(stroke="#234" stroke-width="2.5")");
-    d.dot({s.x, s.y}, 4, R"(fill="#234")");
-    d.dot({s.z, s.w}, 4, R"(fill="#234")");
-  }
-  d.words({x1, far}, 8, -4, fmt::format("far = {:.3f}", far));
-  d.words({x1, near}, 8, 14, fmt::format("near = {:.3f}", near));
-  d.words({0, 3}, 6, 20, fmt::format("{} segments bound the strip", strip.count));
-  d.words({7, 0.6}, -6, -8, "x to the right, depth up", "end");
-  return {"paper-strip", d.svg()};
-}
-
 std::vector<PaperFigure> paper_figures(const std::string& pair) {
-  return {ball_figure(),   coverage_figure(), entry_and_exit_figure(),
-          passes_figure(), strip_figure(),    published_figure(pair)};
+  return {ball_figure(), coverage_figure(), entry_and_exit_figure(), passes_figure(),
+          published_figure(pair)};
 }
 
 // The two passes on a scene of twelve triangles, and the pair that FAR as published loses.

@@ -69,7 +69,6 @@ std::vector<PaperFigure> paper_figures(const std::string& pair);
 PaperFigure ball_figure();
 PaperFigure coverage_figure();
 PaperFigure entry_and_exit_figure();
-PaperFigure strip_figure();
 PaperFigure passes_figure();
 PaperFigure published_figure(const std::string& pair);
 

@@ -41,9 +41,9 @@ struct PictureResult {
   std::string not_asked;  // not_asked_line() of the scene (tables.h)
 };
 
-/// Runs the methods of the panels and draws. The lab's device answers; if it is "cpu" (far-pairs
-/// alone), the first device draws the picture. Throws Error for bad arguments, a scene without
-/// triangles or one that a method does not accept, and for faults of the device.
+/// Runs the methods of the panels and draws. The lab's device answers; if it is "cpu", the first GL
+/// device draws the picture. Throws Error for bad arguments, a scene without triangles or one that
+/// a method does not accept, and for faults of the device.
 PictureResult make_picture(const PictureArguments& arguments, Lab& lab);
 
 // `farcull picture --html`: one file with the scene, the answers of methods on it, and everything

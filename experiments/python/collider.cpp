@@ -24,30 +24,17 @@ namespace {
 
 using namespace py::literals;
 
-Device device_of(const std::string& name) {
-  if (name == "cpu") return Device::cpu;
-  if (name == "gl") return Device::gl;
-  if (name == "best") return Device::best;
-  raise("device", "'" + name + "' is no choice", "give cpu, gl or best", true);
-}
-
 py::dict report_of(const Report& report) {
-  py::list views, stages;
-  for (const Report::View& v : report.views) {
-    views.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
-                          "width"_a = v.width, "height"_a = v.height));
-  }
+  py::list stages;
   for (const Report::Stage& s : report.stages) {
     stages.append(py::dict("name"_a = s.name, "ran"_a = s.ran, "reason"_a = s.reason, "ms"_a = s.ms,
                            "entered"_a = s.in, "left"_a = s.out, "unit"_a = s.unit));
   }
-  return py::dict("device"_a = report.device, "device_reason"_a = report.device_reason,
-                  "promises"_a = report.promises, "promises_reason"_a = report.promises_reason,
-                  "candidates_ms"_a = report.candidates_ms, "exact_ms"_a = report.exact_ms,
+  return py::dict("candidates_ms"_a = report.candidates_ms, "exact_ms"_a = report.exact_ms,
                   "candidates"_a = report.candidates, "neighbours"_a = report.neighbours,
                   "decided"_a = report.decided, "contacts_ms"_a = report.contacts_ms,
                   "passed_over"_a = report.passed_over,
-                  "callers_arithmetic"_a = report.callers_arithmetic, "views"_a = std::move(views),
+                  "callers_arithmetic"_a = report.callers_arithmetic,
                   "stages"_a = std::move(stages));
 }
 
@@ -80,7 +67,7 @@ py::dict result_of(const Result& result, Contacts asked) {
                   "report"_a = report_of(result.report));
 }
 
-// A forked process lacks the threads and the device of objects made before the fork.
+// A forked process lacks the threads of objects made before the fork.
 void require_process(pid_t maker, const char* made) {
   if (::getpid() == maker) return;
   raise(made, "was made by another process, which this one was forked from",
@@ -184,16 +171,9 @@ Options options_of(const py::dict& question) {
 
 void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
-      .def(py::init([](const py::dict& question, const std::string& device,
-                       const std::string& views, int resolution) {
-             Options options = options_of(question);
-             options.device = device_of(device);
-             options.advanced.views = views;
-             options.advanced.resolution = resolution;
-             return std::make_unique<KeptCollider>("Collider", options);
-           }),
-           py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
-           py::arg("resolution"))
+      .def(py::init([](const py::dict& question) {
+        return std::make_unique<KeptCollider>("Collider", options_of(question));
+      }))
       .def("find", [](KeptCollider& kept, const py::array& vertices, const py::array& triangles,
                       const py::array& starts, const py::array& poses) {
         return result_of(kept.find(vertices, triangles, starts, poses), kept.options.contacts);

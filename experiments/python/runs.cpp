@@ -272,10 +272,6 @@ py::dict accounting_of(const Accounting& accounting) {
 
 py::list views_of(const Candidates& found) {
   py::list out;
-  for (const PairView& v : found.pair_views()) {
-    out.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
-                        "width"_a = v.width, "height"_a = v.height));
-  }
   for (const ViewReport& v : found.views()) {
     out.append(py::dict("name"_a = v.name, "looked"_a = v.drawn, "width"_a = v.width,
                         "height"_a = v.height, "radius_px"_a = v.radius_px));

@@ -31,17 +31,6 @@ Json view_json(const ViewReport& view) {
   return out;
 }
 
-Json view_json(const PairView& view) {
-  const PairCounts& c = view.counts;
-  Json out = FARCULL_JSON(view, name, looked, reason, width, height, pixel_size, widening_px);
-  out.update(FARCULL_JSON(c, listed, entries, crowded, large, tests, bands, undrawable, dispatches,
-                          readbacks, redone, mark_ms, list_ms, pair_ms));
-  out["mark_device_ms"] = json_if(c.mark_device_ms >= 0, c.mark_device_ms);
-  out["list_device_ms"] = json_if(c.list_device_ms >= 0, c.list_device_ms);
-  out["pair_device_ms"] = json_if(c.pair_device_ms >= 0, c.pair_device_ms);
-  return out;
-}
-
 template <class Value>
 Json json_or_null(const Value& value) {
   if constexpr (std::is_same_v<Value, std::monostate>)
@@ -69,13 +58,13 @@ Json device_json(const Record& record) {
   const UsedDevice& used = record.found.device;
   if (used.cpu) {
     Json out = {{"cpu", used.note}};
-    if (draws(record.options.method)) out.update(FARCULL_JSON(used, lanes, depth_bits));
+    out.update(FARCULL_JSON(used, lanes, depth_bits));
     return out;
   }
   if (!used.gl) return {{"none", used.note}};
   Json out = gl_json(*used.gl);
   out["subpixel_bits"] = used.gl->subpixel_bits;
-  if (!chooses_views(record.options.method)) out["depth_bits"] = used.depth_bits;
+  out["depth_bits"] = used.depth_bits;
   out["reset_detection"] = used.gl->reset_detection;
   out["threads"] = threads_json(*used.gl);
   out["reason"] = used.note;
@@ -239,7 +228,6 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
   Json views = Json::array();
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
-  for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
   Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
               {"method", to_string(o.method)},
               {"method_reason", method_reason(o)}};
@@ -438,12 +426,6 @@ Certificate certificate_of(const Scene& scene, const Record& record, const Whole
                          static_cast<std::uint64_t>(view.height), view.radius_px});
     run.radius_px = std::max(run.radius_px, view.radius_px);
     run.resolution = static_cast<std::uint64_t>(resolution_of(options));
-  }
-  for (const PairView& view : record.found.pair_views()) {
-    if (!view.looked) continue;
-    run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
-                         static_cast<std::uint64_t>(view.height), 0});
-    run.resolution = std::max({run.resolution, run.views.back().width, run.views.back().height});
   }
   if (record.found.device.gl) {
     const GlInfo& device = *record.found.device.gl;

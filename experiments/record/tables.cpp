@@ -78,17 +78,14 @@ std::string folded_text(const Scene& scene) {
 namespace {
 
 std::string device_text(const Record& record) {
-  if (record.found.device.cpu && draws(record.options.method)) {
+  if (record.found.device.cpu) {
     return fmt::format("cpu, lanes of {}, {} depth bits: {}", record.found.device.lanes,
                        record.found.device.depth_bits, record.found.device.note);
   }
-  if (record.found.device.cpu) return "cpu: " + record.found.device.note;
   if (!record.found.device.gl) return "none: " + record.found.device.note;
   const GlInfo& gl = *record.found.device.gl;
   std::string warnings = gl.reset_detection ? "" : "; it does not report when it resets";
   if (const std::string risk = risk_of_threads(gl.renderer); !risk.empty()) warnings += "; " + risk;
-  if (chooses_views(record.options.method))
-    return gl.renderer + ": " + record.found.device.note + warnings;
   return fmt::format("{}, {} depth bits, {} subpixel bits{}", gl.renderer,
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
@@ -119,15 +116,6 @@ std::string views_text(const std::vector<ViewReport>& views) {
   for (const ViewReport& view : views) {
     text += (text.empty() ? "" : ", ") + view.name + " ";
     text += view.drawn ? fmt::format("{} x {}", view.width, view.height) : "not drawn";
-  }
-  return text + " px";
-}
-
-std::string views_text(const std::vector<PairView>& views) {
-  std::string text;
-  for (const PairView& view : views) {
-    text += (text.empty() ? "" : ", ") + view.name + " ";
-    text += view.looked ? fmt::format("{} x {}", view.width, view.height) : "left out";
   }
   return text + " px";
 }
@@ -270,12 +258,8 @@ bool was_not_drawn(const Record& r) {
 }
 
 std::string resolution_text(const Record& r) {
-  if (!looks(r.options.method) || was_not_drawn(r)) return "-";
-  if (resolution_of(r.options) > 0) return std::to_string(resolution_of(r.options));
-  for (const PairView& view : r.found.pair_views()) {
-    if (view.looked) return fmt::format("auto {}", std::max(view.width, view.height));
-  }
-  return "auto";
+  if (!draws(r.options.method) || was_not_drawn(r)) return "-";
+  return std::to_string(resolution_of(r.options));
 }
 
 std::string missed_text(const Record& record) {
@@ -387,8 +371,7 @@ std::string run_heading(const Scene& scene, const Record& record) {
   std::string out =
       "scene      " + scene_line(scene, record) + "method     " + method_text(record) + "\n" +
       promise_line(record) + "device     " + device_text(record) + "\n" +
-      not_asked_line(scene,
-                     tests_self(record.options.method) ? "--self" : "--method far-pairs --self");
+      not_asked_line(scene, tests_self(record.options.method) ? "--self" : "--method boxes --self");
   if (record.callers != kProved)
     out +=
         "arithmetic " + to_string(record.used) + "; the caller " + to_string(record.callers) + "\n";
@@ -437,8 +420,6 @@ std::string run_answer(const Scene& scene, const Record& record, const std::stri
 std::string run_details(const Record& record) {
   std::string out = default_method_line(record.options);
   if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
-  if (!record.found.pair_views().empty())
-    out += "views      " + views_text(record.found.pair_views()) + "\n";
   out += radius_line(record);
   out += fmt::format("kept       {}, {}, {}\n",
                      counted(record.found.object_count, "object", "objects"),
@@ -457,20 +438,13 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   const auto drawn = std::find_if(records.begin(), records.end(), [](const Record& r) {
     return r.found.device.gl && draws(r.options.method);
   });
-  const auto pairs = std::find_if(records.begin(), records.end(),
-                                  [](const Record& r) { return chooses_views(r.options.method); });
   const Record* reference = nullptr;
   for (const Record& record : records) {
     if (!culls(record.options.method)) reference = &record;
   }
   const bool self = has_self(scene);
   std::string out = scene_line(scene, records[0]);
-  if (drawn != records.end()) {
-    out += "device     " + device_text(*drawn) + "\n";
-  } else if (!chooses_views(records[0].options.method)) {
-    out += "device     " + device_text(records[0]) + "\n";
-  }
-  if (pairs != records.end()) out += "far-pairs  " + device_text(*pairs) + "\n";
+  out += "device     " + device_text(drawn != records.end() ? *drawn : records[0]) + "\n";
   out += not_asked_line(scene) + "\n";
   Table table("llrrrrrrrrrr");
   table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",

@@ -27,7 +27,7 @@ DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DASHES = ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
 MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank marks a hollow one
 KNOWN = [  # the first entry whose words are in a name applies
-    ("far pairs", "#009e73", 0, "^"), ("farcull", "#009e73", 0, "o"), ("interval", "#009e73", 0, "^"),
+    ("boxes", "#009e73", 0, "^"), ("farcull", "#009e73", 0, "o"), ("interval", "#009e73", 0, "^"),
     ("far exact", "#56b4e9", 0, "s"), ("exact offset", "#56b4e9", 0, "s"),
     ("far", "#0072b2", 0, "o"), ("obb union", "#0072b2", 0, "o"),
     ("quick cullide", "#e69f00", 1, "^ "), ("s cullide", "#cc79a7", 3, "D "),

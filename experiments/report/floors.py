@@ -1,4 +1,4 @@
-"""`python3 floors.py BUILD PAGE [SCENE...]`: far-pairs, stage by stage, beside the least that the machine must do.
+"""`python3 floors.py BUILD PAGE [SCENE...]`: boxes, stage by stage, beside the least that the machine must do.
 
 BUILD holds farcull and farcull_kernels_bench; PAGE is written as Markdown. `bash experiments/results.sh profile` starts
 it. A floor is a number of items, which the run itself counts, times the time of a kernel for one item. The kernels run
@@ -16,12 +16,12 @@ DISTANCES = {"crowd": "nearest", "bunnies-far-apart": "objects", "field:100000":
 THREADS = (1, 2)
 PEERS = "embree-low,embree-medium,cgal-object-pairs,fcl-obb,bullet-gimpact"  # as in stages.py
 REPEAT, LIMIT = 7, 1  # runs; seconds of a cold run from which a peer is not asked again
-WIDE = 16  # triangles of a run
-# Stages of far-pairs, the part of a peer's time that stands beside each, and the kernels of the stage's floor.
+WIDE = 16  # triangles of a block
+# Stages of boxes, the part of a peer's time that stands beside each, and the kernels of the stage's floor.
 STAGES = {
     "boxes": ("build_ms", {"read_triangles": "read every triangle", "box_triangles": "boxes of triangles",
-                           "order_runs": "order of runs", "compare_apart": "pairs of runs"}),
-    "runs": ("candidates_ms", {"compare_runs": "box tests"}),
+                           "order_blocks": "order of blocks", "compare_apart": "pairs of blocks"}),
+    "blocks": ("candidates_ms", {"compare_block_pairs": "box tests"}),
     "exact": ("exact_ms", {"filter_candidates": "filter"})}
 
 
@@ -56,15 +56,15 @@ def bench(build, scene, threads, *words):
 
 def counts(build, scene, candidates):
     """The number of items of each kernel."""
-    record = json.loads(called(f"{build}/farcull", "run", scene, "--method", "far-pairs", "--device", "native",
+    record = json.loads(called(f"{build}/farcull", "run", scene, "--method", "boxes",
                                "--no-verify", "--json", "-"))
     ran = {stage["name"]: stage for stage in record["stages"] if stage["ran"]}
     triangles, pairs = 0, 0
-    if "runs" in ran:
-        triangles = ran["runs"]["in"]
-        pairs = int(re.search(r"overlap: ([\d,]+)", ran["runs"]["reason"])[1].replace(",", ""))
-    return {"read_triangles": record["scene"]["triangles"], "box_triangles": triangles, "order_runs": triangles // WIDE,
-            "compare_apart": pairs // WIDE, "compare_runs": pairs, "filter_candidates": candidates}
+    if "blocks" in ran:
+        triangles = ran["blocks"]["in"]
+        pairs = int(re.search(r"overlap: ([\d,]+)", ran["blocks"]["reason"])[1].replace(",", ""))
+    return {"read_triangles": record["scene"]["triangles"], "box_triangles": triangles, "order_blocks": triangles // WIDE,
+            "compare_apart": pairs // WIDE, "compare_block_pairs": pairs, "filter_candidates": candidates}
 
 
 def number(ms):
@@ -78,7 +78,7 @@ def ratio(a, b):
 def profile(build, scene, each):
     """The table of a scene, and its rows in the table of all scenes."""
     print(f"profile: {scene}", file=sys.stderr)
-    measured = [bench(build, scene, threads, "--methods", "far-pairs", "--peers", PEERS, "--device", "cpu")
+    measured = [bench(build, scene, threads, "--methods", "boxes", "--peers", PEERS)
                 for threads in THREADS]
     items = counts(build, scene, measured[0][0]["candidate_pairs"])
     titles = [f"floor, {threads} | ours | ours / floor | {peer['name']}"
@@ -132,7 +132,7 @@ def main():
     heads = [f"floor, {threads} | ours | ours / floor | fastest peer | ours / peer" for threads in THREADS]
     head = [f"| scene | {' | '.join(heads)} |", "|---|" + "---:|---:|---:|---|---:|" * len(THREADS)]
     lines = [
-        "# `far-pairs` beside the least that the machine must do", "",
+        "# `boxes` beside the least that the machine must do", "",
         "Made again by `bash experiments/results.sh profile`, which writes this page.", "",
         f"- **Device:** {os.cpu_count()} cores, no GPU.",
         f"- **Commit:** {version}.",
@@ -149,21 +149,21 @@ def main():
         "The floor is to read every triangle once. The peers are those of `farcull bench --distances`; the fastest one "
         "measures in doubles.", "", *head, *distances, "",
         "## Which items are counted, and why fewer do not suffice", "",
-        "Each floor holds for this way to find pairs: runs of 16 triangles whose boxes are compared, then their triangles' "
-        "boxes, then a filter. Another way has other items. Runs of another size, better boxes or kept data of an earlier "
+        "Each floor holds for this way to find pairs: blocks of 16 triangles whose boxes are compared, then their triangles' "
+        "boxes, then a filter. Another way has other items. Blocks of another size, better boxes or kept data of an earlier "
         "frame change the numbers, and a faster kernel changes the time of an item.", "",
         "| work | item | why each item is needed |", "|---|---|---|",
         "| read every triangle | a triangle of the scene | a triangle that nobody reads may collide |",
-        "| boxes of triangles | a triangle in a run whose box overlaps that of another run | box tests compare these boxes |",
-        "| order of runs | such a run | a tree needs runs in an order. A file may have that order, and then nothing is sorted; "
+        "| boxes of triangles | a triangle in a block whose box overlaps that of another block | box tests compare these boxes |",
+        "| order of blocks | such a block | a tree needs blocks in an order. A file may have that order, and then nothing is sorted; "
         "if a file has none, all triangles are sorted, which takes longer |",
-        "| pairs of runs | a test of one box with sixteen | a test finds at most 16 pairs; the nodes above are not counted |",
-        "| box tests | a pair of runs whose boxes (also oriented ones, where the scene has them) overlap | one of its pairs "
+        "| pairs of blocks | a test of one box with sixteen | a test finds at most 16 pairs; the nodes above are not counted |",
+        "| box tests | a pair of blocks whose boxes (also oriented ones, where the scene has them) overlap | one of its pairs "
         "of triangles may collide |",
         "| filter | a candidate: two triangles whose boxes overlap | one test decides no other pair |", "",
         "## Stages", "",
-        "Beside the stages *boxes*, *runs* and *exact* stand the parts *build*, *find* and *exact* of the peer. For objects whose "
-        "file is in no order, ours makes the boxes of triangles in the stage *boxes*, for others in *runs*. The floor always "
+        "Beside the stages *boxes*, *blocks* and *exact* stand the parts *build*, *find* and *exact* of the peer. For objects whose "
+        "file is in no order, ours makes the boxes of triangles in the stage *boxes*, for others in *blocks*. The floor always "
         "counts them in *boxes*.", "",
         *(line for table in tables for line in table)]
     pathlib.Path(page).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")

@@ -164,7 +164,7 @@ class Study:
 
 # ---- names of points
 
-METHODS = {"far-pairs": "FAR pairs", "cullide": "CULLIDE", "quick-cullide": "Quick-CULLIDE",
+METHODS = {"boxes": "Boxes", "cullide": "CULLIDE", "quick-cullide": "Quick-CULLIDE",
            "s-cullide": "S-CULLIDE", "i-collide": "I-COLLIDE"}
 BOTH_DIRECTIONS = "x,-x,y,-y,z,-z"
 
@@ -464,17 +464,16 @@ def same_pixels(rows, row):
 def at_risk(rows, row):
     """How many pairs of the row are lost with 0.9 of the radius, and without a ball, in the same scene, views and
     pixels; NaN where that is not known. Without a ball: as CULLIDE draws, if FAR was not run so."""
-    if row.method not in ("far", "far-pairs") or row.method == "far-pairs" and row.views != "x,y,z":
+    if row.method != "far":
         return NONE, NONE
     here = same_pixels(rows, row)
     fars = here[here.method == "far"]
-    own = fars[(fars.offset == row.offset) & (fars.depth_mode == row.depth_mode)] if row.method == "far" else \
-        fars[fars.offset == "obb"]
+    own = fars[(fars.offset == row.offset) & (fars.depth_mode == row.depth_mode)]
     bare = [column(own[own.radius.isin(["", "budget"])], "at_risk_bare"), column(own[own.radius == "0"], "missed"),
             column(here[here.method == "cullide"], "missed")]
     smaller = [column(own[own.radius.isin(["", "budget"])], "at_risk"), column(own[own.radius == "0.9"], "missed")]
     return tuple(next((value for values in known for value in values if value == value), NONE)
-                 for known in (smaller if row.method == "far" else [], bare))
+                 for known in (smaller, bare))
 
 
 def risk_text(rows, pairs):

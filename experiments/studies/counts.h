@@ -35,13 +35,10 @@ struct RadiusCounts {
   double radius_px = 0, pixel_size = 0;
   FARCULL_FIELDS(radius_px, pixel_size)
 };
-/// FAR: fragments of one drawing (Fragments in run_point.h). FAR pairs: entries in the lists of
-/// pixels (`fragments`), comparisons (`tests`) and the views used.
+/// Fragments of one drawing of FAR (Fragments in run_point.h).
 struct FragmentCounts {
-  std::optional<std::uint64_t> elements = {}, covered = {};
-  std::uint64_t fragments = 0;
-  std::optional<std::uint64_t> tests = {}, views = {};
-  FARCULL_FIELDS(elements, covered, fragments, tests, views)
+  std::uint64_t elements = 0, covered = 0, fragments = 0;
+  FARCULL_FIELDS(elements, covered, fragments)
 };
 
 /// The resolution that the size of triangles chose for a RunPoint.

@@ -25,7 +25,7 @@ using enum Method;
 
 struct AccuracyScene {
   std::string name;
-  bool self = false;   // one object against itself, by S-CULLIDE and FAR pairs
+  bool self = false;   // one object against itself, by S-CULLIDE and boxes
   bool again = false;  // the same scene as another one, drawn with another seed
 };
 
@@ -107,9 +107,8 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
             out.push_back(far_point(named, offset, kPublishedRadius, resolution));
         }
       }
-      out.push_back(plain_point(named, far_pairs, resolution));
     }
-    out.push_back(plain_point(named, far_pairs));
+    out.push_back(plain_point(named, boxes));
     if (!scene.self && !scene.again) out.push_back(plain_point(named, exact));
     add_forms(scene, out);
   }
@@ -174,7 +173,6 @@ void add_drawn(std::vector<Point>& out, const TimedScene& scene, int resolution,
     add(far_point(named, "obb", kBudgetRadius, resolution));
     add(far_point(named, "exact", kBudgetRadius, resolution));
   }
-  add(plain_point(named, far_pairs, resolution));
 }
 
 std::vector<Point> timed_grid(const GridChoice& choice) {
@@ -187,7 +185,7 @@ std::vector<Point> timed_grid(const GridChoice& choice) {
       if (!scene.drawn || resolution <= 1024) add_drawn(out, scene, resolution, repeat);
     }
     const NamedScene named{scene.name};
-    for (const Method method : {far_pairs, i_collide, exact})
+    for (const Method method : {boxes, i_collide, exact})
       out.push_back(repeated(plain_point(named, method), repeat));
     for (const char* peer : kPeers) out.push_back(PeerPoint{named, peer, repeat});
   }
@@ -236,24 +234,17 @@ using enum Method;
 constexpr const char* kLibrary = "fcl-float";
 constexpr long kFrames = 500;  // of the cloth
 
-// FAR pairs along the axes that FAR draws, in as many pixels: views decide, not boxes.
-RunPoint pairs_in_views(const PointScene& scene, int resolution) {
-  RunPoint out = plain_point(scene, far_pairs, resolution);
-  out.views = "x,y,z";
-  return out;
-}
-
 void add_between_objects(std::vector<Point>& out, const PointScene& scene, int resolution) {
   out.insert(out.end(), {cullide_point(scene, cullide, resolution), PeerPoint{scene, kLibrary},
                          far_point(scene, "obb", kBudgetRadius, resolution),
                          far_point(scene, "exact", kBudgetRadius, resolution),
-                         pairs_in_views(scene, resolution), plain_point(scene, exact)});
+                         plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
 void add_against_itself(std::vector<Point>& out, const PointScene& scene, int resolution) {
   out.insert(out.end(), {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, kLibrary},
                          far_point(scene, "obb", kBudgetRadius, resolution),
-                         pairs_in_views(scene, resolution), plain_point(scene, exact)});
+                         plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
 // Each family from a value that is harmless to its extreme.
@@ -325,7 +316,7 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
       const std::string name = fmt::format("cloth:{}:1e{}", triangles, k);
       for (long frame = begin; frame < std::min(frames, begin + kTurn); ++frame) {
         const MotionFrame scene{name, frame, frames};
-        out.emplace_back(pairs_in_views(scene, kClothResolution));
+        out.emplace_back(plain_point(scene, boxes));
         if (frame % kOfFar == 0)
           out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
       }

@@ -102,19 +102,7 @@ std::vector<Point> grid(const GridChoice& choice) {
       const NamedScene named{scene};
       for (const char* offset : {"obb", "exact"})
         out.push_back(repeated(far_point(named, offset, kBudgetRadius, resolution), kRepeat));
-      out.push_back(repeated(plain_point(named, far_pairs, resolution), kRepeat));
     }
-  }
-  return out;
-}
-
-FragmentCounts fragments_of(const std::vector<PairView>& views) {
-  FragmentCounts out{.tests = 0, .views = 0};
-  for (const PairView& view : views) {
-    if (!view.looked) continue;
-    ++*out.views;
-    out.fragments += view.counts.entries;
-    *out.tests += view.counts.tests;
   }
   return out;
 }
@@ -123,14 +111,9 @@ PointResult measure(const Point& of, Lab& lab) {
   const RunPoint& point = std::get<RunPoint>(of);
   Record record;
   PointResult out = measure_with_risk(point, lab, &record);
-  FragmentCounts& counts = std::get<RunCounts>(out.counts).fragments.emplace();
-  if (point.method == far) {
-    const Fragments fragments = count_fragments(lab.current(), record, point.offset);
-    counts = {
-        .elements = fragments.elements, .covered = fragments.covered, .fragments = fragments.solid};
-  } else {
-    counts = fragments_of(record.found.pair_views());
-  }
+  const Fragments fragments = count_fragments(lab.current(), record, point.offset);
+  std::get<RunCounts>(out.counts).fragments = FragmentCounts{
+      .elements = fragments.elements, .covered = fragments.covered, .fragments = fragments.solid};
   return out;
 }
 
@@ -424,7 +407,7 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
     out.device = "native";
   } else {
     const bool native = lab.session().canvas_device().native;
-    if (counts.promises && !native && !lab.session().verdict(Reliance::drawing).holds)
+    if (counts.promises && !native && !lab.session().verdict().holds)
       counts.revoked = true;
     canvas = &lab.session().canvas(
         fattener, {.depth_format = bits24 ? DepthFormat::fixed24 : DepthFormat::float32,

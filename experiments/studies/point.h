@@ -266,9 +266,9 @@ inline std::vector<std::string> drawn_scenes(const std::string& name, int count 
   return out;
 }
 
-/// A method that draws no sets: far-pairs (resolution 0: chosen by the scene), i-collide, exact.
-inline RunPoint plain_point(PointScene scene, Method method, int resolution = 0) {
-  return {.scene = std::move(scene), .method = method, .resolution = resolution};
+/// A method that draws nothing: boxes, i-collide, exact.
+inline RunPoint plain_point(PointScene scene, Method method) {
+  return {.scene = std::move(scene), .method = method};
 }
 
 inline constexpr RadiusRule kBudgetRadius = {};

@@ -243,7 +243,7 @@ SizeCounts size_for(const Scene& scene, double pixels) {
 
 std::string answered(const Record& record) {
   const UsedDevice& used = record.found.device;
-  return used.gl ? used.gl->renderer : used.cpu && draws(record.options.method) ? "native" : "cpu";
+  return used.gl ? used.gl->renderer : used.cpu ? "native" : "cpu";
 }
 
 std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const Record& record) {
@@ -252,10 +252,7 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
     if (stage.kind == StageKind::boxes && stage.ran && stage.unit == Unit::triangles)
       left = stage.out;
   }
-  const auto& drawn = record.found.views();
-  const auto& looked = record.found.pair_views();
-  return {left, std::ranges::count_if(drawn, &ViewReport::drawn) +
-                    std::ranges::count_if(looked, &PairView::looked)};
+  return {left, std::ranges::count_if(record.found.views(), &ViewReport::drawn)};
 }
 
 RunOptions options_of(const RunPoint& point, const Lab& lab) {

@@ -49,11 +49,10 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
 std::string answered(const Record& record);
 
 /// Opens the scene and runs the point's method on it once. A run does not depend on earlier ones in
-/// the lab: far-pairs has its device open, and i-collide starts without lists. Only on a
-/// MotionFrame does i-collide keep the lists of the previous frame, which is its purpose; a second
-/// run of the same frame would find them sorted, so `repeat` is 1 there (std::logic_error
-/// otherwise). Throws Error as run() does. The counts are RunCounts without `fragments`. record:
-/// receives the run; may be null.
+/// the lab: i-collide starts without lists. Only on a MotionFrame does i-collide keep the lists of
+/// the previous frame, which is its purpose; a second run of the same frame would find them sorted,
+/// so `repeat` is 1 there (std::logic_error otherwise). Throws Error as run() does. The counts are
+/// RunCounts without `fragments`. record: receives the run; may be null.
 PointResult measure_run(const RunPoint& point, Lab& lab, Record* record = nullptr);
 /// The same for a Point that is a RunPoint, without the record.
 inline PointResult measure_run_point(const Point& point, Lab& lab) {

@@ -531,8 +531,7 @@ Study on_devices(const Study& study) {
   out.grid = [grid = study.grid](const GridChoice& choice) {
     std::vector<Point> points = grid(choice);
     std::erase_if(points, [](const Point& point) {
-      if (const auto* run = std::get_if<RunPoint>(&point))
-        return !draws(run->method) && !chooses_views(run->method);
+      if (const auto* run = std::get_if<RunPoint>(&point)) return !draws(run->method);
       const auto* lemma = std::get_if<LemmaPoint>(&point);
       return lemma == nullptr || lemma->worst;
     });

@@ -124,25 +124,16 @@ std::vector<PointScene> culled_scenes(bool quick) {
 }
 
 std::vector<Point> culling_grid(const GridChoice& choice) {
-  const std::vector<int> resolutions =
-      choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
   std::vector<Point> out;
   for (const PointScene& scene : culled_scenes(choice.quick)) {
     out.emplace_back(PeerPoint{scene, kBoxes});
     out.emplace_back(PeerPoint{scene, kOriented});
-    out.emplace_back(plain_point(scene, Method::far_pairs));
-    for (const char* views : {"z", "x,y,z"}) {
-      for (const int resolution : resolutions) {
-        RunPoint point = plain_point(scene, Method::far_pairs, resolution);
-        point.views = views;
-        out.emplace_back(point);
-      }
-    }
+    out.emplace_back(plain_point(scene, Method::boxes));
   }
   return out;
 }
 
-// Libraries leave neighbours out, but far-pairs gives them to the predicates. They are counted
+// Libraries leave neighbours out, but boxes gives them to the predicates. They are counted
 // here, for the number of candidates without them.
 PointResult measure_culling(const Point& point, Lab& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
@@ -178,7 +169,7 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
     for (const Method method : {cullide, quick_cullide})
       out.push_back(cullide_point(frame, method, kFrameResolution));
   }
-  out.push_back(plain_point(frame, far_pairs));
+  out.push_back(plain_point(frame, boxes));
 }
 
 // A scene of one of the plots. A scene may appear in several plots; it is measured once.
@@ -235,11 +226,7 @@ std::vector<RunPoint> points_of(const Case& c) {
     out = {far_point(scene, "obb", kBudgetRadius, c.resolution),
            cullide_point(scene, cullide, c.resolution)};
   }
-  for (const Method method : {far_pairs, i_collide, exact}) {
-    // Of these methods only far-pairs has pixels; it takes the resolution in the plot of pixels.
-    const bool pixels = method == far_pairs && c.scene == "two-spheres";
-    out.push_back(plain_point(scene, method, pixels ? c.resolution : 0));
-  }
+  for (const Method method : {boxes, i_collide, exact}) out.push_back(plain_point(scene, method));
   for (RunPoint& point : out) point.repeat = kRepeat;
   return out;
 }
@@ -248,10 +235,10 @@ std::vector<RunPoint> points_of(const Case& c) {
 
 Study culling_study() {
   return {.name = "culling",
-          .title = "What far-pairs culls",
+          .title = "What boxes cull",
           .question =
-              "How many pairs do boxes, oriented boxes, and far-pairs without views, in one view "
-              "and in three leave to exact predicates, for each pair that collides?",
+              "How many pairs do boxes of triangles, oriented boxes, and the method boxes leave to "
+              "exact predicates, for each pair that collides?",
           .grid = culling_grid,
           .measure = measure_culling,
           .library = library_of_peer};

@@ -333,8 +333,8 @@ WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& 
 
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
                  const Progress& progress) {
-  if (question.options.method != Method::far_pairs || question.options.limit > 0)
-    throw std::logic_error("run_tile: a tile is of far-pairs, without a limit");
+  if (question.options.method != Method::boxes || question.options.limit > 0)
+    throw std::logic_error("run_tile: a tile is of boxes, without a limit");
   const Stopwatch reading;
   if (progress) progress("reading the scene for the cuts");
   TileRun out{.number = question.number,

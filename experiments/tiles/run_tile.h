@@ -119,7 +119,7 @@ TileScene gather_tile(const SceneSource& source, const Census& census, const Til
 WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part);
 
 struct TileQuestion {
-  RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
+  RunOptions options;  // of boxes, without a limit; `ignored` is empty
   TileNumber number = {};
   /// Returns the pairs of objects to ignore besides those that the scene ignores. Its argument is
   /// names_of() the census. Empty: no more pairs.

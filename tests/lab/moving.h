@@ -1,8 +1,7 @@
 // What the tests of scenes in motion share: every moving scene small enough to run all its frames,
-// a scene whose triangles change while nothing else does, and a backend that does not notice.
+// and a scene whose triangles change while nothing else does.
 #pragma once
 
-#include "core/pairs/backend.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "tests/lab/test.h"
@@ -56,29 +55,6 @@ class Reconnected {
  private:
   static constexpr std::uint32_t kVertices = 50, kTriangles = 60;
   Scene scene_;
-};
-
-/// A backend that takes the triangles and owners of its first call for those of every later one
-/// with as many vertices and triangles, or more: as if a topology never changed.
-class Stale : public PairBackend {
- public:
-  explicit Stale(PairBackend& inner) : inner_(inner) {}
-  std::string name() const override { return "stale"; }
-  std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
-    if (triangles_.empty()) triangles_.assign(task.triangles.begin(), task.triangles.end());
-    std::vector<std::array<std::uint32_t, 3>> seen(task.triangles.begin(), task.triangles.end());
-    for (std::size_t t = 0; t < std::min(seen.size(), triangles_.size()); ++t) {
-      const auto& [a, b, c] = triangles_[t];
-      if (std::max({a, b, c}) < task.vertices.size()) seen[t] = triangles_[t];
-    }
-    PairTask other = task;
-    other.triangles = seen;
-    return inner_.raw_pairs(other, counts);
-  }
-
- private:
-  PairBackend& inner_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
 }  // namespace farcull::lab

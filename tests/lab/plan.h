@@ -24,11 +24,10 @@ inline std::vector<std::string> scene_names(bool of_packaged_meshes, int triangl
   return names;
 }
 
-/// A stage without what only the run knows: times, counts, and the name of the device.
+/// A stage without what only the run knows: times and counts.
 inline std::string fixed_part(const Stage& stage) {
   std::string text = name_of(stage) + (stage.ran ? " runs: " : " left out: ");
-  // The device, and the counts of a sweep, are not known before.
-  if (stage.reason == Reason::device) return text + "device";
+  // The counts of a sweep are not known before.
   if (stage.reason == Reason::sweep) return text + "sweep";
   Stage planned = stage;
   if (stage.reason == Reason::fattener) planned.n = 0;  // triangles beyond the budget

@@ -74,7 +74,7 @@ inline StudiesRequest lab_request(const std::string& folder, std::vector<Study> 
           .lock = folder + "/lock"};
 }
 
-/// A study of timed points, one for each name: scenes "a", "b", .. with methods far-pairs and
+/// A study of timed points, one for each name: scenes "a", "b", .. with methods boxes and
 /// exact. `runs` grows by "SCENE METHOD" with each run. The nth run of the study takes n ms.
 inline Study timed_study(const std::vector<std::string>& scenes, std::vector<std::string>& runs,
                          const std::string& name = "timed") {
@@ -85,7 +85,7 @@ inline Study timed_study(const std::vector<std::string>& scenes, std::vector<std
               [=](const GridChoice&) {
                 std::vector<Point> out;
                 for (const std::string& scene : scenes) {
-                  for (const Method method : {Method::far_pairs, Method::exact})
+                  for (const Method method : {Method::boxes, Method::exact})
                     out.push_back(repeated(plain_point(NamedScene{scene}, method), 2 * kRounds));
                 }
                 return out;

@@ -1,8 +1,8 @@
 // Random scenes in which a few triangles are far away or huge, or sizes spread over many decades,
-// and the work that FAR pairs takes for them.
+// and the work that boxes take for them.
 #pragma once
 
-#include "core/pairs/pairs.h"
+#include "core/boxes/search.h"
 #include "tests/lab/scenes.h"
 
 namespace farcull::lab {
@@ -86,35 +86,26 @@ inline Scene stray_scene(std::uint64_t seed, int triangles, const Strays& strays
   return scene;
 }
 
-/// What a run of FAR pairs compared and listed.
-struct PairWork {
-  double tests = 0;  // boxes or intervals compared, and entries of lists of pixels
+/// What a run of boxes compared and listed.
+struct BoxesWork {
+  double tests = 0;  // boxes compared
   double lists = 0;  // pairs in its longest list
 };
 
-inline PairWork work_of(const PairResult& result) {
-  PairWork out;
-  for (const Stage& stage : result.stages) {
-    const auto n = static_cast<double>(stage.n), m = static_cast<double>(stage.m);
-    if (stage.kind == StageKind::blocks) {
-      out.tests += 256 * n;
-      out.lists = std::max(out.lists, n);
-    }
-    if (stage.kind == StageKind::join) out.tests += 16 * m;
-  }
-  for (const PairView& view : result.views)
-    out.tests += static_cast<double>(view.counts.tests + view.counts.entries);
-  out.lists = std::max(out.lists, static_cast<double>(result.candidates.size()));
-  return out;
+inline BoxesWork work_of(const BoxesResult& result) {
+  const Stage& stage = result.stage;
+  const auto n = static_cast<double>(stage.n), m = static_cast<double>(stage.m);
+  const bool blocks = stage.kind == StageKind::blocks;
+  return {.tests = blocks ? 256 * n : 16 * m,
+          .lists = std::max(blocks ? n : 0, static_cast<double>(result.candidates.size()))};
 }
 
 /// What it may take. `exact` looks at each triangle and at each pair of boxes that overlap. A
-/// triangle costs it about as much time as 1,024 comparisons of boxes cost FAR pairs, a pair as
-/// much as 64: three times that, and a constant, the one of PairPlan::most_tests
-/// (core/pairs/plan.cpp) with 1e5 for what threads do before they see that it is used up.
-inline PairWork most_work(std::size_t triangles, std::size_t box_pairs) {
+/// triangle costs it about as much time as 1,024 comparisons of boxes cost blocks, a pair as much
+/// as 64: three times that, and a constant for small scenes.
+inline BoxesWork most_work(std::size_t triangles, std::size_t box_pairs) {
   const auto n = static_cast<double>(triangles), k = static_cast<double>(box_pairs);
-  return {.tests = 3 * (1024 * n + 64 * k) + 0x1p24 + 1e5, .lists = 3 * (24 * n + k) + 1e4};
+  return {.tests = 3 * (1024 * n + 64 * k) + 0x1p20, .lists = 3 * (24 * n + k) + 1e4};
 }
 
 }  // namespace farcull::lab

@@ -3,18 +3,7 @@
 #include "verify/kernel_check.h"
 #include "offsets/offsets.h"
 
-#include "core/pairs/grid.h"
 #include "tests/lab/test.h"
-
-namespace farcull::lab {
-using Answer = IntervalAnswer;
-using FloatTriangle = std::array<std::array<float, 3>, 3>;
-inline float number(float x) { return x; }
-}  // namespace farcull::lab
-
-namespace farcull::interval {
-#include "tests/core/pairs/interval_evaluate.h"
-}
 
 namespace farcull {
 namespace {
@@ -51,29 +40,6 @@ KernelTally sums(const Change& change) {
   return solids(minkowski_fattener().solid, adversarial_minkowski, of, check_minkowski, change);
 }
 
-KernelTally intervals(const std::function<void(IntervalAnswer&)>& change) {
-  KernelTally tally;
-  for (const IntervalCase& c : interval_kernel_cases(3, 2000)) {
-    IntervalAnswer a = interval::evaluate(c.corners, c.widening, c.i, c.j);
-    change(a);
-    check_interval(c, a, tally);
-  }
-  return tally;
-}
-
-KernelTally slices(const std::function<void(SliceAnswer&)>& change) {
-  KernelTally tally;
-  const std::vector<SliceCase> cases = slice_kernel_cases(3, 20'000);
-  std::vector<SliceAnswer> answers;
-  for (const SliceCase& c : cases) {
-    answers.push_back({interval::far_slice(c.z, c.steps_per_px, c.first_step, c.slices_per_step),
-                       static_cast<std::int32_t>(glsl::clamp(c.x, 0.0f, 65536.0f))});
-    change(answers.back());
-  }
-  check_slices(cases, answers, tally);
-  return tally;
-}
-
 bool loose(const KernelTally& t) {
   return static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
 }
@@ -89,8 +55,6 @@ void expect_right(Run run) {
 TEST(KernelCheck, ThisCpusAnswersAreRight) {
   expect_right(boxes);
   expect_right(sums);
-  expect_right(intervals);
-  expect_right(slices);
 }
 
 TEST(KernelCheck, NarrowerAnswersLosePoints) {
@@ -102,25 +66,18 @@ TEST(KernelCheck, NarrowerAnswersLosePoints) {
   const Change change = [&](SolidAnswer& a) { narrow(a.entry, a.exit); };
   EXPECT_GT(boxes(change).lost, 100u);
   EXPECT_GT(sums(change).lost, 100u);
-  EXPECT_GT(intervals([](IntervalAnswer& a) { a.near += 0.5f * (a.far - a.near); }).lost, 100u);
-  EXPECT_GT(intervals([](IntervalAnswer& a) { a.hi[0] = a.lo[0]; }).lost, 100u);
-  EXPECT_GT(intervals([](IntervalAnswer& a) { a.row_lo = a.row_hi; }).lost, 100u);
 }
 
 TEST(KernelCheck, MissedLinesAreLost) {
   const Change miss = [](SolidAnswer& a) { a.hit = false; };
   EXPECT_GT(boxes(miss).lost, 100u);
   EXPECT_GT(sums(miss).lost, 100u);
-  EXPECT_GT(intervals([](IntervalAnswer& a) { a.hit = false; }).lost, 100u);
 }
 
 TEST(KernelCheck, WhatIsNoNumberIsLost) {
   const Change nan = [](SolidAnswer& a) { a.exit = std::numeric_limits<float>::quiet_NaN(); };
   EXPECT_GT(boxes(nan).lost, 100u);
   EXPECT_GT(sums(nan).lost, 100u);
-  EXPECT_GT(
-      intervals([](IntervalAnswer& a) { a.far = std::numeric_limits<float>::infinity(); }).lost,
-      100u);
 }
 
 TEST(KernelCheck, AnswersThatSayNothingAreLoose) {
@@ -131,16 +88,6 @@ TEST(KernelCheck, AnswersThatSayNothingAreLoose) {
   EXPECT_TRUE(loose(boxes(wide)));
   EXPECT_TRUE(loose(sums(wide)));
   EXPECT_EQ(boxes(wide).lost, 0u);
-  EXPECT_TRUE(loose(intervals([](IntervalAnswer& a) { a.far += 20; })));
-}
-
-TEST(KernelCheck, SlicesMayNotDecreaseNorBeFarOff) {
-  EXPECT_GT(slices([](SliceAnswer& a) { a.slice = 63 - a.slice; }).lost, 100u);
-  EXPECT_GT(slices([](SliceAnswer& a) { a.slice = 0; }).lost, 100u);
-  EXPECT_GT(slices([](SliceAnswer& a) { a.slice += 2; }).lost, 100u);
-  EXPECT_GT(slices([](SliceAnswer& a) { a.pixel += 1; }).lost, 100u);
-  int n = 0;
-  EXPECT_GT(slices([&](SliceAnswer& a) { a.slice -= (++n % 100) == 0; }).lost, 10u);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ void require_memory() {
     throw Error(
         "EGL",
         "a device may take " + std::to_string(bytes >> 20) + " MB of memory, and less is left",
-        "raise the limit (ulimit -v), use {method} far-pairs {device} cpu, or a machine with "
+        "raise the limit (ulimit -v), use {device} native, or a machine with "
         "more memory");
   }
   ::munmap(reserved, bytes);
@@ -312,7 +312,7 @@ GlContext::GlContext(const std::string& device) {
   throw Error("EGL", problems.empty() ? "there is no " + device + " device" : problems,
               problems.find(kNoMemory) == std::string::npos
                   ? kInstall
-                  : "use a machine with more memory, or {method} far-pairs {device} cpu");
+                  : "use a machine with more memory, or {device} native");
 }
 
 GlContext::~GlContext() = default;

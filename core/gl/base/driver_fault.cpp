@@ -13,7 +13,6 @@ using Kind = DriverFaultKind;
 
 struct Plan {
   Kind kind;
-  std::size_t at;                     // of wrong_count
   std::optional<std::size_t> strike;  // the call at fault; empty: none yet
   std::size_t calls = 0;              // since strike()
   bool query_lost = false;            // the query that is not open
@@ -37,10 +36,6 @@ void draw(GLenum mode, GLint first, GLsizei count) {
 // out. The replacement also ends the invocation at the item before far_lost_item.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
-// Programs of far-pairs that may read their number of items on the device have this line instead.
-constexpr const char* kCountedEnd = "if (w >= items) break;";
-constexpr const char* kEarlierCountedEnd =
-    "if (w >= items || (far_lost_item != 0u && w == items / 2u)) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";
 constexpr const char* kSizeAndItem =
     "layout(local_size_x = 64) in;\nlayout(location = 64) uniform uint far_lost_item;";
@@ -58,9 +53,9 @@ void dispatch(GLuint x, GLuint y, GLuint z) {
   glGetIntegerv(GL_CURRENT_PROGRAM, &program);
   if (glGetUniformLocation(static_cast<GLuint>(program), "far_lost_item") != kLostItem)
     throw std::logic_error("driver fault: the program was not compiled with this fault");
-  GLuint count[4] = {};  // the uniform, or the first four words of an array
-  glGetUniformuiv(static_cast<GLuint>(program), kCount, count);
-  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, count[0] / 2 + 1);
+  GLuint count = 0;
+  glGetUniformuiv(static_cast<GLuint>(program), kCount, &count);
+  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, count / 2 + 1);
   Dispatch::original(x, y, z);
   glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, 0);
 }
@@ -95,20 +90,9 @@ void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, con
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);
   std::string text = texts[0];
-  if (plan->kind == Kind::unfinished_item &&
-      (text.find(kEnd) != std::string::npos || text.find(kCountedEnd) != std::string::npos)) {
+  if (plan->kind == Kind::unfinished_item && text.find(kEnd) != std::string::npos) {
     replace(text, kSize, kSizeAndItem);
     replace(text, kEnd, kEarlierEnd);
-    replace(text, kCountedEnd, kEarlierCountedEnd);
-  }
-  if (plan->kind == Kind::kept_bits)
-    replace(text, "FAR_AT(to, w) = 0u;", "if (u_extra.x == 0u) FAR_AT(to, w) = 0u;");
-  // pair_lists.comp has three steps: step 1 counts.
-  if (plan->kind == Kind::wrong_count && text.find("#define FAR_STEP 1\n") != std::string::npos &&
-      text.find("atomicExchange(FAR_AT(listed, record)") != std::string::npos) {
-    replace(text, "void work(uint w) {",
-            "void work(uint w) {\n  if (w == 0u) atomicAdd(counts[" + std::to_string(plan->at) +
-                "u % (u_cells * u_bins.x)], 1u);");
   }
   const GLchar* const changed = text.c_str();
   ShaderSource::original(shader, count, &changed, lengths);
@@ -116,8 +100,8 @@ void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, con
 
 }  // namespace
 
-DriverFault::DriverFault(DriverFaultKind kind, std::size_t at) : alone_(one_at_a_time) {
-  plan = Plan{.kind = kind, .at = at, .strike = {}};
+DriverFault::DriverFault(DriverFaultKind kind) : alone_(one_at_a_time) {
+  plan = Plan{.kind = kind, .strike = {}};
   switch (kind) {
     case Kind::lost_draw:
       replaced_ = {std::make_shared<DrawArrays>(draw)};
@@ -133,10 +117,6 @@ DriverFault::DriverFault(DriverFaultKind kind, std::size_t at) : alone_(one_at_a
     case Kind::blind_queries:
       replaced_ = {std::make_shared<BeginQuery>(begin_query),
                    std::make_shared<EndQuery>(end_query)};
-      break;
-    case Kind::wrong_count:
-    case Kind::kept_bits:
-      replaced_ = {std::make_shared<ShaderSource>(shader_source)};
       break;
   }
 }

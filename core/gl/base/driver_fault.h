@@ -62,17 +62,14 @@ enum class DriverFaultKind {
   unfinished_item,     // a work item of a dispatch, and those after it of its invocation, never run
   lost_query,          // an occlusion query is never issued
   blind_queries,       // all occlusion queries answer zero, from strike() on
-  wrong_count,         // far-pairs: the count of a list is one too large
-  kept_bits,           // far-pairs: bits of pairs that shall be set to 0 keep their values
 };
 
 /// Only calls of the thread that made the object are at fault; those of other threads reach the
 /// driver unchanged. A second object, of another thread, waits for the first. Programs must be
-/// compiled while the object lives for unfinished_item, wrong_count and kept_bits.
+/// compiled while the object lives for unfinished_item.
 class DriverFault {
  public:
-  /// at: for wrong_count, the number of the bin, modulo the number of bins.
-  explicit DriverFault(DriverFaultKind kind, std::size_t at = 0);
+  explicit DriverFault(DriverFaultKind kind);
   ~DriverFault();
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;

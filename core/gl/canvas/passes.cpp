@@ -101,7 +101,7 @@ class Layout {
       throw Error("GL pass",
                   "more than " + std::to_string(kMaxControls) +
                       " owners (objects; for s-cullide triangles) are stored in one pass",
-                  "join objects that cannot collide with each other, or use far-pairs");
+                  "join objects that cannot collide with each other, or use boxes");
     }
     if (store && !std::exchange(marked_, true))
       push_control(Verb::store, kMark, canvas_.odd ? 1 : 2, 0);

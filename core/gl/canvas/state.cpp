@@ -197,7 +197,7 @@ CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
                 "the device has " + std::to_string(blocks) +
                     " storage blocks for vertex programs, the canvas needs " +
                     std::to_string(needed),
-                "use another {device}, or {method} far-pairs");
+                "use another {device}, or {method} boxes");
   }
   long storage = context.info().max_storage_block;
   if (options.storage_limit > 0) storage = std::min(storage, options.storage_limit);

@@ -8,11 +8,8 @@
 #include "core/gl/probe/probe.h"
 #include "core/gl/probe/target.h"
 #include "embedded/canvas_frag.h"
-#include "embedded/interval_glsl.h"
-#include "embedded/pair_rows_glsl.h"
 #include "embedded/probe_arithmetic_glsl.h"
 #include "embedded/probe_frag.h"
-#include "embedded/probe_kernels_comp.h"
 
 namespace farcull::probe {
 namespace {
@@ -137,14 +134,9 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
 
 void damage(float& x) { x = from_bits(std::bit_cast<std::uint32_t>(x) ^ 1u << 22); }
 
-void operations(const GlContext&, const ProbeOptions& options, bool compute,
-                std::vector<ProbeResult>& out) {
-  const std::string stage = compute ? " (compute)" : " (fragment)";
+void operations(const ProbeOptions& options, std::vector<ProbeResult>& out) {
   const std::string loose = options.loose_text ? "#undef FAR_PRECISE\n#define FAR_PRECISE\n" : "";
-  const GlProgram program =
-      compute ? gl_program("probe arithmetic", {"FAR_COMPUTE"},
-                           {{GL_COMPUTE_SHADER, {loose, embedded::probe_arithmetic_glsl}}})
-              : proxy_program("arithmetic", {loose, embedded::probe_arithmetic_glsl});
+  const GlProgram program = proxy_program("arithmetic", {loose, embedded::probe_arithmetic_glsl});
   Target target(kWidth, kHeight);
   target.upload({box(-0.5 * kWidth, -0.5 * kHeight, 0.5 * kWidth, 0.5 * kHeight)});
   GlBuffer input = gl_make<GlBuffer>(glGenBuffers), results;
@@ -157,24 +149,19 @@ void operations(const GlContext&, const ProbeOptions& options, bool compute,
     gl_fill(input, sent.data(), sent.size() * sizeof(Operands));
     bind_zeros(results, 3, 12 * kCases);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, input);
-    if (compute) {
-      glUseProgram(program);
-      glDispatchCompute(static_cast<GLuint>(kCases / 64), 1, 1);
-    } else {
-      target.start();
-      target.use(program);
-      target.draw(0, 1);
-    }
+    target.start();
+    target.use(program);
+    target.draw(0, 1);
     judge(operands, words_of(results, 12 * kCases), found);
   }
   const std::string unit = "2^-23 of the result";
-  out.push_back(result("A4", "+ - *" + stage, found.rounded, options.exact_arithmetic ? 0 : 1, unit,
+  out.push_back(result("A4", "+ - *", found.rounded, options.exact_arithmetic ? 0 : 1, unit,
                        "random operands of all sizes, cancelling ones, ends of binades"));
-  out.push_back(result("A4", "division" + stage, found.quotient, options.exact_arithmetic ? 0 : 2.5,
-                       unit, "divisors in [2^-126, 2^126], quotients below 2^126"));
-  out.push_back(result("A4", "min, max, abs, comparisons, buffer reads" + stage, found.wrong, 0,
+  out.push_back(result("A4", "division", found.quotient, options.exact_arithmetic ? 0 : 2.5, unit,
+                       "divisors in [2^-126, 2^126], quotients below 2^126"));
+  out.push_back(result("A4", "min, max, abs, comparisons, buffer reads", found.wrong, 0,
                        "wrong results", "neighbours, equal operands and zeros among them"));
-  out.push_back(result("A4", "precise" + stage, found.chain, options.exact_arithmetic ? 0 : 1, unit,
+  out.push_back(result("A4", "precise", found.chain, options.exact_arithmetic ? 0 : 1, unit,
                        "(a - b) + b and a * b - c, each step against what the step before gave"));
 }
 
@@ -269,12 +256,9 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
 
 }  // namespace
 
-std::vector<ProbeResult> arithmetic(const GlContext& context, const ProbeOptions& options) {
+std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& options) {
   std::vector<ProbeResult> out;
-  operations(context, options, true, out);
-  for (ProbeResult& r : out) r.pairs = true;
-  if (options.use == ProbeUse::pairs) return out;
-  operations(context, options, false, out);
+  operations(options, out);
   out.push_back(transport(options));
   out.push_back(depth_map(options, DepthBuffer::float32));
   out.push_back(depth_map(options, DepthBuffer::fixed24));
@@ -284,38 +268,8 @@ std::vector<ProbeResult> arithmetic(const GlContext& context, const ProbeOptions
 }  // namespace farcull::probe
 
 // Kernels on cases: solids are drawn by a canvas, one to a pixel of a square window, and their
-// entry and exit depths read back. Intervals and slices go to a compute shader as words, one
-// invocation to a case.
+// entry and exit depths read back.
 namespace farcull {
-namespace {
-
-using probe::bind_zeros;
-using probe::words_of;
-
-constexpr std::size_t kGroup = 64;  // local_size_x
-
-// Runs `text` once for each of `count` cases of `in` words, each of which gives `out` words.
-std::vector<std::uint32_t> compute(const GlContext& context, const std::string& name,
-                                   const std::vector<std::string>& texts,
-                                   const std::vector<std::uint32_t>& cases, std::size_t count,
-                                   std::size_t out) {
-  const GlCurrent current(context);
-  const GlProgram program = gl_program("probe " + name, {}, {{GL_COMPUTE_SHADER, texts}});
-  const GlBuffer input = gl_make<GlBuffer>(glGenBuffers);
-  GlBuffer answers;
-  gl_fill(input, cases.data(), cases.size() * sizeof(std::uint32_t));
-  bind_zeros(answers, 1, out * count);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, input);
-  glUseProgram(program);
-  glUniform1ui(0, static_cast<GLuint>(count));
-  glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
-  return words_of(answers, out * count);
-}
-
-float value(std::uint32_t bits) { return std::bit_cast<float>(bits); }
-std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
-
-}  // namespace
 
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases) {
@@ -365,53 +319,6 @@ std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgr
     const std::vector<std::uint8_t> seen = canvas.run(pass);
     for (std::uint32_t i = 0; i < kCases; ++i) out[i] = out[i] != 0 && seen[i] != 0;
   }
-  return out;
-}
-
-std::vector<IntervalAnswer> device_intervals(const GlContext& context,
-                                             std::span<const IntervalCase> cases,
-                                             const std::string& before) {
-  std::vector<std::uint32_t> words;
-  for (const IntervalCase& c : cases) {
-    for (const auto& corner : c.corners) {
-      for (const float x : corner) words.push_back(bits(x));
-      words.push_back(bits(c.widening));
-    }
-    words.insert(words.end(),
-                 {static_cast<std::uint32_t>(c.i), static_cast<std::uint32_t>(c.j), 0, 0});
-  }
-  const std::vector<std::uint32_t> got = compute(
-      context, "intervals",
-      {before, embedded::interval_glsl, embedded::pair_rows_glsl, embedded::probe_kernels_comp},
-      words, cases.size(), 12);
-  std::vector<IntervalAnswer> out;
-  for (std::size_t n = 0; n < cases.size(); ++n) {
-    const std::uint32_t* w = &got[12 * n];
-    out.push_back({{value(w[0]), value(w[1]), value(w[2])},
-                   {value(w[4]), value(w[5]), value(w[6])},
-                   value(w[3]),
-                   value(w[7]),
-                   w[10] == 1,
-                   value(w[8]),
-                   value(w[9])});
-  }
-  return out;
-}
-
-std::vector<SliceAnswer> device_slices(const GlContext& context, std::span<const SliceCase> cases) {
-  std::vector<std::uint32_t> words;
-  for (const SliceCase& c : cases)
-    words.insert(words.end(),
-                 {bits(c.z), bits(c.steps_per_px), static_cast<std::uint32_t>(c.first_step),
-                  static_cast<std::uint32_t>(c.slices_per_step), bits(c.x), 0, 0, 0});
-  const std::vector<std::uint32_t> got =
-      compute(context, "slices",
-              {"#define FAR_SLICES\n", embedded::interval_glsl, embedded::probe_kernels_comp},
-              words, cases.size(), 2);
-  std::vector<SliceAnswer> out;
-  for (std::size_t n = 0; n < cases.size(); ++n)
-    out.push_back(
-        {static_cast<std::int32_t>(got[2 * n]), static_cast<std::int32_t>(got[2 * n + 1])});
   return out;
 }
 

@@ -14,10 +14,6 @@
 
 namespace farcull {
 
-/// The user of an assumption. drawing: the canvas, A1 to A10. pairs: FAR pairs, which rasterizes
-/// nothing: A4 in compute shaders, A7 and A8.
-enum class ProbeUse { all, drawing, pairs };
-
 struct ProbeResult {
   std::string assumption;  // "A1" .. "A10"
   std::string name;
@@ -27,8 +23,6 @@ struct ProbeResult {
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
   std::string note;  // what was tried and seen besides; the error's text where the probe broke off
-  bool drawing = true;     // drawing relies on it
-  bool pairs = false;      // FAR pairs relies on it
   bool broke_off = false;  // an Error ended it: nothing was found out
 };
 
@@ -36,9 +30,8 @@ struct ProbeResult {
 /// every probe fail.
 struct ProbeOptions {
   std::uint64_t seed = 1;
-  std::string only = {};         // an assumption, as in "A3"; empty: all of them
-  bool brief = false;            // about a third of the samples
-  ProbeUse use = ProbeUse::all;  // probes on which this use does not rely are left out
+  std::string only = {};  // an assumption, as in "A3"; empty: all of them
+  bool brief = false;     // about a third of the samples
 
   int snap_bits = 0;                // A2: demand 2^-snap_bits px instead of what the device says
   bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
@@ -63,9 +56,8 @@ struct ProbeOptions {
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
-// The functions below run farcull's kernels on a device as its methods do: solids by the canvas's
-// own fragment program, intervals and slices by compute shaders that include
-// core/pairs/interval.glsl. verify/kernel_check.h decides whether the answers are right.
+// The functions below run farcull's kernels on a device as its methods do, by the canvas's own
+// fragment program. verify/kernel_check.h decides whether the answers are right.
 
 /// px: solids are asked on a window of this side, one in each pixel.
 constexpr int kSolidSide = 128;
@@ -90,13 +82,5 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);
-
-/// The answers of the kernel of FAR pairs. `before`: source that stands before the kernel, for
-/// twins that must fail.
-std::vector<IntervalAnswer> device_intervals(const GlContext& context,
-                                             std::span<const IntervalCase> cases,
-                                             const std::string& before = "");
-
-std::vector<SliceAnswer> device_slices(const GlContext& context, std::span<const SliceCase> cases);
 
 }  // namespace farcull

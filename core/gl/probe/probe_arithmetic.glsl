@@ -22,16 +22,9 @@ void probe_case(uint i) {
   results[3u * i + 2u] = uvec4(floatBitsToUint(size), order, floatBitsToUint(a), floatBitsToUint(c));
 }
 
-// FAR_COMPUTE: one case for each invocation; else for each fragment.
-#ifdef FAR_COMPUTE
-layout(local_size_x = 64) in;
-
-void main() { probe_case(gl_GlobalInvocationID.x); }
-#else
 uniform uint u_width;  // of the target, px
 
 void main() {
   uvec2 pixel = uvec2(floor(gl_FragCoord.xy));
   probe_case(pixel.y * u_width + pixel.x);
 }
-#endif

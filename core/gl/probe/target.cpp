@@ -16,17 +16,11 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
   struct Row {
     std::vector<std::string> assumptions;
     probe::Group* run;
-    bool drawing = true, pairs = false;  // who relies on it; pairs only on a part of A4
   };
-  const Row groups[] = {{{"A1", "A2"}, probe::edges},
-                        {{"A3", "A9"}, probe::coverage},
-                        {{"A4", "A9"}, probe::arithmetic, true, true},
-                        {{"A5"}, probe::depth_tests},
-                        {{"A6"}, probe::queries},
-                        {{"A7"}, probe::commands},
-                        {{"A7"}, probe::pair_commands, false, true},
-                        {{"A8"}, probe::memory, true, true},
-                        {{"A10"}, probe::driver, true, true}};
+  const Row groups[] = {{{"A1", "A2"}, probe::edges},      {{"A3", "A9"}, probe::coverage},
+                        {{"A4", "A9"}, probe::arithmetic}, {{"A5"}, probe::depth_tests},
+                        {{"A6"}, probe::queries},          {{"A7"}, probe::commands},
+                        {{"A8"}, probe::memory},           {{"A10"}, probe::driver}};
   const GlCurrent current(context);
   std::vector<ProbeResult> out;
   for (const Row& group : groups) {
@@ -34,8 +28,6 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
       return options.only.empty() || options.only == a;
     };
     if (std::none_of(group.assumptions.begin(), group.assumptions.end(), wanted)) continue;
-    if (options.use == ProbeUse::pairs && !group.pairs) continue;
-    if (options.use == ProbeUse::drawing && !group.drawing) continue;
     if (started) started(group.assumptions.front());
     std::vector<ProbeResult> results;
     try {
@@ -45,8 +37,6 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
         results.push_back(probe::broken(assumption, "broke off", error));
     }
     for (ProbeResult& r : results) {
-      r.drawing = group.drawing;
-      r.pairs = r.pairs || (group.pairs && (group.assumptions.front() != "A4" || r.broke_off));
       if (wanted(r.assumption)) out.push_back(std::move(r));
     }
   }

@@ -21,15 +21,14 @@ namespace farcull::probe {
 
 /// The groups of probes by assumption.
 using Group = std::vector<ProbeResult>(const GlContext& context, const ProbeOptions& options);
-Group edges;          // A1, A2
-Group coverage;       // A3, A9
-Group arithmetic;     // A4, A9
-Group depth_tests;    // A5
-Group queries;        // A6
-Group commands;       // A7
-Group pair_commands;  // A7
-Group memory;         // A8
-Group driver;         // A10
+Group edges;        // A1, A2
+Group coverage;     // A3, A9
+Group arithmetic;   // A4, A9
+Group depth_tests;  // A5
+Group queries;      // A6
+Group commands;     // A7
+Group memory;       // A8
+Group driver;       // A10
 
 /// Gives the same numbers with every standard library: the standard specifies its engines, but not
 /// its distributions.

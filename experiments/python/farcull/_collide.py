@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _farcull
 from ._errors import Error, InputError
-
-Device = Literal["cpu", "gl", "best"]
 
 KINDS: Tuple[str, ...] = _farcull.kinds
 """How two triangles A and B meet: the first that is true.
@@ -30,10 +28,6 @@ KINDS: Tuple[str, ...] = _farcull.kinds
 class Report:
     """What ran, on what, why, and how long. For people and logs."""
 
-    device: str  # "cpu", or the renderer
-    device_reason: str
-    promises: bool  # a pair that collides is never left out; False where a probe of the device failed
-    promises_reason: str
     candidates_ms: float  # wall clock, from the input to the candidates
     exact_ms: float  # wall clock of the exact tests
     candidates: int  # without those of ignored objects
@@ -42,7 +36,6 @@ class Report:
     contacts_ms: float  # wall clock of the kinds of contact
     passed_over: int  # vertices that are not finite and that no triangle uses
     callers_arithmetic: str  # how the calling thread computes, where that is unusual; else empty
-    views: List[Dict[str, Any]]
     stages: List[Dict[str, Any]]
 
 
@@ -140,29 +133,23 @@ class Collider:
     :func:`collide`. One thread at a time may use it.
 
     By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore`` (numbers
-    alone), ``limit``, ``device`` and ``threads`` as :func:`collide` does; and ``views`` and
-    ``resolution``, directions to look along and pixels, which change the time only.
+    alone), ``limit`` and ``threads`` as :func:`collide` does.
 
-    Raises InputError naming the option that is wrong, and Error where the device does not answer.
+    Raises InputError naming the option that is wrong.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
         collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
-        neighbours: bool = True, device: Device = "cpu", threads: int = 0, contacts: bool = False,
+        neighbours: bool = True, threads: int = 0, contacts: bool = False,
         segments: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
-        views: str = "auto", resolution: int = 0,
     ) -> None:
         question = _question(
             self, clearance, neighbours, threads, contacts, segments, ignore, limit
         )
         collider._grouped: Any = None  # of the call before, if it had an answer
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
-        collider._collider = _farcull.Collider(
-            question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
-            views=_arguments.text("views", views),
-            resolution=_arguments.integer("resolution", resolution, 0, 16384),
-        )
+        collider._collider = _farcull.Collider(question)
 
     def find(
         self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
@@ -185,7 +172,7 @@ class Collider:
             arrays of the call before, unless that raised an exception.
 
         Raises InputError for arrays that are not so, where there is nothing to test, and where
-        ``ignore`` names an object that is not there; Error for a fault of the device, and MemoryError.
+        ``ignore`` names an object that is not there; and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
         grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, self._grouped)
@@ -212,7 +199,7 @@ class Collider:
 def collide(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
-    device: Device = "cpu", threads: int = 0, contacts: bool = False,
+    threads: int = 0, contacts: bool = False,
     ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
     labels: Optional[ArrayLike] = None, segments: bool = False,
     poses: Optional[ArrayLike] = None,
@@ -229,8 +216,6 @@ def collide(
     self: True: every object is tested against itself as well; or one truth value for each object.
     clearance: pairs at this distance or less collide too. World units, finite, 0 or more.
     neighbours: False: neighbours are counted, not decided.
-    device: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where boxes of
-        runs decide, else gl if hardware answers, else the CPU.
     threads: up to 1024; 0: one for each core.
     contacts: True: say of each pair how the two triangles meet (:data:`KINDS`).
     ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers
@@ -243,15 +228,14 @@ def collide(
     poses: a matrix for each object, which moves it, as in :meth:`Collider.find`.
 
     Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for
-    arguments that are not so and where there is nothing to test; Error for a fault of the device, and
-    MemoryError.
+    arguments that are not so and where there is nothing to test; and MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     _refuse_limit(limit, labels)
     all_objects, each = _arguments.selves(self)
     selves = each or all_objects
     collider = Collider(
-        self=selves, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
+        self=selves, clearance=clearance, neighbours=neighbours, threads=threads,
         contacts=contacts, segments=segments, ignore=grouped.ignored(ignore), limit=limit,
     )
     usual = clearance == 0 and ignore is None and limit is None and poses is None

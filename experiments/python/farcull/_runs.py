@@ -150,7 +150,7 @@ class Plan:
 
 
 def plan(
-    scene: "Scene", /, method: str = "far-pairs", *, threads: int = 0, ignore: Optional[Any] = None,
+    scene: "Scene", /, method: str = "boxes", *, threads: int = 0, ignore: Optional[Any] = None,
     limit: Optional[int] = None, **options: Any,
 ) -> Plan:
     """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
@@ -225,7 +225,7 @@ class Picture:
 
 
 def picture(
-    scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("far-pairs",), *,
+    scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("boxes",), *,
     view: str = "", up: str = "", zoom: bool = False, depth_view: Optional[str] = None,
     width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
@@ -245,7 +245,7 @@ def picture(
     panels = []
     for one in methods:
         options = dict(one) if isinstance(one, dict) else {"method": one}
-        panels.append(_options(options.pop("method", "far-pairs"), options))
+        panels.append(_options(options.pop("method", "boxes"), options))
     pixels, shown, html = _farcull.picture(
         scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
         _arguments.flag("zoom", zoom),

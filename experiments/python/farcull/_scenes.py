@@ -114,7 +114,7 @@ class Scene:
         """Which objects are tested against themselves."""
         return self._scene.self
 
-    def run(scene, /, method: str = "far-pairs", **options: Any) -> Record:
+    def run(scene, /, method: str = "boxes", **options: Any) -> Record:
         """Culls the scene, tests what is left, and accounts for every pair.
 
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,

@@ -2,7 +2,7 @@
 picture of CULLIDE beside FAR where CULLIDE misses something."""
 from frame import *  # noqa: F403
 
-OURS = ("FAR (OBB)", "FAR pairs")
+OURS = ("FAR (OBB)", "Boxes")
 SHOWN = (", one round", ", one round, conservative", ", one round, all views, conservative")  # forms with lines
 SIZED = ("CULLIDE, one round", "FAR (OBB)", "CULLIDE, one round, conservative")  # told at each size of triangles
 LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
@@ -58,7 +58,7 @@ def missed_figure(rows):
 def form_group(row):
     """The series of a run in the figure of all forms; "" for radii that promise nothing."""
     if "cullide" not in row.method:
-        ours = {"far": "FAR, boxes and exact offsets", "far-pairs": "FAR pairs"}
+        ours = {"far": "FAR, boxes and exact offsets", "boxes": "Boxes"}
         return "" if row.radius == "published" else ours.get(row.method, "")
     return "CULLIDE, " + dict(zip(SHOWN, ("as published", "conservative", "strict"))).get(
         row.contestant.partition("CULLIDE")[2], "other forms")
@@ -96,7 +96,7 @@ def forms_table(chapter, rows):
                                                                                  "candidates"]))
     rows = rows[~rows.sized].drop_duplicates(["contestant", "scene", "resolution"])
     rows = rows.set_index(["scene", "resolution"], drop=False)
-    for start, rival in (("cullide|quick-cullide", "FAR (OBB)"), ("s-cullide", "FAR pairs")):
+    for start, rival in (("cullide|quick-cullide", "FAR (OBB)"), ("s-cullide", "Boxes")):
         forms = dict(list(rows[rows.method.str.match(start)].groupby("contestant")))
         common = sorted(set.intersection(*(set(form.index) for form in forms.values()))) if forms else []
         forms = [(name, form.loc[common]) for name, form in forms.items()]
@@ -161,7 +161,7 @@ def fill(chapter, study):
         "Scenes are few and still, so that no miss is no proof; the proof is in docs/reliability.md.",
         "Pairs of one scene do not collide independently of each other, and scenes were chosen by hand, so that shares "
         "have no intervals.",
-        "FAR is measured between objects; against themselves objects are tested by S-CULLIDE and FAR pairs alone.",
+        "FAR is measured between objects; against themselves objects are tested by S-CULLIDE and boxes alone.",
         "How much CULLIDE misses depends on how a device samples: other devices give other counts.",
         "The published radius may miss nothing in these scenes and pairs in others (see the study of the radius)."]
     add_gaps(chapter, study)

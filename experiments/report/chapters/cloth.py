@@ -7,9 +7,9 @@ def stiffness_of(scene):
 
 
 def courses_of(study):
-    """For each stiffness: the rows of FAR pairs by frame, those of FAR, and the number of frames in the grid."""
+    """For each stiffness: the rows of boxes by frame, those of FAR, and the number of frames in the grid."""
     stiffness = study.rows.scene.map(stiffness_of)
-    wanted = study.points[study.points.method == "far-pairs"].scene.map(stiffness_of).value_counts()
+    wanted = study.points[study.points.method == "boxes"].scene.map(stiffness_of).value_counts()
     out = {}
     for name, rows in study.rows.sort_values("frame", kind="stable").groupby(stiffness):
         pairs = rows[rows.method != "far"]
@@ -48,7 +48,7 @@ def figure_of(courses):
             over_frames(f"{name} N/m", pairs, count) for name, (pairs, _, _) in courses.items()]))
     for name, (pairs, far, _) in courses.items():
         out.panels.append(Panel(f"{name} N/m", Axis("frame"), log("pairs", zero=True), [
-            over_frames("FAR pairs", pairs, "candidates", emphasis=True),
+            over_frames("Boxes", pairs, "candidates", emphasis=True),
             over_frames("FAR (OBB)", far, "candidates", "points"),
             over_frames("colliding", pairs, "colliding")]))
     return out
@@ -98,7 +98,7 @@ def culled_pairs(rows):
 def add_power(chapter, rows, name, pairs, far):
     """Adds what each method culled of one stiffness, and how many pairs were at risk in the frames that FAR looked at."""
     words = []
-    for method, of in (("FAR", far), ("FAR pairs", pairs)):
+    for method, of in (("FAR", far), ("Boxes", pairs)):
         if column(of, "views_used").sum() > 0:
             _, views = culled_shares(of)
             words.append(f"{method} took away {rounded(culled_pairs(of), 2)} % of the pairs of overlapping boxes that are "
@@ -119,10 +119,10 @@ def add_agreement(chapter, courses):
             differ += other is not None and (number(row, "colliding") != number(other, "colliding") or
                                              value(row, "total") != value(other, "total"))
     if differ:
-        chapter.find_broken("FAR and FAR pairs found different numbers of pairs, or saw different cloths, in "
+        chapter.find_broken("FAR and boxes found different numbers of pairs, or saw different cloths, in "
                             f"{differ} of {both} frames.")
     elif both:
-        chapter.find("FAR and FAR pairs found the same number of colliding pairs in each of the "
+        chapter.find("FAR and boxes found the same number of colliding pairs in each of the "
                      f"{grouped(both)} frames that both looked at.")
 
 
@@ -142,7 +142,7 @@ def fill(chapter, study):
     chapter.limits = [
         "One cloth, one fall: the settings are those of docs/cloth.md, and only the stiffness of the springs differs.",
         "FAR culls few triangles of a cloth: nearly every one touches neighbours, and a pair of neighbours in two patches "
-        "keeps both. So its misses say less than those of FAR pairs, which culls pairs.",
+        "keeps both. So its misses say less than those of boxes, which culls pairs.",
         "The cloth does not resist itself, so that its folds pass through each other.",
         "The study is not among `farcull experiment all`, since it takes hours on one core."]
     add_gaps(chapter, study)

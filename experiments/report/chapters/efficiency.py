@@ -2,7 +2,7 @@
 of CULLIDE."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "FAR pairs", "I-COLLIDE"]
+METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "Boxes", "I-COLLIDE"]
 OBB, EXACT, PLAIN, QUICK, PAIRS, BOXES = METHODS
 NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidates", "queries", "draws", "there"]
 
@@ -105,7 +105,7 @@ def fill(chapter, study):
         "family` takes any size.",
         "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
         "FAR and CULLIDE are measured between objects; scenes with objects that are tested against themselves are "
-        "measured by I-COLLIDE and FAR pairs alone.",
+        "measured by I-COLLIDE and boxes alone.",
         "Boxes of triangles are our addition to I-COLLIDE; as published it ends with objects.",
         "On a software device the times of methods that draw say nothing about graphics hardware; queries and draws "
         "carry over."]

@@ -4,7 +4,7 @@ from collections import Counter
 
 from frame import *  # noqa: F403
 
-OURS = ("FAR (OBB)", "FAR pairs")
+OURS = ("FAR (OBB)", "Boxes")
 STRICT = "one round, all views, conservative"  # drawn as "CULLIDE (strict)"
 OWN_TESTS = "FCL and ODE, their own tests"
 MOST_SCENES = 8  # largest number of scenes of the first figure
@@ -149,7 +149,7 @@ def row_name(name, pixels, shown):
     """The row of the strip that holds the point; "" for resolutions that are left to the table."""
     if name == "FAR (OBB)" and pixels > 0:
         return f"{name}, {pixels} px" if pixels in shown else ""
-    return name + ", given px" if name == "FAR pairs" and pixels > 0 else name
+    return name
 
 
 def error_panels(titles, labels, all_points):

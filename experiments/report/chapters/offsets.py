@@ -1,17 +1,16 @@
-"""Compares boxes, exact offsets and intervals: what they keep and draw, and how long they take."""
+"""Compares oriented boxes and exact offsets: what they keep and draw, and how long they take."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-BOX, EXACT, INTERVALS = "FAR (OBB)", "FAR (exact)", "FAR pairs"
+BOX, EXACT = "FAR (OBB)", "FAR (exact)"
 TIME = "median_ms"
 MEASURES = {"kept triangles": "kept_triangles", "false pos. / colliding": "false_positives", "fragments": "fragments",
             "time (ms)": TIME}
 CAPTION = (
     "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one "
-    "than they collide with, FAR pairs those that are in a candidate pair. False positives: pairs handed to exact "
-    "tests that do not collide, over pairs that do. Fragments of FAR: pixel centres in which the fattened triangle is "
-    "stored or asked in one drawing of all triangles in every view; of FAR pairs: entries in the lists of pixels, one for "
-    "each triangle and pixel that it may touch, in the views that it looked with. Times: from triangles to pairs, with "
-    "their intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
+    "than they collide with. False positives: pairs handed to exact tests that do not collide, over pairs that do. "
+    "Fragments: pixel centres in which the fattened triangle is stored or asked in one drawing of all triangles in every "
+    "view. Times: from triangles to pairs, with their intervals as bars, without contexts and shaders; FAR with exact "
+    "offsets draws boxes first.")
 
 
 def figure_of(rows):
@@ -28,7 +27,7 @@ def figure_of(rows):
 
 def table_of(rows):
     return table_of_rows(
-        "offsets", "Boxes, exact offsets and intervals; times are medians of the runs with their intervals. " +
+        "offsets", "Boxes and exact offsets; times are medians of the runs with their intervals. " +
         sample_text(rows), rows,
         {"scene": "=scene", "resolution (px)": lambda row: str(row.resolution), "method": "=contestant",
          "kept triangles": "kept_triangles", "candidates": "candidates", "false positives": "~false_positives",
@@ -73,11 +72,8 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_order(chapter, rows)
     add_comparison(chapter, rows, EXACT, BOX)
-    add_comparison(chapter, rows, INTERVALS, BOX)
     chapter.limits = [
-        "Fragments of FAR are those of one drawing; a run draws what is left several times.",
-        "FAR pairs compares pairs and chooses its directions, FAR culls sets along x, y and z: what differs is not the "
-        "bound alone.",
+        "Fragments are those of one drawing; a run draws what is left several times.",
         "FAR with exact offsets draws boxes first and exact offsets on what these leave; where boxes leave few "
         "triangles it draws no exact offset.",
         "On a software device times say nothing about graphics hardware; counts carry over."]

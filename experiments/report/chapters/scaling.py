@@ -1,7 +1,7 @@
 """Time against five measures of size, with fitted exponents."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-METHODS = ["FAR (OBB)", "FAR pairs", "CULLIDE", "I-COLLIDE", "exact"]
+METHODS = ["FAR (OBB)", "Boxes", "CULLIDE", "I-COLLIDE", "exact"]
 CROWD, DENSE = "crowd:[^:]*", "crowd:[^:]*:[^:]*"  # patterns of scenes
 # Each plot by the name of its size: title, axis, its scenes, the column of the size.
 PLOTS = {"objects": ("objects: crowd:N", "objects", CROWD, "objects"),
@@ -42,8 +42,8 @@ def fill(chapter, study):
         methods = {name: (name.startswith("FAR"), here) for name in METHODS if len(here := of[of.contestant == name])}
         drawn += [here for _, here in methods.values()]
         figure.panels += [times_panel(title, axis, "at", methods, exponents, plot)] * bool(methods)
-    if said := [f"{row[-1]} over {row[0]}" for row in exponents.rows if row[1] == "FAR pairs"]:
-        chapter.find(f"Exponents of the time of FAR pairs, with 95 % intervals: {listed(said)}.")
+    if said := [f"{row[-1]} over {row[0]}" for row in exponents.rows if row[1] == "Boxes"]:
+        chapter.find(f"Exponents of the time of boxes, with 95 % intervals: {listed(said)}.")
     chapter.limits = [
         "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and the growing "
         "number of rounds steepen large ones. The interval is of the straight line through the medians, not of another "

@@ -142,9 +142,7 @@ def fill(chapter, study):
         "shares are those of this layout.",
         "In gaps nothing collides but small triangles at two corners of the scene: this family shows what is kept of pairs "
         "that nearly meet, and what is reported wrongly.",
-        "FAR pairs has no ball that could be smaller; beside it stand the pairs that sampling alone loses in the same "
-        "views and pixels.",
-        "CULLIDE is measured between objects, so it sees the cloth against the sphere; S-CULLIDE, FAR and FAR pairs also "
+        "CULLIDE is measured between objects, so it sees the cloth against the sphere; S-CULLIDE, FAR and boxes also "
         "see it against itself.",
         "The cloth here is small, and looked at in a few frames. The study cloth (farcull experiment cloth, hours) goes "
         "through 500 frames of 20,000 triangles.",

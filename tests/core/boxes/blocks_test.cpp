@@ -6,9 +6,8 @@
 
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
+#include "core/boxes/meetings.h"
 #include "core/boxes/oriented.h"
-#include "core/pairs/regions.h"
-#include "core/pairs/sweep.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/pairs.h"
@@ -199,12 +198,22 @@ TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
   EXPECT_GT(found, 100'000u);
 }
 
-// Without oriented boxes, which leave pairs out.
-PairParts split_along_axes(const Scene& scene, double clearance,
-                           std::span<const ObjectPair> ignored = {}) {
-  PairParts parts = split_meetings(scene, clearance, 2, false, ignored);
-  if (parts.blocks.oriented) parts = split_meetings(scene, clearance, 2, true, ignored);
-  return parts;
+// The pairs of blocks along the axes of all meetings, also where something else would decide.
+BlockMeetings along_axes(const Scene& scene, double clearance,
+                         std::span<const ObjectPair> ignored = {}) {
+  const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, 2));
+  const ObjectMeetings meetings = find_meetings(scene, *blocks, ignored);
+  const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
+  gather_scattered(scene, clearance, regions, 2, *blocks);
+  const BlockTrees trees(*blocks, regions);
+  BlockMeetings out;
+  out.of = blocks;
+  out.meetings = meetings.all.size();
+  for (const auto& [a, b] : meetings.all) {
+    pair_blocks(trees, a, b, blocks->first[a], blocks->first[a] + blocks->count(a), SIZE_MAX,
+                a == b ? out.pairs.inside : out.pairs.between);
+  }
+  return out;
 }
 
 TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
@@ -212,15 +221,14 @@ TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
   for (const Scene& scene : small_scenes()) {
     for (const double clearance : {0.0, 0.01}) {
       for (const bool neighbours : {true, false}) {
-        const PairParts parts = split_along_axes(scene, clearance);
-        if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+        const BlockMeetings blocks = along_axes(scene, clearance);
+        if (blocks.empty()) continue;
         ++by_blocks;
         const std::vector<TrianglePair> expected = overlapping(scene, clearance, neighbours);
         pairs += expected.size();
         on_every_target([&] {
           for (const unsigned threads : {1u, 3u})
-            ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, clearance, neighbours, threads),
-                      expected)
+            ASSERT_EQ(pairs_of_blocks(scene, blocks, clearance, neighbours, threads), expected)
                 << scene.name;
         });
       }
@@ -235,13 +243,13 @@ TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
 TEST(Blocks, GiveEachPairOnce) {
   std::size_t twice = 0;
   for (const Scene& scene : small_scenes()) {
-    const PairParts parts = split_meetings(scene, 0, 2, true);
-    if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+    const BlockMeetings blocks = along_axes(scene, 0);
+    if (blocks.empty()) continue;
     const auto given = [&](const BlockPairs& some) {
       std::mutex mutex;
       std::vector<TrianglePair> all;
       const std::uint64_t count =
-          give_pairs_of_blocks(scene, parts.blocks, some, 0, true, 3, [&](const auto& pairs) {
+          give_pairs_of_blocks(scene, blocks, some, 0, true, 3, [&](const auto& pairs) {
             const std::scoped_lock lock(mutex);
             all.insert(all.end(), pairs.begin(), pairs.end());
           });
@@ -249,9 +257,8 @@ TEST(Blocks, GiveEachPairOnce) {
       std::ranges::sort(all);
       return all;
     };
-    ASSERT_EQ(given(parts.blocks.pairs), pairs_of_blocks(scene, parts.blocks, 0, true, 2))
-        << scene.name;
-    BlockPairs more = parts.blocks.pairs;
+    ASSERT_EQ(given(blocks.pairs), pairs_of_blocks(scene, blocks, 0, true, 2)) << scene.name;
+    BlockPairs more = blocks.pairs;
     more.between.insert(more.between.end(), more.between.begin(), more.between.end());
     more.inside.insert(more.inside.end(), more.inside.begin(), more.inside.end());
     const std::vector<TrianglePair> repeated = given(more);
@@ -268,25 +275,25 @@ TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
     for (std::uint32_t b = 1; b < scene.objects.size(); ++b)
       for (std::uint32_t a = b % 2; a < b; a += 2) ignored.push_back({a, b});
     ignored = in_order(std::move(ignored));
-    const PairParts parts = split_along_axes(scene, 0, ignored);
-    if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+    const BlockMeetings blocks = along_axes(scene, 0, ignored);
+    if (blocks.empty()) continue;
     std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     removed += remove_ignored(scene, ignored, expected);
-    ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 2), expected) << scene.name;
+    ASSERT_EQ(pairs_of_blocks(scene, blocks, 0, true, 2), expected) << scene.name;
   }
   EXPECT_GT(removed, 100u);
 }
 
 // What is decided by blocks does not depend on threads.
-TEST(Blocks, SplitAlikeWhateverTheThreads) {
+TEST(Blocks, DecideAlikeWhateverTheThreads) {
   std::vector<Scene> scenes = small_scenes();
   scenes.push_back(
       shuffled(make_builtin_scene("crumpled:60000"), 1));  // ordered in several threads
   scenes.push_back(make_builtin_scene("needles"));
-  scenes.push_back(make_builtin_scene("needles:2000"));  // left to views
-  std::size_t ordered = 0, sampled = 0;
+  scenes.push_back(make_builtin_scene("needles:2000"));  // left to a tree
+  std::size_t ordered = 0, trees = 0;
   for (const Scene& scene : scenes) {
-    const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
+    const BlockDecision one = decide_by_blocks(scene, 0, 1), five = decide_by_blocks(scene, 0, 5);
     ASSERT_EQ(one.blocks.pairs.between, five.blocks.pairs.between);
     ASSERT_EQ(one.blocks.pairs.inside, five.blocks.pairs.inside);
     ASSERT_EQ(one.blocks.of != nullptr, five.blocks.of != nullptr);
@@ -294,12 +301,11 @@ TEST(Blocks, SplitAlikeWhateverTheThreads) {
       ASSERT_EQ(one.blocks.of->order, five.blocks.of->order);
       ordered += one.blocks.of->order.size() > 50'000;
     }
-    ASSERT_EQ(one.rest.triangles, five.rest.triangles);
-    ASSERT_EQ(one.sample, five.sample);
-    sampled += !one.sample.empty();
+    ASSERT_EQ(one.tree, five.tree);
+    trees += one.tree != Reason::none;
   }
   EXPECT_GT(ordered, 0u);
-  EXPECT_GT(sampled, 0u);
+  EXPECT_GT(trees, 0u);
 }
 
 // Two objects of `count` blocks each. Along x, block k of the first reaches from k to k + reach,
@@ -325,16 +331,15 @@ Scene ladders(int count, int reach) {
 TEST(Blocks, AsManyPairsAsAreAllowedAreAllFound) {
   const Scene scene = ladders(162, 36);
   for (const unsigned threads : {1u, 2u}) {
-    const PairParts parts = split_meetings(scene, 0, threads);
-    EXPECT_EQ(parts.blocks.oriented, nullptr);
-    ASSERT_EQ(parts.blocks.pairs.between.size(), kPairsPerBlock * 2 * 162);
-    EXPECT_TRUE(parts.rest.triangles.empty());
+    const BlockMeetings blocks = decide_by_blocks(scene, 0, threads).blocks;
+    EXPECT_EQ(blocks.oriented, nullptr);
+    ASSERT_EQ(blocks.pairs.between.size(), kPairsPerBlock * 2 * 162);
     const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     EXPECT_GT(expected.size(), 162u);
-    EXPECT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, threads), expected);
+    EXPECT_EQ(pairs_of_blocks(scene, blocks, 0, true, threads), expected);
   }
   // The twin: beyond it boxes along the axes are given up, and oriented ones tried.
-  EXPECT_NE(split_meetings(ladders(162, 37), 0, 1).blocks.oriented, nullptr);
+  EXPECT_NE(decide_by_blocks(ladders(162, 37), 0, 1).blocks.oriented, nullptr);
 }
 
 // Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.
@@ -352,12 +357,11 @@ Scene touching(double at, double gap = 0) {
 TEST(Blocks, CountBoxesThatTouch) {
   for (const double at : {0.0, 3.0, -1e3, 1e9, 1e15}) {
     const Scene scene = touching(at);
-    const PairParts parts = split_meetings(scene, 0, 1);
-    ASSERT_FALSE(parts.blocks.empty());
+    const BlockMeetings blocks = decide_by_blocks(scene, 0, 1).blocks;
+    ASSERT_FALSE(blocks.empty());
     const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     ASSERT_GE(expected.size(), 40u);
-    on_every_target(
-        [&] { ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 1), expected) << at; });
+    on_every_target([&] { ASSERT_EQ(pairs_of_blocks(scene, blocks, 0, true, 1), expected) << at; });
   }
 }
 
@@ -365,10 +369,9 @@ TEST(Blocks, GoBeyondWhatFloatHolds) {
   for (const double scale : {1e-320, 1e-50, 1e38, 1e60, 1e300}) {
     Scene scene = make_builtin_scene("two-spheres");
     for (Vec3& v : scene.vertices) v *= scale;
-    const PairParts parts = split_meetings(scene, 0, 1, true);
-    ASSERT_FALSE(parts.blocks.empty()) << scale;
-    EXPECT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 2), overlapping(scene, 0, true))
-        << scale;
+    const BlockMeetings blocks = along_axes(scene, 0);
+    ASSERT_FALSE(blocks.empty()) << scale;
+    EXPECT_EQ(pairs_of_blocks(scene, blocks, 0, true, 2), overlapping(scene, 0, true)) << scale;
   }
 }
 
@@ -380,13 +383,12 @@ TEST(Blocks, GrowBeyondWhatDoubleHolds) {
          {{Vec3(-0.5 * size, 0, 0), Vec3(-0.5 * size, size, 0), Vec3(-0.5 * size, 0, size)},
           {Vec3(size, 0, 0), Vec3(size, size, 0), Vec3(size, 0, size)}}});
     for (const double clearance : {0.7 * size, 1.7e308}) {
-      const PairParts parts = split_meetings(scene, clearance, 1);
-      ASSERT_FALSE(parts.blocks.empty());
-      const auto found = pairs_of_blocks(scene, parts.blocks, clearance, true, 1);
+      const BlockMeetings blocks = decide_by_blocks(scene, clearance, 1).blocks;
+      ASSERT_FALSE(blocks.empty());
+      const auto found = pairs_of_blocks(scene, blocks, clearance, true, 1);
       EXPECT_EQ(found, overlapping(scene, clearance, true)) << size << " and " << clearance;
       EXPECT_TRUE(std::ranges::count(found, TrianglePair{0, 1})) << size << " and " << clearance;
-      const auto backend = cpu_pair_backend(1);
-      EXPECT_EQ(lab::missed(scene, {.clearance = clearance}, *backend), 0u);
+      EXPECT_EQ(lab::missed(scene, {.clearance = clearance}), 0u);
     }
   }
 }
@@ -446,15 +448,15 @@ TEST(Blocks, FollowWhatMoved) {
 
 TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   const Scene scene = touching(0);
-  const PairParts parts = split_meetings(scene, 0, 1);
-  std::vector<BlockLanes> lanes(parts.blocks.of->ranges.size());
+  const BlockMeetings blocks = decide_by_blocks(scene, 0, 1).blocks;
+  std::vector<BlockLanes> lanes(blocks.of->ranges.size());
   for (std::size_t k = 0; k < lanes.size(); ++k) {
-    std::vector<std::uint32_t> triangles(parts.blocks.of->ranges[k].count);
-    std::iota(triangles.begin(), triangles.end(), parts.blocks.of->ranges[k].first);
-    fill_lanes(scene, triangles, 0, parts.blocks.of->origin, lanes[k]);
+    std::vector<std::uint32_t> triangles(blocks.of->ranges[k].count);
+    std::iota(triangles.begin(), triangles.end(), blocks.of->ranges[k].first);
+    fill_lanes(scene, triangles, 0, blocks.of->origin, lanes[k]);
   }
   std::vector<LanePair> pairs;
-  for (const BlockPair& pair : parts.blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
+  for (const BlockPair& pair : blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
   BlockFindings found;
   compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
   std::ranges::sort(found.pairs);
@@ -463,102 +465,27 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
 
 TEST(BlocksTwin, ADroppedPairOfBlocksMisses) {
   const Scene scene = make_builtin_scene("two-spheres");
-  PairParts parts = split_meetings(scene, 0, 1);
-  ASSERT_FALSE(parts.blocks.pairs.between.empty());
+  const BlockMeetings blocks = decide_by_blocks(scene, 0, 1).blocks;
+  ASSERT_FALSE(blocks.pairs.between.empty());
   const std::vector<TrianglePair> truth = truth_of(scene);
   const auto without = [&](std::size_t k) {
-    BlockMeetings fewer = parts.blocks;
+    BlockMeetings fewer = blocks;
     fewer.pairs.between.erase(fewer.pairs.between.begin() + static_cast<std::ptrdiff_t>(k));
     return missed(truth, pairs_of_blocks(scene, fewer, 0, true, 1));
   };
   std::size_t lost = 0;
-  for (std::size_t k = 0; k < parts.blocks.pairs.between.size(); ++k) lost += without(k);
+  for (std::size_t k = 0; k < blocks.pairs.between.size(); ++k) lost += without(k);
   EXPECT_GT(lost, 0u);
 }
 
 TEST(BlocksTwin, BlocksThatAreNotGrownMissPairsOfAClearance) {
   const Scene scene = touching(0, 0.6);
   constexpr double kClearance = 0.7;
-  const PairParts plain = split_meetings(scene, 0, 1);
-  const PairParts grown = split_meetings(scene, kClearance, 1);
+  const BlockMeetings plain = decide_by_blocks(scene, 0, 1).blocks;
+  const BlockMeetings grown = decide_by_blocks(scene, kClearance, 1).blocks;
   const std::vector<TrianglePair> truth = truth_of(scene, kClearance);
-  EXPECT_EQ(missed(truth, pairs_of_blocks(scene, grown.blocks, kClearance, true, 1)), 0u);
-  EXPECT_GT(missed(truth, pairs_of_blocks(scene, plain.blocks, 0, true, 1)), 0u);
-}
-
-// Entries of a pixel: all that the definition names, on every instruction set, in any portions.
-struct SweepCase {
-  std::vector<SweepColumns::Row> rows;
-  bool sorted, drops_neighbours;
-};
-
-SweepCase sweep_case(Random& random) {
-  SweepCase out{
-      .rows = {}, .sorted = random.below(2) == 0, .drops_neighbours = random.below(2) == 0};
-  const int n = random.below(80);
-  for (int k = 0; k < n; ++k) {
-    const auto coordinate = [&] { return static_cast<float>(random.below(12)); };
-    SweepColumns::Row row{};
-    row.x0 = coordinate(), row.y0 = coordinate(), row.near = coordinate();
-    row.x1 = row.x0 + static_cast<float>(random.below(4));
-    row.y1 = row.y0 + static_cast<float>(random.below(4));
-    row.far = row.near + static_cast<float>(random.below(4));
-    row.id = static_cast<std::uint32_t>(3 * k + random.below(3));
-    row.group = static_cast<std::uint32_t>(random.below(5));
-    row.begun = static_cast<std::uint32_t>(random.below(4));
-    row.owner = static_cast<std::uint32_t>(random.below(3));
-    for (std::uint32_t* v : {&row.v0, &row.v1, &row.v2})
-      *v = static_cast<std::uint32_t>(random.below(40));
-    out.rows.push_back(row);
-  }
-  if (out.sorted) std::ranges::stable_sort(out.rows, {}, &SweepColumns::Row::near);
-  return out;
-}
-
-bool makes_pair(const SweepColumns::Row& a, const SweepColumns::Row& b, bool drops_neighbours) {
-  const bool meet = a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1 &&
-                    a.near <= b.far && b.near <= a.far;
-  bool shared = false;
-  for (const std::uint32_t v : {a.v0, a.v1, a.v2}) shared |= v == b.v0 || v == b.v1 || v == b.v2;
-  return meet && a.group != b.group && (a.begun & b.begun) == 0 &&
-         !(drops_neighbours && a.owner == b.owner && shared);
-}
-
-TEST(SweepOnLanes, FindsWhatTheDefinitionSays) {
-  Random random(7);
-  std::size_t found = 0;
-  for (int round = 0; round < 400; ++round) {
-    const SweepCase c = sweep_case(random);
-    const std::size_t n = c.rows.size();
-    std::vector<TrianglePair> expected;
-    std::uint64_t tests = 0;
-    for (std::size_t x = 0; x < n; ++x) {
-      for (std::size_t y = x + 1; y < n; ++y) {
-        const std::uint32_t a = c.rows[x].id, b = c.rows[y].id;
-        if (makes_pair(c.rows[x], c.rows[y], c.drops_neighbours))
-          expected.push_back({std::min(a, b), std::max(a, b)});
-        tests += !c.sorted || c.rows[y].near <= c.rows[x].far;
-      }
-    }
-    found += expected.size();
-    SweepColumns columns;
-    columns.start(n);
-    for (const SweepColumns::Row& row : c.rows) columns.add(row);
-    columns.finish();
-    on_every_target([&] {
-      std::vector<TrianglePair> pairs;
-      std::vector<TrianglePair> room(n + kSweepPadding +
-                                     static_cast<std::size_t>(random.below(200)));
-      Sweep sweep{.columns = &columns, .sorted = c.sorted, .drops_neighbours = c.drops_neighbours};
-      while (sweep.next < n) {
-        const std::size_t count = sweep_on(sweep, room);
-        pairs.insert(pairs.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(count));
-      }
-      ASSERT_EQ(pairs, expected);
-      ASSERT_EQ(sweep.tests, tests);
-    });
-  }
-  EXPECT_GT(found, 4000u);
+  EXPECT_EQ(missed(truth, pairs_of_blocks(scene, grown, kClearance, true, 1)), 0u);
+  EXPECT_GT(missed(truth, pairs_of_blocks(scene, plain, 0, true, 1)), 0u);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // order of the triangles, and slivers leave few pairs. Each property has a twin that must fail.
 #include "core/boxes/oriented.h"
 
-#include "core/pairs/regions.h"
+#include "core/boxes/meetings.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/pairs.h"
@@ -107,10 +107,9 @@ TEST(Oriented, LeaveOutNoPairOfDifferentObjectsThatShareAVertex) {
 
 TEST(Oriented, DecideAPartThatIsCut) {
   const Scene scene = make_builtin_scene("cad-cut:4000");
-  const PairParts parts = split_meetings(scene, 0, 2);
-  ASSERT_NE(parts.blocks.oriented, nullptr);
-  EXPECT_TRUE(parts.rest.triangles.empty());
-  const std::vector<TrianglePair> pairs = pairs_of_blocks(scene, parts.blocks, 0, true, 2);
+  const BlockMeetings blocks = decide_by_blocks(scene, 0, 2).blocks;
+  ASSERT_NE(blocks.oriented, nullptr);
+  const std::vector<TrianglePair> pairs = pairs_of_blocks(scene, blocks, 0, true, 2);
   EXPECT_EQ(missed(truth_of(scene), pairs), 0u);
   EXPECT_LT(pairs.size(), 16 * scene.triangles.size());
   EXPECT_EQ(pairs_of_boxes(scene, {}, false, true, 2), std::nullopt);

@@ -5,8 +5,9 @@
 #include <numeric>
 
 #include "core/boxes/join.h"
+#include "core/boxes/meetings.h"
 #include "core/cull/pass.h"
-#include "core/pairs/regions.h"
+#include "core/view/regions.h"
 #include "tests/lab/far.h"
 #include "verify/worst_canvas.h"
 

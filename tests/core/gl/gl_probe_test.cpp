@@ -109,11 +109,8 @@ TEST(GlProbe, FailsUnderEachDefect) {
   for (const Defect& defect : std::vector<Defect>{
            {&ProbeOptions::fat_zero_area, "A3", {"no area covers nothing"}},
            {&ProbeOptions::shifted_pixel, "A9", {"gl_FragCoord names the pixel"}},
-           {&ProbeOptions::exact_arithmetic,
-            "A4",
-            {"+ - * (fragment)", "+ - * (compute)", "division (fragment)", "division (compute)",
-             "precise (fragment)", "precise (compute)"}},
-           {&ProbeOptions::loose_text, "A4", {"precise (fragment)", "precise (compute)"}},
+           {&ProbeOptions::exact_arithmetic, "A4", {"+ - *", "division", "precise"}},
+           {&ProbeOptions::loose_text, "A4", {"precise"}},
            {&ProbeOptions::blind_queries,
             "A6",
             {"queries of single pixels", "areas, flags, 32F", "areas, occlusion queries, 32F",
@@ -121,7 +118,7 @@ TEST(GlProbe, FailsUnderEachDefect) {
            {&ProbeOptions::skipped_faults,
             "A7",
             {"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
-             "faults are noticed, occlusion queries, 24 bits", "faults are noticed, far-pairs"}},
+             "faults are noticed, occlusion queries, 24 bits"}},
            {&ProbeOptions::damaged_texel, "A5", {"texels of the depth buffer, 32F"}},
            {&ProbeOptions::plain_atomics, "A8", {"atomics"}},
            {&ProbeOptions::unordered_reads,
@@ -138,8 +135,7 @@ TEST(GlProbe, FailsWhereOneBitIsDamaged) {
   ProbeOptions options = kBrief;
   options.damaged_operand = true;
   const Names failed = failures(options, "A4");
-  EXPECT_TRUE(failed.count("min, max, abs, comparisons, buffer reads (fragment)"));
-  EXPECT_TRUE(failed.count("min, max, abs, comparisons, buffer reads (compute)"));
+  EXPECT_TRUE(failed.count("min, max, abs, comparisons, buffer reads"));
   EXPECT_EQ(failures(options, "A9"), Names{"flat varyings and uniforms"});
 }
 
@@ -154,27 +150,6 @@ TEST(GlProbe, FailsWhereTheDepthTestKeepsTheFarthest) {
   EXPECT_EQ(failures(kBrief, "A5"),
             (Names{"depth test, 32F", "depth test, 24 bits", "canvas, flags, 32F",
                    "canvas, occlusion queries, 32F", "canvas, occlusion queries, 24 bits"}));
-}
-
-// FAR pairs relies on no rasterizer, and what it relies on is the same either way.
-TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
-  std::set<std::string> all, alone;
-  for (const ProbeResult& r : run({.brief = true}, "")) {
-    if (r.pairs) all.insert(r.assumption + " " + r.name);
-    EXPECT_TRUE(r.drawing || r.assumption == "A7") << r.name;
-  }
-  // The other assumptions have no probe that drawing does without.
-  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::drawing}, "A7"))
-    EXPECT_TRUE(r.drawing && r.name != "faults are noticed, far-pairs") << r.name;
-  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::pairs}, "")) {
-    EXPECT_TRUE(r.pass) << r.name << " " << r.note;
-    EXPECT_TRUE(r.pairs);
-    alone.insert(r.assumption + " " + r.name);
-  }
-  EXPECT_EQ(all, alone);
-  EXPECT_TRUE(alone.count("A8 atomics"));
-  EXPECT_TRUE(alone.count("A10 threads that may write to freed memory"));
-  EXPECT_TRUE(alone.count("A7 faults are noticed, far-pairs"));
 }
 
 }  // namespace

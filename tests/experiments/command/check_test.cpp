@@ -204,7 +204,7 @@ class CheckFrames : public testing::Test {
  protected:
   void SetUp() override {
     FramesQuestion question;
-    question.options.method = Method::far_pairs;
+    question.options.method = Method::boxes;
     question.options.device = "cpu";
     question.range = range;
     question.pairs = question.certificates = true;

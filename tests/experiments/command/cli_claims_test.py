@@ -62,13 +62,13 @@ rows(r"""
 pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
 good.obj << {T}; f 1 2 3
 away.obj << v 50 0 0; v 51 0 0; v 50 1 0; f 1 2 3
-0 run | run pierced.obj away.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^untested .*\(add --self\)$
+0 run | run pierced.obj away.obj --method boxes --certificate p.json --json r.json | {unasked} | ^untested .*\(add --self\)$
   | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":2,"pairs":1,"which":\[\[0,1\]\]\}
   | @p.json ~ "not_asked":\{"objects":2,"pairs":1\}
 # One object leaves nothing to test. That is an error that names the command which tests it.
 bad nothing for {command} | SCENE: nothing to test: the scene is one object, and an object is tested .* only with --self; .*test this one: farcull {command} pierced\.obj --self$ | {command} pierced.obj
-bad nothing for compare | SCENE: nothing to test.*: farcull compare pierced\.obj --self$ | compare pierced.obj --methods far-pairs,exact
-bad nothing for cullide | SCENE: .*: farcull run pierced\.obj --method far-pairs --self$ | run pierced.obj --method cullide --device software --resolution 64
+bad nothing for compare | SCENE: nothing to test.*: farcull compare pierced\.obj --self$ | compare pierced.obj --methods boxes,exact
+bad nothing for cullide | SCENE: .*: farcull run pierced\.obj --method boxes --self$ | run pierced.obj --method cullide --device software --resolution 64
 one.json << {"objects": [{"mesh": "pierced.obj"}]}
 bad nothing in a scene file | SCENE: .*: farcull verify one\.json --self$ | verify one.json
 0 something for verify | verify pierced.obj --self --json something.json | ! nothing to test
@@ -85,19 +85,19 @@ bad all ignored in frames | SCENE: nothing to test: all 1 pair | run two-spheres
 0 ignored, with self | run pierced.obj good.obj --ignore pierced:good --self | ^colliding +1 pair
 0 two objects | verify pierced.obj good.obj | ^verified:
 0 check | check p.json pierced.obj away.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
-0 verify | verify pierced.obj away.obj --method far-pairs | {unasked}
+0 verify | verify pierced.obj away.obj --method boxes | {unasked}
 0 run far | run pierced.obj away.obj --method far --device software --resolution 64 | {unasked} | ^untested .*\(add --self\)$
 0 run cullide | run pierced.obj away.obj --method cullide --device software --resolution 64 | {unasked}
-  | ^untested .*\(add --method far-pairs$
-0 compare | compare pierced.obj away.obj --methods far-pairs,exact | {unasked}
+  | ^untested .*\(add --method boxes$
+0 compare | compare pierced.obj away.obj --methods boxes,exact | {unasked}
 0 bench | bench pierced.obj away.obj --device cpu --repeat 1 --peers none | {unasked}
 $ cp pierced.obj pierced0.obj
-0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 | ^untested +1 pair of triangles inside pierced
-0 frames | run pierced%d.obj away.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":2,"pairs":1,
+0 frames | run pierced%d.obj away.obj --method boxes --frames 1 | ^untested +1 pair of triangles inside pierced
+0 frames | run pierced%d.obj away.obj --method boxes --frames 1 --json - | ~ "self_not_asked":\{"objects":2,"pairs":1,
 $ ! "$farcull" run pierced%d.obj --frames 1 >/dev/null 2>err && grep -q 'SCENE: nothing to test.*farcull run pierced%d.obj --frames 1 --self$' err
-0 plan | plan pierced.obj away.obj --method far-pairs
+0 plan | plan pierced.obj away.obj --method boxes
   | ^untested   1 pair of triangles inside pierced,
-0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! untested
+0 asked | run pierced.obj --method boxes --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! untested
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
      unasked=r'^untested +1 pair of triangles inside pierced, away \(')
@@ -154,9 +154,9 @@ bad the table and the record into one file | --json: .*where standard output goe
 0 a link to nowhere, and another file | run s.json --method exact --json dangling.json --pairs elsewhere.csv
 0 the same device twice | run s.json --method exact --json /dev/null --pairs /dev/null
 0 the same device as stdout | run s.json --method exact --json /dev/null >/dev/null
-0 frames that are not read | run frame_%d.obj sub/good.obj --method far-pairs --frames 7:7 --json kept.json
+0 frames that are not read | run frame_%d.obj sub/good.obj --method boxes --frames 7:7 --json kept.json
 """, command=['run', 'verify', 'plan', 'compare', 'bench'], judge=['run', 'verify'], option=['--pairs', '--certificate'],
      scene=['s.json', './s.json', '{PWD}/s.json', 'sub/../s.json', 'link.json', 'hard.json'],
      reader=['run', 'verify', 'plan', 'compare', 'bench', 'experiment savings'], mesh=['mesh_link.json', 'mesh_hard.csv'],
-     moving='--method far-pairs --frames 7:7', exact=['exact.json', './exact.json'], meshes='FARCULL_MESHES={PWD}/meshes',
+     moving='--method boxes --frames 7:7', exact=['exact.json', './exact.json'], meshes='FARCULL_MESHES={PWD}/meshes',
      other=['new.csv', './new.csv', '{PWD}/new.csv', 'sub/../new.csv'])

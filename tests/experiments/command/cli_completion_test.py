@@ -116,7 +116,7 @@ def offered(shell, line):
 for shells, line, wanted, unwanted in (
         ('bash zsh fish', 'farcull ru', 'run', 'compare'),
         ('bash zsh fish', 'farcull run --me', '--method', '--resolution'),
-        ('bash zsh fish', 'farcull run --method ', 'far cullide far-pairs exact', 'native two-spheres'),
+        ('bash zsh fish', 'farcull run --method ', 'far cullide boxes exact', 'native two-spheres'),
         ('bash zsh fish', 'farcull run --depth f', 'fragment fixed', 'far'),
         ('bash zsh fish', 'farcull run two-spheres --device n', 'native', 'software'),
         ('bash zsh fish', 'farcull run --self two-sph', 'two-spheres', 'run'),
@@ -140,13 +140,13 @@ for shell in OFFER:
         print('not run:', shell)
 
 # What is offered for an enumeration is taken.
-for option in '--method --offset --depth --depth-format --query --radius --resolution --clusters --device'.split():
+for option in '--method --offset --depth --depth-format --query --radius --clusters --device'.split():
     values = [value for value in offered('bash', f'farcull plan two-spheres {option} ')
               if option != '--device' or value not in ('gl', 'software', 'hardware')]
     case(f'{option}: is offered', values, 'nothing')
     for value in values:
         more = ['--self'] if value == 's-cullide' else []
         if option != '--method':
-            more += ['--method', 'far-pairs' if option == '--resolution' else 'far']
+            more += ['--method', 'far']
         status = launch(['plan', 'two-spheres', *more, option, value])
         case(f'{option} {value} is offered', status == 0, f'status {status}')

@@ -47,7 +47,7 @@ bad names without a list | --names: .*--pairs | run {all} --names
 
 0 the time of contacts | run {all} --contacts | ; contacts [0-9.]+ more;
 0 no such time | run {all} | ! ; contacts
-# far-pairs makes none of the ignored pairs.
+# boxes makes none of the ignored pairs.
 0 ignored | verify {all} --ignore 'f*:spike' --pairs ignored.csv | [ ]2 ignored \+ 0 missed$
   | ^ignored    2 pairs of objects, of which no candidate pairs were made$ | $ cmp -s ignored.csv <(grep -v ',2,0$' plain.csv)
 pairs.txt << # links; floor:spike; fin:spike
@@ -94,4 +94,4 @@ folded.json << {"objects": [{"mesh": "folded.obj", "split": "groups"}]}
   | @first.json "complete": false
 0 a limit in the table | run two-tori --limit 1 | ^limit      1 pair at most; [0-9] | behind the last one$
 0 a limit beyond all | run {all} --limit 4 --json - | "complete": true
-""", all='floor.obj fin.obj spike.obj sheet.obj', method=['far-pairs', 'exact', 'i-collide'])
+""", all='floor.obj fin.obj spike.obj sheet.obj', method=['boxes', 'exact', 'i-collide'])

@@ -42,10 +42,10 @@ for environment in environments:
 $ sed -E 's/("evidence": ")[^"]*/\1{contrary}/' right.json >wrong.json
 1 {scene}, {environment}, wrong | {env} check wrong.json {scene}-a.obj {scene}-b.obj | ^refuted
 """, scene=scene, pairs=str(pairs), contrary='AA==' if pairs else 'Zg==',
-             method=['exact', 'far-pairs', 'far', 'i-collide'], **values)
+             method=['exact', 'boxes', 'far', 'i-collide'], **values)
     # Every contestant, with several threads; they find all pairs and agree.
     rows(r"""
-0 frames, {environment} | {env} verify two-spheres --method far-pairs --frames 2 --json f.json | {frames}
+0 frames, {environment} | {env} verify two-spheres --method boxes --frames 2 --json f.json | {frames}
   | @f.json "floating_point": \{
 0 bench, {environment} | {env} bench many-a.obj many-b.obj --device cpu --repeat 1 --json b.json
   | @b.json "disagreement": null | @b.json "pairs": 400,?$

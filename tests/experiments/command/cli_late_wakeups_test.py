@@ -9,20 +9,18 @@ import sys
 from cli_lab import case, launch, others, read, rows
 
 RUN = 'run two-spheres --device software --no-verify --method'
-for method in 'far', 'far-pairs':
-    rows('0 {method} | {run} {method} --pairs pairs.csv --json r.json', run=RUN, method=method)
-    renderer = re.search('"renderer": "(.*)"', read('r.json'))
-    if not renderer or 'llvmpipe' not in renderer[1]:
-        print('late wakeups: not run: the software device is', renderer and renderer[1])
-        sys.exit(77)
-    rows(r"""
+rows('0 far | {run} far --pairs pairs.csv --json r.json', run=RUN)
+renderer = re.search('"renderer": "(.*)"', read('r.json'))
+if not renderer or 'llvmpipe' not in renderer[1]:
+    print('late wakeups: not run: the software device is', renderer and renderer[1])
+    sys.exit(77)
+rows(r"""
 $ grep -q '^ *"threads": 0' r.json
-0 {method}, late | LD_PRELOAD={library} {run} {method} --pairs late.csv --json late.json
+0 far, late | LD_PRELOAD={library} {run} far --pairs late.csv --json late.json
   | $ cmp -s pairs.csv late.csv | @late.json ^ *"promises": true
-""", run=RUN, method=method, library=others[0])
+""", run=RUN, library=others[0])
 
-# Only far has a twin: llvmpipe's fences are of draws, and far-pairs draws nothing. On a busy machine a draw may take longer than
-# the moment, so that a run goes well.
+# On a busy machine a draw may take longer than the moment, so that a run goes well.
 status = 0
 for _ in range(5):
     if status not in (66, 124):

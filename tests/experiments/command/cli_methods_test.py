@@ -6,57 +6,57 @@ from cli_lab import rows
 rows(r"""
 $ echo older >old.json
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
-each {0}: .*far-pairs | run two-spheres | --clearance 0 --method {quick}
+each {0}: .*boxes | run two-spheres | --clearance 0 --method {quick}
 each {0}: | run two-spheres | --depth fragment --method {quick} | --radius 0.5 --method {quick} | --offset exact --method {quick}
   | --query flags --depth-format 24 --method {quick}
 each {0}: | run two-spheres | --resolution 64 --method {objects} | --views x --method {objects} | --device software --method {objects}
 each {0}: | run two-spheres | --query flags --method i-collide | --clearance 1 --method i-collide | --full --method exact
-  | --clusters 32 --method far-pairs | --clear some --method cullide | --level faces --method cullide
+  | --clusters 32 --method boxes | --clear some --method cullide | --level faces --method cullide
   | --clusters 8 --method cullide --level objects
 bad a value for --full | --full: | run two-spheres --full=7
 bad quick-cullide with self | --self: .*s-cullide | run two-spheres --method quick-cullide --self
 each two-spheres: .*--self | | run two-spheres --method s-cullide | plan two-spheres --method s-cullide
 bad clusters '{sizes}' | --clusters: | run two-spheres --method far --clusters {sizes}
 bad rounds '{rounds}' | --rounds: | run two-spheres --method cullide --rounds {rounds}
-bad far-pairs with {form} | {form0}: .*cullide | run two-spheres --method far-pairs {*form}
-bad compare without a use for {form} | {form0}: | compare two-spheres --methods far-pairs,exact {*form}
+bad boxes with {form} | {form0}: .*cullide | run two-spheres --method boxes {*form}
+bad compare without a use for {form} | {form0}: | compare two-spheres --methods boxes,exact {*form}
 bad far drawn conservatively | --conservative: .*cullide | run two-spheres --method far --conservative
 bad s-cullide of objects alone | --level: | run folded.obj --method s-cullide --self --level objects
 bad far of objects alone against themselves | --level: .*self | run cloth:400 --method far --self --level objects
 bad conservative without the extension | --conservative: .*--device native
   | run two-spheres --method cullide --conservative --device software
 bad an unknown method | --method: .*quick-cullide | run two-spheres --method quick
-bad a radius of the default | --radius: .*far-pairs; .*--method far | run two-spheres --radius 1
+bad a radius of the default | --radius: .*boxes; .*--method far | run two-spheres --radius 1
 bad plan without a scene | SCENE: | plan
 bad plan of nothing known | nope: | plan nope
 bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
 bad an unknown study | nope: .*family | experiment nope
 bad family of what stands still | --frames: nothing[ ] | experiment family two-tori --frames 2
-each {0}: | experiment family two-spheres | --methods nope --frames 2 | --frames 0 | --resolution 0 | --query maybe | --views auto
+each {0}: | experiment family two-spheres | --methods nope --frames 2 | --frames 0 | --resolution 0 | --query maybe | --views q
 bad family into a folder | \.: | experiment family two-spheres --frames 1 --csv .
 bad family of nothing to ask | --methods: .*--self | experiment family two-spheres --methods s-cullide --frames 1
 each nosuch: | experiment | family two-bunnies nosuch --frames 1000 | savings two-bunnies nosuch
 bad savings of nothing known | nope: | experiment savings nope
 each {0}: | experiment savings far-apart | --methods exact | --repeat 0 | --methods nope
 """, quick=['quick-cullide', 's-cullide'], sizes=['', '1', '0', 'x', '32,32', '16,32', '32,', '1e3'],
-     objects=['i-collide', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
+     objects=['i-collide', 'boxes', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
      form=['--rounds 1', '--clear all', '--level objects', '--conservative'])
 
 # ---- good cases
 
 rows(r"""
-0 the default | run two-spheres -v --json default.json | ^method     far-pairs; promises to miss nothing$
-  | ^default    no --method: far-pairs misses nothing, and is the fastest on[ ]
+0 the default | run two-spheres -v --json default.json | ^method     boxes; promises to miss nothing$
+  | ^default    no --method: boxes misses nothing, and is the fastest on[ ]
   | ^           others: far, cullide, quick-cullide, s-cullide, i-collide or exact$
-  | @default.json ^  "method": "far-pairs",$ | @default.json ^  "method_reason": "no --method: far-pairs misses nothing,[ ]
-0 the default of plan | plan two-spheres | ^default    no --method: far-pairs[ ]
-0 named | run two-spheres --method far-pairs --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
+  | @default.json ^  "method": "boxes",$ | @default.json ^  "method_reason": "no --method: boxes misses nothing,[ ]
+0 the default of plan | plan two-spheres | ^default    no --method: boxes[ ]
+0 named | run two-spheres --method boxes --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
 
 0 plan | plan far-apart --method far | ^draw +left out +no boxes of two triangles | ^untested +[0-9]
 0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +runs[ ] | ^verify +left out[ ]
-0 plan as JSON | plan two-spheres --method far-pairs --json - | "decision": "depends"
-0 plan of self-collision | plan folded.obj --method far-pairs --self | ^self +1 object is tested against itself
+0 plan as JSON | plan two-spheres --method boxes --json - | "decision": "depends"
+0 plan of self-collision | plan folded.obj --method boxes --self | ^self +1 object is tested against itself
 0 plan of far inside objects | plan two-spheres --method far --boxes objects --self | ^patches +.*32 patches of at most 320 triangles
 0 far inside a small object | verify folded.obj --method far --boxes triangles --self -v | ^patches .*boxes alone$ | promises to miss nothing$
 
@@ -79,11 +79,11 @@ rows(r"""
 0 compare forms | compare two-spheres --methods far,cullide,exact --resolutions 64 --rounds 1 --level objects
   --device native | ^cullide --rounds 1 --level objects[ ]
 0 exact offsets | verify crowd --method far --offset exact {small}
-0 full | verify far-apart --method far-pairs --device cpu --full | ^colliding  0 pairs$
+0 full | verify far-apart --method boxes --full | ^colliding  0 pairs$
 0 compare the family | compare two-spheres --methods cullide,quick-cullide,i-collide,exact --resolutions 64
   --device software | ^i-collide +- +-[ ]
-0 family | experiment family two-spheres --methods far-pairs,i-collide --frames 3 --csv - --json family.json
-  | ^scene,method,offset,frame, | ^two-spheres,far-pairs,,2, | @family.json "missed": 0
+0 family | experiment family two-spheres --methods boxes,i-collide --frames 3 --csv - --json family.json
+  | ^scene,method,offset,frame, | ^two-spheres,boxes,,2, | @family.json "missed": 0
 0 family for people | experiment family two-spheres --methods i-collide --frames 2 | ^two-spheres +10,240 +i-collide[ ]
 0 savings | experiment savings far-apart --methods i-collide --repeat 2 --json - | "same_pairs": true
 """, small='--resolution 64 --device software')

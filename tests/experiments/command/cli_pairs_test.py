@@ -1,4 +1,4 @@
-"""far-pairs, self-collision, clearance and frames; certificates of frames and of clearances; lists of pairs; memory."""
+"""boxes, self-collision, clearance and frames; certificates of frames and of clearances; lists of pairs; memory."""
 from cli_lab import case, expect, launch, read, rows, write
 
 # ---- bad input
@@ -6,26 +6,24 @@ from cli_lab import case, expect, launch, read, rows, write
 rows(r"""
 $ echo older >old.json
 good.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
-each --resolution: .*limit of far-pairs | | run {pairs} --resolution 16385
-each --resolutions: .*limit of far-pairs | | compare two-spheres --methods far-pairs --resolutions 16385
-each {0}: auto .*far-pairs | run two-spheres --method far | --resolution auto | --views auto
-each {0}: auto | compare two-spheres --methods far | --resolutions auto | --views auto
-each --clearance: .*far-pairs | run two-spheres --clearance 0 | --method far | --method cullide
-bad cullide with self | --self: .*far-pairs | run two-spheres --method cullide --self
-bad compare cullide with self | --methods: .*far-pairs | compare two-spheres --methods cullide,exact --self
+each {0}: has no meaning .*far | run {pairs} | --resolution 64 | --views x | --device native
+bad the old name | --method: .*far-pairs is now called boxes | run two-spheres --method far-pairs
+each --clearance: .*boxes | run two-spheres --clearance 0 | --method far | --method cullide
+bad cullide with self | --self: .*boxes | run two-spheres --method cullide --self
+bad compare cullide with self | --methods: .*boxes | compare two-spheres --methods cullide,exact --self
 each {0}: | run {pairs} | --radius 24 | --offset 24 | --depth 24 | --depth-format 24 | --query 24 | --clearance | --frames
 each {0}: | verify {pairs} | --clearance 1 --clearance 1 | --frames 1 --frames 1
 bad clearance '{clearance}' | --clearance: | run {pairs} --clearance {clearance}
 bad compare clearance '{clearance}' | --clearance: | compare two-spheres --clearance {clearance}
 bad frames '{frames}' | --frames: | run {pairs} --frames {frames}
 bad a value for --self | --self: | run {pairs} --self=7
-each --frames: nothing .*%d | run --method far-pairs --frames 3 | two-tori | good.obj
+each --frames: nothing .*%d | run --method boxes --frames 3 | two-tori | good.obj
 each {0}: .*%04d | run {pairs} --frames 3 | --certificate c.json | --certificate - | --certificate c_%4d.json
 bad certificate with a number and no frames | --certificate: .*--frames | run {pairs} --certificate c_%04d.json
 bad certificates in no folder | nowhere/c_0\.json: | run {pairs} --frames 3 --certificate nowhere/c_%d.json
 c_2.json << {"objects": [{"mesh": "cloth_%d.obj"}]}
 bad a certificate over the scene | --certificate: c_2\.json is c_2\.json, which SCENE reads
-  | run c_2.json --method far-pairs --frames 3 --certificate c_%d.json
+  | run c_2.json --method boxes --frames 3 --certificate c_%d.json
 $ rm c_2.json
 bad a certificate over the list | --certificate: c_1\.json is c_1\.json, where --pairs goes
   | run {pairs} --frames 3 --certificate c_%d.json --pairs c_1.json
@@ -47,9 +45,9 @@ cloth_05.obj << {T}; f 1 2 3
 cloth_05.obj << v 0 0 nan; v 1 0 0; v 0 1 0; v 0 0 1; f 1 2 3; f 1 2 4
 bad a first frame that is no mesh | cloth_05\.obj:1: | run {cloth} --frames 5:5 --json old.json --pairs new.csv
 self.json << {"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj"}]}
-bad cullide on a scene that collides with itself | self: cullide tests no object .*far-pairs | run self.json --method cullide
-bad compare cullide on one | --methods: cullide tests no object .*far-pairs | compare self.json --methods cullide,exact
-""", pairs='two-spheres --method far-pairs', cloth='cloth_%02d.obj --method far-pairs',
+bad cullide on a scene that collides with itself | self: cullide tests no object .*boxes | run self.json --method cullide
+bad compare cullide on one | --methods: cullide tests no object .*boxes | compare self.json --methods cullide,exact
+""", pairs='two-spheres --method boxes', cloth='cloth_%02d.obj --method boxes',
      clearance=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'],
      frames=['0', '-1', '1.5', '', 'a', '3:2', '-1:2', '1:', ':2', '1:2:3', '1000001', '0:1000000', ' 1', '1-3',
              '99999999999999999999', '9223372036854775807:9223372036854775807', '1000000001:1000000001'],
@@ -58,19 +56,16 @@ bad compare cullide on one | --methods: cullide tests no object .*far-pairs | co
 # ---- good cases
 
 rows(r"""
-0 far-pairs | run {pairs} | ^device     cpu: boxes of runs decide: no view$ | [ ]\+ 0 missed$ | ^colliding  298 pairs$
-  | ^method     far-pairs; promises to miss nothing$
-0 a clearance of 0 | run {pairs} --device cpu --clearance 0 --pairs - >plain.csv
-0 far-pairs without | run {pairs} --device cpu --pairs - | $ cmp -s "$out" plain.csv
+0 boxes | run {pairs} | ^device     none: the method draws nothing$ | [ ]\+ 0 missed$ | ^colliding  298 pairs$
+  | ^method     boxes; promises to miss nothing$
+0 a clearance of 0 | run {pairs} --clearance 0 --pairs - >plain.csv
+0 boxes without | run {pairs} --pairs - | $ cmp -s "$out" plain.csv
 0 exact pairs | run two-spheres --method exact --pairs - | $ cmp -s "$out" plain.csv
-0 far-pairs as asked | verify {pairs} --device cpu --views x,1:2:3 --resolution 64 -v
-  | ^method     far-pairs at 64 px;[ ] | ^views      x [0-9]+ x [0-9]+, 1:2:3[ ]
-0 far-pairs auto | run {pairs} --views auto --resolution auto --json - | ^ *"method": "far-pairs"
-  | ^ *"resolution": "auto" | ^ *"clearance": 0\.0 | ^ *"promises": true | ^ *"neighbour_pairs": 0
-  | ^ *"cpu": "boxes of runs decide: no view" | ^ *"self_objects": 0
-0 far-pairs by views | run {pairs} --views auto --resolution 64 --json - | ^ *"cpu": "no --device | ^ *"looked": true
+0 boxes as JSON | run {pairs} --json - | ^ *"method": "boxes"
+  | ^ *"resolution": null | ^ *"clearance": 0\.0 | ^ *"promises": true | ^ *"neighbour_pairs": 0
+  | ^ *"none": "the method draws nothing" | ^ *"self_objects": 0
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
-0 self-collision | verify folded.obj --method far-pairs --self --pairs - | ^0,0,0,2,0$
+0 self-collision | verify folded.obj --method boxes --self --pairs - | ^0,0,0,2,0$
   | ^object_a,triangle_a,object_b,triangle_b,neighbours$
 0 self-collision by exact | verify folded.obj --method exact --self
   | ^colliding  1 pair = 1 \+ 0 of neighbours; 1 candidate is of neighbours$
@@ -85,26 +80,26 @@ blade.obj << v 0.1 0.6 -1; v 0.1 0.6 1; v 0.1 0.7 0; v 2.1 0.6 -1; v 2.1 0.6 1; 
   | ^object_a,triangle_a,object_b,triangle_b,neighbours,face_a,face_b$
 0 faces of frames | run two-spheres --frames 1 --pairs - --faces | ^0,0,([0-9]+),1,([0-9]+),\1,\2$
   | ^frame,object_a,triangle_a,object_b,triangle_b,face_a,face_b$
-0 certificate of self-collision | run folded.obj --method far-pairs --self --certificate c.json
+0 certificate of self-collision | run folded.obj --method boxes --self --certificate c.json
 0 check of it | check c.json folded.obj --self | ^proved:
 1 check of it without --self | check c.json folded.obj | ^not proved: the certificate is of another scene
-bad no self-collision | SCENE: nothing to test: .*only with --self | verify folded.obj --method far-pairs
-0 scene that collides with itself | verify self.json --method far-pairs
-0 compare with self | compare folded.obj --self --clearance 0.5 | ^far-pairs +- +auto | ^method .* colliding  \+ neighbours[ ]
+bad no self-collision | SCENE: nothing to test: .*only with --self | verify folded.obj --method boxes
+0 scene that collides with itself | verify self.json --method boxes
+0 compare with self | compare folded.obj --self --clearance 0.5 | ^boxes +- +- | ^method .* colliding  \+ neighbours[ ]
 # Frames: a triangle that falls through another.
 fall_1.obj << v 0.1 0.1 -1.5; v 0.9 0.1 -1.5; v 0.1 0.1 -1.1; f 1 2 3
 fall_2.obj << v 0.1 0.1 0.5; v 0.9 0.1 0.5; v 0.1 0.1 0.1; f 1 2 3
 fall_3.obj << v 0.1 0.1 1.5; v 0.9 0.1 1.5; v 0.1 0.1 1.1; f 1 2 3
-0 frames | verify fall_%d.obj good.obj --method far-pairs --frames 1:3 --json - --pairs falls.csv
+0 frames | verify fall_%d.obj good.obj --method boxes --frames 1:3 --json - --pairs falls.csv
   | ^ *"frame": 3 | ^ *"read": | ^ *"median": | ^ *"p95": | ^ *"max": | ^ *"frames": 3 | ^ *"missed": 0
   | @falls.csv ^frame,object_a,triangle_a,object_b,triangle_b$ | @falls.csv ^2,0,0,1,3$
 fall.json << {"objects": [{"mesh": "fall_%d.obj", "self": true}, {"mesh": "good.obj"}]}
 0 frames of a scene file | run fall.json --method exact --frames 1:3 --no-verify
   | ^frame +candidates +colliding +\+ neighbours +cull ms | ^per frame  median[ ]
-0 frames of a built-in scene | verify two-spheres@far@ground --method far-pairs --frames 3
+0 frames of a built-in scene | verify two-spheres@far@ground --method boxes --frames 3
   | ^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$
-0 frames of one number | run crowd --method far-pairs --frames 1
-""", pairs='two-spheres --method far-pairs')
+0 frames of one number | run crowd --method boxes --frames 1
+""", pairs='two-spheres --method boxes')
 
 # ---- certificates of frames and of clearances, and lists without a certificate
 
@@ -164,7 +159,7 @@ $ sed 's/"clearance": 0\.1/"clearance": 0.2/' near.json >farther.json
 1 a larger clearance in the file | check farther.json two-spheres
 # Lists that others wrote.
 0 a list alone | check two-spheres --pairs plain.csv | ^proved: these 298 pairs of the scene meet, and no others$
-""", move='two-spheres --method far-pairs')
+""", move='two-spheres --method boxes')
 
 header, *lines = read('plain.csv').splitlines()
 parts = [line.split(',') for line in lines]
@@ -177,7 +172,7 @@ rows(r"""
   | not looked at: columns name$
 1 a list that lacks a pair | check two-spheres --pairs fewer.csv | ^  pair: .* triangle {a} and .* triangle {b}$
   | ^refuted: fewer\.csv is not the list of the pairs: a pair is missing$
-0 self-collision | run folded.obj --method far-pairs --self --pairs folded.csv
+0 self-collision | run folded.obj --method boxes --self --pairs folded.csv
 0 a list of self-collision | check folded.obj --pairs folded.csv --self | ^proved: this pair of the scene meets, and no other$
 1 and without --self | check folded.obj --pairs folded.csv | ^refuted: .*line 2: .*\(--self asks\)$
 0 two meshes | run good.obj folded.obj --method exact --pairs two.csv
@@ -196,11 +191,9 @@ bad bad frames | --frames: | check two-spheres --pairs plain.csv --frames 0
 # Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
 for name in 'first.obj', 'second.obj':
     write(name, 'v 0 0 0\nv 1 0 0.3\nv 0 1 0.2\n' + 'f 1 2 3\n' * 1200)
-for device, limit in ('cpu', 400_000), ('software', 1_000_000):
-    rows(f"""
-0 coincident triangles, {device} | run first.obj second.obj --method far-pairs --device {device} --no-verify
-  | ^colliding  1,440,000 pairs$
-""", limits={'memory': limit})
+rows("""
+0 coincident triangles | run first.obj second.obj --no-verify | ^colliding  1,440,000 pairs$
+""", limits={'memory': 400_000})
 
 
 def memory_is_named():
@@ -212,7 +205,7 @@ def memory_is_named():
         if launch(['--version'], memory=limit) != 0:
             continue
         least_started = least_started or limit
-        for method in 'far-pairs --device software', 'far-pairs --device cpu', 'far', 'exact':
+        for method in 'boxes', 'far', 'exact':
             name = f'{method} in {limit} KiB'
             status = launch(['run', 'two-spheres', '--method', *method.split()], memory=limit)
             if case(name, status in (0, 2, 127), f'status {status}') and status == 2:

@@ -60,8 +60,8 @@ $ printf '\x89PNG\r\n\x1a\n' >signature
 0 standard output | picture crossing.obj --method exact --self {small} -o - | $ cmp -sn 8 signature "$out"
 0 a view of the method | picture two-spheres --method far --resolution 32 --view-depth=-x {small} -o v.png
   | ^far at 32 px, along -x: this view loses 0 of[ ]
-0 a single mesh | picture crossing.obj --method far-pairs --self --device cpu --view -z --up x {small} -o s.png
-  | ^far-pairs: missed 0 of[ ]
+0 a single mesh | picture crossing.obj --method boxes --self --view -z --up x {small} -o s.png
+  | ^boxes: missed 0 of[ ]
 0 a frame | picture two-spheres --method exact --frame 3 --frames 10 {small} -o f.png
 0 a ground a thousand times larger | picture two-spheres@ground --method exact --zoom {small} -o g.png
 """, small='--size 100x80')

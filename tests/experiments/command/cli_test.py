@@ -166,7 +166,7 @@ def interrupted_frames():
     """Frames say how far they came, and what they gave stays. A kill says nothing."""
     for sent in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL:
         name, before = f'{sent.name} among frames', snapshot()
-        child = start('run two-spheres --method far-pairs --device cpu --frames 1000000 --json new.json --pairs new.csv'.split())
+        child = start('run two-spheres --method boxes --frames 1000000 --json new.json --pairs new.csv'.split())
         for _ in range(200):
             if os.path.exists('new.csv') and read(OUT).count('\n') > 8:
                 break
@@ -222,8 +222,8 @@ rows(r"""
 0 crowd/scene.json | run crowd/scene.json --method exact --json read.json
   | $ cmp -s <(grep '"hash"' built.json) <(grep '"hash"' read.json)
 0 frames as meshes | scenes cylinders:2@ground --write tubes --frames 9:11
-0 frames of these meshes | verify tubes/scene.json --method far-pairs --frames 9:11 --json read.json
-0 the same frames, built in | verify cylinders:2@ground --method far-pairs --frames 9:11 --json built.json
+0 frames of these meshes | verify tubes/scene.json --method boxes --frames 9:11 --json read.json
+0 the same frames, built in | verify cylinders:2@ground --method boxes --frames 9:11 --json built.json
   | $ cmp -s <(grep '"hash"' built.json) <(grep '"hash"' read.json)
 0 run | run {spheres} | ^scene      two-spheres: 2 objects, 10,240 triangles$ | #0 ^colliding[ ] | ! .{81} | ! left out | [ ]\+ 0 missed$
 0 cullide misses | run {cullide} | [ ]\+ [1-9][0-9,]* missed$

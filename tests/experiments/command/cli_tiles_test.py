@@ -75,7 +75,7 @@ rows(r"""
 0 the table | run field:30000 --tiles 2/3 | tile       2 of 3 | pairs of other tiles are not covered | memory    [ ]
   | accounted [ ]
 # What cannot be answered in tiles, and values that are none.
-bad far | --tiles: are of far-pairs | run two-spheres --tiles 1/2 --method far
+bad far | --tiles: are of boxes | run two-spheres --tiles 1/2 --method far
 each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3
 bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
 bad a number that is none | .*'1/2' is no number of tiles | plan two-spheres --tiles 1/2

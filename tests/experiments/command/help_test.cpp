@@ -115,7 +115,7 @@ TEST(Help, ExplainsEveryLineAndColumnOfATable) {
                        "accounted  26,214,400 pairs = "));
 
   for (Object& object : scene.objects) object.self = true;
-  const Record pairs = record_of(scene, Method::far_pairs), exact = record_of(scene, Method::exact);
+  const Record pairs = record_of(scene, Method::boxes), exact = record_of(scene, Method::exact);
   const std::string comparison =
       comparison_table(scene, {record_of(scene, Method::far), pairs, exact});
   std::vector<std::string> columns = cells_of(line_with(comparison, "method "));
@@ -132,7 +132,7 @@ TEST(Help, ExplainsEveryColumnOfFramesAndBench) {
 
   BenchResult result;
   BenchRow ours, peer;
-  ours.name = "far-pairs";
+  ours.name = "boxes";
   peer.name = "a peer";
   peer.peer = true;
   result.rows = {ours, peer};

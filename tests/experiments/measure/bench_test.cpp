@@ -15,7 +15,7 @@ BenchOptions quick() {
   options.threads = usable_cores();
   options.repeat = 1;
   options.device = "cpu";
-  options.methods = "far-pairs,exact";
+  options.methods = "boxes,exact";
   return options;
 }
 
@@ -74,8 +74,8 @@ BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
         (degenerate && (oriented || one_mesh)) || (one_mesh && !is_one_self_object(scene));
     EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
-  for (const char* name : {"far-pairs", "exact", "cgal-boxes", "cgal-boxes-2000",
-                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"})
+  for (const char* name : {"boxes", "exact", "cgal-boxes", "cgal-boxes-2000", "cgal-object-pairs",
+                           "cgal-aabb", "cgal-aabb-triangles"})
     EXPECT_TRUE(ran.contains(name)) << name;
   EXPECT_TRUE(result.fastest_peer);
   return result;
@@ -292,11 +292,11 @@ TEST(Bench, JsonHasTheFieldsThatReadersExpect) {
     EXPECT_LT(parts, 2 * total["max"].get<double>());
     EXPECT_GT(row["ratio_to_fastest_peer"], 0);
   }
-  EXPECT_EQ(names, (std::set<std::string>{"far-pairs", "exact", "cgal-boxes", "cgal-aabb"}));
+  EXPECT_EQ(names, (std::set<std::string>{"boxes", "exact", "cgal-boxes", "cgal-aabb"}));
   const std::string fastest = json["fastest_peer"];
   EXPECT_TRUE(fastest == "cgal-boxes" || fastest == "cgal-aabb");
   const auto& ours = json["rows"][0];
-  EXPECT_EQ(ours["name"], "far-pairs");
+  EXPECT_EQ(ours["name"], "boxes");
   EXPECT_EQ(json["ratio_to_fastest_peer"], ours["ratio_to_peers"][fastest]);
   EXPECT_EQ(ours["ratio_to_peers"].size(), 2u);
   EXPECT_TRUE(json["disagreement"].is_null());

@@ -60,7 +60,7 @@ TEST(Frames, NumberedMeshesGiveThePairsOfEachFrame) {
   for (int frame = 1; frame <= 4; ++frame)
     folder.write("fall_" + std::to_string(frame) + ".obj", falling(0.9 - 0.3 * frame));
   const std::vector<std::string> scene = {folder.path("fall_%d.obj"), floor};
-  for (const Method method : {Method::far_pairs, Method::exact}) {
+  for (const Method method : {Method::boxes, Method::exact}) {
     const FramesResult result = run_frames(scene, question(method, {1, 4}));
     ASSERT_EQ(result.json["frames"].size(), 4u);
     std::vector<int> colliding;
@@ -113,7 +113,7 @@ TEST(Frames, ARecordIsWholeAfterEachFrame) {
   FrameRecord record(path);
   std::size_t frames = 0;
   std::string rows, csv;
-  FramesQuestion asked = question(Method::far_pairs, {0, 4});
+  FramesQuestion asked = question(Method::boxes, {0, 4});
   const FramesResult result =
       run_frames({"two-spheres"}, asked, {}, [&](const FrameReport& report) {
         record.add(report);
@@ -122,7 +122,7 @@ TEST(Frames, ARecordIsWholeAfterEachFrame) {
         EXPECT_EQ(json["frames"].back()["frame"], frames - 1);
         EXPECT_EQ(json["summary"]["frames"], frames);
         EXPECT_EQ(json["summary"]["wanted"], 5);
-        EXPECT_EQ(json["method"], "far-pairs");
+        EXPECT_EQ(json["method"], "boxes");
         // The first frame comes with a heading; a later one where a column grows wider.
         EXPECT_GE(std::ranges::count(report.rows, '\n'), frames == 1 ? 2 : 1);
         csv += report.pairs_csv;
@@ -190,7 +190,7 @@ TEST(Frames, MeshesMayChangeTheirTopology) {
   folder.write("m_3.obj", high + low + "f 1 2 3\nf 1 3 2\n");  // as many, others
   folder.write("m_4.obj", high + low + "f 4 5 6\n");           // one fewer
   const std::vector<std::string> scene = {folder.path("m_%d.obj"), floor};
-  for (const Method method : {Method::far_pairs, Method::exact}) {
+  for (const Method method : {Method::boxes, Method::exact}) {
     const FramesResult result = run_frames(scene, question(method, {0, 4}));
     std::vector<int> colliding, triangles;
     std::vector<bool> changed;
@@ -218,7 +218,7 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
   EXPECT_FALSE(per_second(0));
   EXPECT_FALSE(per_second(-1));
   EXPECT_FALSE(per_second(std::numeric_limits<double>::infinity()));
-  const FramesResult result = run_frames({"crowd:20"}, question(Method::far_pairs, {0, 4}));
+  const FramesResult result = run_frames({"crowd:20"}, question(Method::boxes, {0, 4}));
   const auto& summary = result.json["summary"];
   EXPECT_EQ(summary["fps"]["median"], 1000 / summary["ms"]["median"].get<double>());
   EXPECT_EQ(summary["fps"]["p95"], 1000 / summary["ms"]["p95"].get<double>());
@@ -236,7 +236,7 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
 
 TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {
   for (const char* name : {"two-spheres", "crowd"}) {
-    const FramesResult result = run_frames({name}, question(Method::far_pairs, {0, 4}));
+    const FramesResult result = run_frames({name}, question(Method::boxes, {0, 4}));
     EXPECT_EQ(result.json["summary"]["missed"], 0);
     std::set<int> candidates;
     for (const auto& frame : result.json["frames"]) {

@@ -33,7 +33,7 @@ std::uint64_t removed_of(const Record& record) {
 
 TEST(AskedPairs, IgnoredObjectsAreLeftOutByEveryMethodAndAccountedFor) {
   const Scene scene = make_builtin_scene("random-soup");
-  for (const Method method : {Method::far_pairs, Method::exact, Method::i_collide, Method::far}) {
+  for (const Method method : {Method::boxes, Method::exact, Method::i_collide, Method::far}) {
     RunOptions options = on_cpu(method);
     const Record all = run(scene, options);
     options.ignored = kIgnored;
@@ -43,9 +43,10 @@ TEST(AskedPairs, IgnoredObjectsAreLeftOutByEveryMethodAndAccountedFor) {
     EXPECT_GT(removed, 0u);
     EXPECT_EQ(some.collisions.pairs, expected) << to_string(method);
     EXPECT_NE(some.collisions.pairs, all.collisions.pairs);
-    // Boxes of runs make no candidates of two such objects in the first place.
-    const bool by_runs = method == Method::far_pairs || method == Method::far;
-    EXPECT_EQ(some.found.count + (by_runs ? removed_of(all) : some.found.ignored), all.found.count)
+    // Boxes of blocks make no candidates of two such objects in the first place.
+    const bool by_blocks = method == Method::boxes || method == Method::far;
+    EXPECT_EQ(some.found.count + (by_blocks ? removed_of(all) : some.found.ignored),
+              all.found.count)
         << to_string(method);
     ASSERT_TRUE(some.verification);
     EXPECT_EQ(some.verification->false_negatives, 0u) << to_string(method);
@@ -65,7 +66,7 @@ TEST(AskedPairs, WhatASceneIgnoresIsIgnoredAsWhatTheOptionsIgnore) {
   const Scene whole = make_builtin_scene("random-soup");
   Scene scene = whole;
   scene.ignored = {kIgnored.begin(), kIgnored.begin() + 2};
-  for (const Method method : {Method::far_pairs, Method::exact, Method::i_collide, Method::far}) {
+  for (const Method method : {Method::boxes, Method::exact, Method::i_collide, Method::far}) {
     RunOptions options = on_cpu(method);
     options.ignored = kIgnored;
     const Record expected = run(whole, options);
@@ -100,7 +101,7 @@ TEST(AskedPairs, FramesMayIgnoreOtherObjects) {
   std::set<std::size_t> sizes;
   for (int frame = 0; frame < 24; ++frame) {
     scene.vertices[static_cast<std::size_t>(frame)].x() += 1e-3;
-    RunOptions options = on_cpu(Method::far_pairs);
+    RunOptions options = on_cpu(Method::boxes);
     // Objects 0 .. 19 are ignored with each other in the frames 4 to 7, and in some after.
     if (frame % 8 >= 4) {
       for (std::uint32_t b = 1; b < 20; ++b)
@@ -118,7 +119,7 @@ TEST(AskedPairs, FramesMayIgnoreOtherObjects) {
 
 TEST(AskedPairs, OfALimitAreTheFirstAndTheAccountingStillHolds) {
   Scene scene = make_builtin_scene("random-soup");
-  for (const Method method : {Method::far_pairs, Method::exact, Method::i_collide}) {
+  for (const Method method : {Method::boxes, Method::exact, Method::i_collide}) {
     RunOptions options = on_cpu(method);
     const Record all = run(scene, options);
     ASSERT_GT(all.collisions.pairs.size(), 10u);
@@ -135,7 +136,7 @@ TEST(AskedPairs, OfALimitAreTheFirstAndTheAccountingStillHolds) {
     EXPECT_EQ(json["limit"], 10);
     EXPECT_EQ(json["complete"], false);
     EXPECT_EQ(json["decided_pairs"], some.decided);
-    if (method == Method::far_pairs) {
+    if (method == Method::boxes) {
       EXPECT_LT(some.decided, all.decided);
     }
   }
@@ -143,7 +144,7 @@ TEST(AskedPairs, OfALimitAreTheFirstAndTheAccountingStillHolds) {
 
 TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
   const Scene scene = make_builtin_scene("degenerate");
-  RunOptions options = on_cpu(Method::far_pairs);
+  RunOptions options = on_cpu(Method::boxes);
   const Record silent = run(scene, options);
   EXPECT_TRUE(silent.contacts.empty());
   EXPECT_TRUE(to_json(scene, silent)["contacts"].is_null());

@@ -40,9 +40,9 @@ struct Asked {
   int runs = 0;
   std::vector<std::string> said;
 
-  DeviceVerdict operator()(const GlInfo& info, Reliance reliance = Reliance::drawing) {
+  DeviceVerdict operator()(const GlInfo& info) {
     return device_verdict(
-        info, reliance,
+        info,
         [this] {
           ++runs;
           return results;
@@ -67,8 +67,8 @@ TEST(DeviceVerdict, IsMadeOnceAndKept) {
   EXPECT_EQ(again.probes, 2u);
   EXPECT_EQ(again.made, first.made);
   const std::string found = "2 probes of A1 to A10 pass on this device (probed " + first.made;
-  EXPECT_EQ(to_string(first, Reliance::drawing), found + ")");
-  EXPECT_EQ(to_string(again, Reliance::drawing), found + ", remembered)");
+  EXPECT_EQ(to_string(first), found + ")");
+  EXPECT_EQ(to_string(again), found + ", remembered)");
   EXPECT_EQ(ask.runs, 1);
   EXPECT_EQ(ask.said.size(), 1u);
 }
@@ -84,8 +84,7 @@ TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
     EXPECT_EQ(verdict.remembered, remembered);
     ASSERT_EQ(verdict.failed.size(), 1u);
     EXPECT_EQ(verdict.failed[0], "A2 a probe: 2 px, bound 1");
-    EXPECT_EQ(to_string(verdict, Reliance::drawing),
-              "a probe fails on this device: A2 a probe: 2 px, bound 1");
+    EXPECT_EQ(to_string(verdict), "a probe fails on this device: A2 a probe: 2 px, bound 1");
   }
   EXPECT_EQ(ask.runs, 1);
 }
@@ -113,13 +112,13 @@ TEST(DeviceVerdict, NoProbesAreNoVerdict) {
   EXPECT_EQ(ask.runs, 2);
 }
 
-TEST(DeviceVerdict, DependsOnDeviceDriverRelianceAndEnvironment) {
+TEST(DeviceVerdict, DependsOnDeviceDriverAndEnvironment) {
   const CacheFolder folder;
   Asked ask;
   ask(device());
   int runs = 1;
-  const auto remade = [&](const GlInfo& info, Reliance reliance = Reliance::drawing) {
-    ask(info, reliance);
+  const auto remade = [&](const GlInfo& info) {
+    ask(info);
     return ask.runs == ++runs;
   };
   for (std::string GlInfo::*field :
@@ -131,7 +130,6 @@ TEST(DeviceVerdict, DependsOnDeviceDriverRelianceAndEnvironment) {
   GlInfo other = device();
   other.subpixel_bits = 4;
   EXPECT_TRUE(remade(other));
-  EXPECT_TRUE(remade(device(), Reliance::pairs));
   ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 1);
   EXPECT_TRUE(remade(device()));
   ::unsetenv("LP_NATIVE_VECTOR_WIDTH");
@@ -149,7 +147,7 @@ TEST(DeviceVerdict, DependsOnDeviceDriverRelianceAndEnvironment) {
 
 TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
   std::string names;
-  for (const auto& [name, value] : verdict_inputs(device(), Reliance::pairs)) {
+  for (const auto& [name, value] : verdict_inputs(device())) {
     names += name + ",";
     if (name == "sources") {
       EXPECT_EQ(value.size(), 16u);
@@ -240,7 +238,7 @@ TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
   const CacheFolder folder;
   Asked ask;
   ask(device());
-  keep_verdict(device(), Reliance::drawing, {probe("A6", false)}, 5);
+  keep_verdict(device(), {probe("A6", false)}, 5);
   const DeviceVerdict verdict = ask(device());
   EXPECT_TRUE(verdict.remembered);
   EXPECT_FALSE(verdict.holds);
@@ -256,11 +254,11 @@ TEST(DeviceVerdict, NoOlderPromiseOutlivesProbesThatBreakOff) {
   const CacheFolder folder;
   Asked ask;
   const std::string file = ask(device()).file;
-  keep_verdict(device(), Reliance::drawing, {probe("A2", true), kBrokenOff}, 5);
+  keep_verdict(device(), {probe("A2", true), kBrokenOff}, 5);
   EXPECT_FALSE(std::filesystem::exists(file));
   EXPECT_FALSE(ask(device()).remembered);
   EXPECT_TRUE(ask(device()).remembered);
-  keep_verdict(device(), Reliance::drawing, {}, 5);
+  keep_verdict(device(), {}, 5);
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
@@ -268,14 +266,13 @@ TEST(DeviceVerdict, AFailureIsKeptThoughAnotherProbeBrokeOff) {
   const CacheFolder folder;
   Asked ask;
   ask(device());
-  const DeviceVerdict now =
-      keep_verdict(device(), Reliance::drawing, {kBrokenOff, probe("A2", false)}, 5);
+  const DeviceVerdict now = keep_verdict(device(), {kBrokenOff, probe("A2", false)}, 5);
   EXPECT_EQ(now.problem, "A4 x: no memory");
   EXPECT_FALSE(now.file.empty());
   const DeviceVerdict later = ask(device());
   EXPECT_TRUE(later.remembered);
   EXPECT_FALSE(later.holds);
-  EXPECT_EQ(to_string(later, Reliance::drawing), to_string(now, Reliance::drawing));
+  EXPECT_EQ(to_string(later), to_string(now));
   EXPECT_EQ(ask.runs, 1);
 }
 
@@ -307,7 +304,7 @@ TEST(DeviceVerdict, NoOlderPromiseOutlivesAFailureThatCannotBeWritten) {
     DeviceVerdict full;
     {
       const FullDisk disk;
-      full = keep_verdict(device(), Reliance::drawing, {probe("A2", pass)}, 5);
+      full = keep_verdict(device(), {probe("A2", pass)}, 5);
     }
     EXPECT_TRUE(full.file.empty());
     EXPECT_FALSE(full.note.empty());

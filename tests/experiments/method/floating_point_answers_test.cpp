@@ -2,7 +2,6 @@
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
 #include <nlohmann/json.hpp>
 
-#include "core/pairs/backend.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
@@ -126,10 +125,9 @@ TEST(FloatingPointAnswers, Certificates) {
 
 TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
   for_all([](const Environment& environment, const Sample& sample) {
-    for (const Method method : {Method::exact, Method::far_pairs, Method::i_collide}) {
+    for (const Method method : {Method::exact, Method::boxes, Method::i_collide}) {
       RunOptions options;
       options.method = method;
-      if (method == Method::far_pairs) options.device = "cpu";
       Record record;
       {
         const Disturbed disturbed(environment);

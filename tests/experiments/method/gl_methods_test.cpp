@@ -289,7 +289,7 @@ TEST(GlMethods, SCullideMissesWhatOnlyTouchesAndSaysSo) {
   EXPECT_FALSE(broken(record, false));
   EXPECT_TRUE(broken(record, true));
   // The reliable answer beside it.
-  RunOptions pairs = options_of(Method::far_pairs);
+  RunOptions pairs = options_of(Method::boxes);
   EXPECT_EQ(run(scene, pairs, session()).collisions.pairs,
             (std::vector<TrianglePair>{{0, 1}, {0, 2}}));
 }

@@ -35,16 +35,5 @@ TEST(GlPlan, RunsFollowIt) {
   }
 }
 
-TEST(GlPlan, FarPairsOnGlFollowsIt) {
-  Session session("software");
-  for (const char* name : {"two-spheres", "far-apart", "crowd", "random-soup"}) {
-    RunOptions options;
-    options.method = Method::far_pairs;
-    options.device = "software";
-    options.verify = false;
-    EXPECT_EQ(lab::not_followed(run(make_builtin_scene(name), options, session)), "") << name;
-  }
-}
-
 }  // namespace
 }  // namespace farcull

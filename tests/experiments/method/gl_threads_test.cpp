@@ -4,7 +4,6 @@
 
 #include "core/gl/base/context.h"
 #include "core/gl/probe/probe.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -21,9 +20,7 @@ class GlThreads : public testing::Test {
     if (context.info().renderer.find("llvmpipe") == std::string::npos)
       GTEST_SKIP() << "the software device is " << context.info().renderer;
     // The other probes pass in tests of their own.
-    for (const auto& [reliance, use] : {std::pair(Reliance::drawing, ProbeUse::drawing),
-                                        std::pair(Reliance::pairs, ProbeUse::pairs)})
-      keep_verdict(context.info(), reliance, run_probes(context, {.only = "A10", .use = use}), 0);
+    keep_verdict(context.info(), run_probes(context, {.only = "A10"}), 0);
   }
 
   static RunOptions options(Method method) {
@@ -51,16 +48,16 @@ TEST_F(GlThreads, AreCounted) {
   EXPECT_EQ(driver_threads("softpipe"), 0);
   EXPECT_EQ(risk_of_threads(context.info().renderer).empty(), asked == 0);
   bool among_the_inputs = false;
-  for (const auto& [name, value] : verdict_inputs(context.info(), Reliance::pairs))
+  for (const auto& [name, value] : verdict_inputs(context.info()))
     among_the_inputs |= name == "threads" && value == std::to_string(asked);
   EXPECT_TRUE(among_the_inputs);
 }
 
 TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
   const Scene scene = make_builtin_scene("two-spheres");
-  for (const Method method : {Method::far, Method::far_pairs}) {
+  {
     Session session("software");
-    const Record record = run(scene, options(method), session);
+    const Record record = run(scene, options(Method::far), session);
     EXPECT_EQ(record.promise.holds, asked == 0) << record.promise.reason;
     EXPECT_EQ(record.promise.reason.find("A10 threads") == std::string::npos, asked == 0);
     EXPECT_EQ(to_json(scene, record)["device"]["threads"], asked);
@@ -71,18 +68,6 @@ TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
                 line.find(" in " + std::to_string(asked) + " thread") != std::string::npos)
         << line;
   }
-}
-
-TEST_F(GlThreads, TheLibraryNamesThemAndPromisesNothing) {
-  const std::vector<double> vertices = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, -1, 1, 1, 1, 2, 1, 1};
-  const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, objects = {0, 1};
-  Collider collider({.device = Device::gl});
-  const Result found =
-      collider.find({.vertices = vertices, .triangles = triangles, .object_starts = objects});
-  EXPECT_EQ(found.pairs.size(), 1u);
-  EXPECT_EQ(found.report.promises, asked == 0) << found.report.promises_reason;
-  EXPECT_EQ(found.report.promises_reason.find(words) == std::string::npos, asked == 0)
-      << found.report.promises_reason;
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
-// What a run and the library promise on a device: what the verdict about it allows. Twins: the same
+// What a run promises on a device: what the verdict about it allows. Twins: the same
 // run where a probe has failed.
 #include <nlohmann/json.hpp>
 
 #include "core/gl/probe/probe.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/device_verdict.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
@@ -40,9 +39,9 @@ const std::vector<ProbeResult> kFailed = {{.assumption = "A4",
 Scene scene() { return make_builtin_scene("two-spheres"); }
 
 TEST(GlVerdict, RunsPromiseWhereTheProbesPass) {
-  for (const Method method : {Method::far, Method::far_pairs}) {
+  {
     Session session("software");
-    const Record record = run(scene(), on_software(method), session);
+    const Record record = run(scene(), on_software(Method::far), session);
     EXPECT_TRUE(record.promise.holds) << record.promise.reason;
     ASSERT_TRUE(record.promise.verdict);
     EXPECT_TRUE(record.promise.verdict->holds);
@@ -58,11 +57,10 @@ TEST(GlVerdict, RunsPromiseWhereTheProbesPass) {
 
 TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
   const CacheFolder folder;
-  for (const Method method : {Method::far, Method::far_pairs}) {
-    const Reliance reliance = method == Method::far ? Reliance::drawing : Reliance::pairs;
-    keep_verdict(software(), reliance, kFailed, 1);
+  {
+    keep_verdict(software(), kFailed, 1);
     Session session("software");
-    Record record = run(scene(), on_software(method), session);
+    Record record = run(scene(), on_software(Method::far), session);
     EXPECT_FALSE(record.promise.holds);
     EXPECT_FALSE(record.collisions.pairs.empty());
     const nlohmann::ordered_json json = to_json(scene(), record);
@@ -87,20 +85,11 @@ TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
 TEST(GlVerdict, ASessionThatForgetsItsDeviceForgetsItsVerdict) {
   const CacheFolder folder;
   Session session("software");
-  EXPECT_TRUE(session.verdict(Reliance::pairs).holds);
-  keep_verdict(software(), Reliance::pairs, kFailed, 1);
-  EXPECT_TRUE(session.verdict(Reliance::pairs).holds);
+  EXPECT_TRUE(session.verdict().holds);
+  keep_verdict(software(), kFailed, 1);
+  EXPECT_TRUE(session.verdict().holds);
   session.forget_device();
-  EXPECT_FALSE(session.verdict(Reliance::pairs).holds);
-}
-
-// FAR pairs does not rely on the rasterizer.
-TEST(GlVerdict, FarPairsDoesNotAskForWhatFarReliesOn) {
-  const CacheFolder folder;
-  keep_verdict(software(), Reliance::drawing, kFailed, 1);
-  Session session("software");
-  EXPECT_TRUE(run(scene(), on_software(Method::far_pairs), session).promise.holds);
-  EXPECT_FALSE(run(scene(), on_software(Method::far), session).promise.holds);
+  EXPECT_FALSE(session.verdict().holds);
 }
 
 TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
@@ -112,41 +101,14 @@ TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
   const Record record = run(scene(), published, session);
   EXPECT_FALSE(record.promise.verdict);
   EXPECT_FALSE(record.promise.holds);
-  RunOptions pairs = on_software(Method::far_pairs);
-  pairs.device = "cpu";
-  const Record on_cpu = run(scene(), pairs, cpu);
+  const Record on_cpu = run(scene(), on_software(Method::boxes), cpu);
   EXPECT_FALSE(on_cpu.promise.verdict);
   EXPECT_TRUE(on_cpu.promise.holds);
   EXPECT_FALSE(std::filesystem::exists(folder.path("farcull")));
 }
 
-Report report_of(Device device) {
-  const std::vector<double> vertices = {0,   0,   0,  1,   0,   0, 0,   1,   0,
-                                        0.2, 0.2, -1, 0.2, 0.3, 1, 0.3, 0.2, 1};
-  const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, starts = {0, 1};
-  Collider collider({.device = device});
-  const Result result = collider.find({vertices, triangles, starts});
-  EXPECT_EQ(result.pairs.size(), 1u);
-  return result.report;
-}
-
-TEST(GlVerdict, TheLibraryReportsWhatItPromises) {
-  const CacheFolder folder;
-  const Report cpu = report_of(Device::cpu);
-  EXPECT_TRUE(cpu.promises);
-  EXPECT_EQ(cpu.promises_reason, "on the CPU nothing rests on a device");
-  const Report gl = report_of(Device::gl);
-  EXPECT_TRUE(gl.promises) << gl.promises_reason;
-  keep_verdict(GlContext("").info(), Reliance::pairs, kFailed, 1);
-  const Report failed = report_of(Device::gl);
-  EXPECT_FALSE(failed.promises);
-  EXPECT_EQ(failed.promises_reason, "a probe fails on this device: A4 a probe: 3 lost, bound 1");
-}
-
 std::vector<ProbeResult> run(const KernelProbeOptions& options) {
-  std::vector<ProbeResult> out = pair_kernel_probes(lab::context(), options);
-  for (ProbeResult& r : solid_kernel_probes(lab::context(), options)) out.push_back(std::move(r));
-  return out;
+  return solid_kernel_probes(lab::context(), options);
 }
 
 std::set<std::string> failures(const KernelProbeOptions& options) {
@@ -168,20 +130,18 @@ TEST(GlKernelProbe, ShippedKernelsHoldTheRationalBounds) {
       EXPECT_EQ(r.assumption, "A4");
       probed.insert(r.name);
     }
-    EXPECT_EQ(probed, (Names{"intervals of FAR pairs", "depth slices, float to int",
-                             "oriented boxes", "exact offsets"}));
+    EXPECT_EQ(probed, (Names{"oriented boxes", "exact offsets"}));
   }
 }
 
 TEST(GlKernelProbe, KernelsWithoutWideningAreRejected) {
-  EXPECT_EQ(failures({.brief = true, .bare = true}),
-            (Names{"intervals of FAR pairs", "oriented boxes", "exact offsets"}));
+  EXPECT_EQ(failures({.brief = true, .bare = true}), (Names{"oriented boxes", "exact offsets"}));
 }
 
-// And solids that are not seen, since what is stored is another one.
-TEST(GlKernelProbe, ReversedSlicesAreRejected) {
-  EXPECT_EQ(failures({.brief = true, .reversed_slices = true, .late_stores = true}),
-            (Names{"depth slices, float to int", "oriented boxes", "exact offsets"}));
+// Solids that are not seen, since what is stored is another one.
+TEST(GlKernelProbe, LateStoresAreRejected) {
+  EXPECT_EQ(failures({.brief = true, .late_stores = true}),
+            (Names{"oriented boxes", "exact offsets"}));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(Options, AFormIsReadBackFromItsWords) {
   RunOptions form{.method = Method::cullide, .rounds = 3, .clear = ClearRule::all};
   form.objects_alone = form.conservative = true;
   EXPECT_EQ(form_text(form), "--rounds 3 --clear all --level objects --conservative");
-  form.method = Method::far_pairs;
+  form.method = Method::boxes;
   EXPECT_EQ(form_text(with_fitting_form(form)), "");
   form.method = Method::s_cullide;
   EXPECT_EQ(form_text(with_fitting_form(form)), "--rounds 3 --clear all --conservative");

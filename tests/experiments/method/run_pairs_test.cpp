@@ -1,4 +1,4 @@
-// FAR pairs as a method of farcull run, on the CPU.
+// The method boxes as farcull run has it.
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -45,7 +45,7 @@ Scene folded() {
 }
 
 void expect_as_exact(const Scene& scene, double clearance = 0) {
-  const Record pairs = run(scene, on_cpu(Method::far_pairs, clearance));
+  const Record pairs = run(scene, on_cpu(Method::boxes, clearance));
   const Record exact = run(scene, on_cpu(Method::exact, clearance));
   EXPECT_EQ(pairs.collisions.pairs, exact.collisions.pairs) << scene.name;
   EXPECT_EQ(pairs.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << scene.name;
@@ -56,13 +56,7 @@ void expect_as_exact(const Scene& scene, double clearance = 0) {
     EXPECT_FALSE(broken(*record, true));
   }
   EXPECT_TRUE(pairs.promise.holds);
-  // No device is opened where boxes decide.
-  EXPECT_EQ(pairs.found.device.cpu, scene.name != "far-apart");
-  EXPECT_FALSE(pairs.found.device.gl);
-  if (pairs.found.device.cpu) {
-    EXPECT_EQ(pairs.found.device.note,
-              pairs.found.pair_views().empty() ? "boxes of runs decide: no view" : "--device cpu");
-  }
+  EXPECT_FALSE(pairs.found.device.cpu || pairs.found.device.gl);
   EXPECT_TRUE(pairs.found.given || pairs.found.count == pairs.found.pairs.size());
 }
 
@@ -76,12 +70,12 @@ TEST(Session, DropsWhatItKeptOfTheLastFrameAfterAFailure) {
   Session session("cpu");
   session.remember_frames();
   const Scene scene = self_scene("crumpled:2000");
-  run(scene, on_cpu(Method::far_pairs), session);
-  EXPECT_EQ(session.pair_memory()->frame, 1u);
+  run(scene, on_cpu(Method::boxes), session);
+  EXPECT_EQ(session.frame_memory()->frame, 1u);
   session.forget_device();
-  ASSERT_TRUE(session.pair_memory());
-  EXPECT_FALSE(session.pair_memory()->frame);
-  EXPECT_EQ(session.pair_memory()->moved.frame(), 0u);
+  ASSERT_TRUE(session.frame_memory());
+  EXPECT_FALSE(session.frame_memory()->frame);
+  EXPECT_EQ(session.frame_memory()->moved.frame(), 0u);
 }
 
 TEST(RunPairs, GivesTheExactPairsOfObjectsAgainstThemselves) {
@@ -97,8 +91,8 @@ TEST(RunPairs, GivesTheExactPairsOfAClearance) {
 
 TEST(RunPairs, AClearanceOfZeroIsAPlainRun) {
   const Scene scene = self_scene("random-soup");
-  const Record plain = run(scene, on_cpu(Method::far_pairs));
-  const Record zero = run(scene, on_cpu(Method::far_pairs, 0.0));
+  const Record plain = run(scene, on_cpu(Method::boxes));
+  const Record zero = run(scene, on_cpu(Method::boxes, 0.0));
   EXPECT_EQ(plain.found.pairs, zero.found.pairs);
   EXPECT_EQ(plain.collisions.pairs, zero.collisions.pairs);
   EXPECT_EQ(plain.collisions.neighbour_pairs, zero.collisions.neighbour_pairs);
@@ -142,7 +136,7 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
     };
     const Record exact = run(scene, asked(Method::exact));
     EXPECT_GT(exact.collisions.pairs.size(), 100u);
-    for (const Method method : {Method::far_pairs, Method::far}) {
+    for (const Method method : {Method::boxes, Method::far}) {
       const Record record = run(scene, asked(method));
       EXPECT_TRUE(record.found.given) << to_string(method);
       EXPECT_TRUE(record.found.pairs.empty());
@@ -182,7 +176,7 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
 TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
   for (const Scene& scene : {self_scene("crumpled:6000"), self_scene("needles"),
                              make_builtin_scene("spheres:6000"), make_builtin_scene("fans:4000")}) {
-    RunOptions options = on_cpu(Method::far_pairs);
+    RunOptions options = on_cpu(Method::boxes);
     const Record listed = run(scene, options);
     EXPECT_FALSE(listed.found.given);
     ASSERT_TRUE(listed.verification);
@@ -221,17 +215,16 @@ TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
 // The twin: a receiver that loses a part of what it is given loses pairs that collide.
 TEST(RunPairs, ALostPartOfGivenPairsIsMissed) {
   const Scene scene = self_scene("crumpled:6000");
-  const PairPlan planned = plan_pairs(scene, {});
-  PairWorkspace workspace;
+  const BoxesPlan planned = plan_boxes(scene, {});
   for (const bool loses : {false, true}) {
     std::mutex mutex;
     std::vector<TrianglePair> kept;
-    const PairResult result = find_pairs(scene, planned, *cpu_pair_backend(2), workspace, {},
-                                         [&](std::vector<TrianglePair>& some) {
-                                           const std::scoped_lock lock(mutex);
-                                           if (loses) some.resize(some.size() / 2);
-                                           kept.insert(kept.end(), some.begin(), some.end());
-                                         });
+    const BoxesResult result =
+        find_boxes(scene, planned, nullptr, {}, [&](std::vector<TrianglePair>& some) {
+          const std::scoped_lock lock(mutex);
+          if (loses) some.resize(some.size() / 2);
+          kept.insert(kept.end(), some.begin(), some.end());
+        });
     ASSERT_TRUE(result.given);
     std::ranges::sort(kept);
     EXPECT_EQ(account(scene, kept).false_negatives > 0, loses);
@@ -242,7 +235,7 @@ TEST(RunPairs, ALostPartOfGivenPairsIsMissed) {
 TEST(RunPairs, ALostCandidateIsABrokenGuarantee) {
   for (const bool neighbour : {false, true}) {
     const Scene scene = folded();
-    Record record = run(scene, on_cpu(Method::far_pairs));
+    Record record = run(scene, on_cpu(Method::boxes));
     const auto& collide = neighbour ? record.collisions.neighbour_pairs : record.collisions.pairs;
     ASSERT_FALSE(collide.empty());
     std::erase(record.found.pairs, collide[collide.size() / 2]);
@@ -255,21 +248,8 @@ TEST(RunPairs, ALostCandidateIsABrokenGuarantee) {
 // The other twin: candidates of a smaller clearance miss pairs of a larger one.
 TEST(RunPairs, CandidatesWithoutTheClearanceMissItsPairs) {
   const Scene scene = make_builtin_scene("needles");
-  const Record plain = run(scene, on_cpu(Method::far_pairs));
+  const Record plain = run(scene, on_cpu(Method::boxes));
   EXPECT_GT(account(scene, plain.found.pairs, {.clearance = 0.02}).false_negatives, 0u);
-}
-
-TEST(RunPairs, ViewsAndResolutionAreTakenAsGiven) {
-  RunOptions options = on_cpu(Method::far_pairs);
-  options.views = "x,1:1:0";
-  options.resolution = 40;
-  const Record record = run(make_builtin_scene("two-spheres"), options);
-  ASSERT_EQ(record.found.pair_views().size(), 2u);
-  EXPECT_EQ(record.found.pair_views()[1].name, "1:1:0");
-  for (const PairView& view : record.found.pair_views()) {
-    EXPECT_LE(std::max(view.width, view.height), 45);
-    EXPECT_GE(std::max(view.width, view.height), 40);
-  }
 }
 
 TEST(RunPairs, CullideAndQuickCullideRefuseObjectsAgainstThemselves) {
@@ -279,23 +259,23 @@ TEST(RunPairs, CullideAndQuickCullideRefuseObjectsAgainstThemselves) {
     options.method = method;
     const Error error = error_of([&] { run(scene, options); });
     EXPECT_EQ(error.where, "two-spheres");
-    EXPECT_TRUE(has_text(error.remedy, "far-pairs"));
+    EXPECT_TRUE(has_text(error.remedy, "boxes"));
   }
 }
 
 TEST(RunPairs, JsonAndCsvHoldWhatIsNew) {
   const Scene scene = folded();
-  const Record record = run(scene, on_cpu(Method::far_pairs, 0.125));
+  const Record record = run(scene, on_cpu(Method::boxes, 0.125));
   const nlohmann::ordered_json json = to_json(scene, record);
-  EXPECT_EQ(json["method"], "far-pairs");
-  EXPECT_EQ(json["resolution"], "auto");
+  EXPECT_EQ(json["method"], "boxes");
+  EXPECT_EQ(json["resolution"], nullptr);
   EXPECT_EQ(json["clearance"], 0.125);
-  EXPECT_EQ(json["device"]["cpu"], "boxes of runs decide: no view");
+  EXPECT_EQ(json["device"]["none"], "the method draws nothing");
   EXPECT_EQ(json["scene"]["self_objects"], scene.objects.size());
   EXPECT_EQ(json["colliding_pairs"], record.collisions.pairs.size());
   EXPECT_EQ(json["neighbour_pairs"], record.collisions.neighbour_pairs.size());
   EXPECT_EQ(json["neighbours"], record.collisions.neighbours);
-  EXPECT_EQ(json["views"].size(), record.found.pair_views().size());
+  EXPECT_TRUE(json["views"].empty());
   EXPECT_EQ(json["radius"], nullptr);
 
   const std::string csv = pairs_csv(scene, record);
@@ -309,19 +289,34 @@ TEST(RunPairs, JsonAndCsvHoldWhatIsNew) {
   EXPECT_EQ(neighbours, record.collisions.neighbour_pairs.size());
 }
 
-TEST(RunPairs, CompareTakesItAtItsOwnResolution) {
+TEST(RunPairs, CompareRunsMethodsWithoutResolutionsOnce) {
   CompareArguments arguments;
-  arguments.methods = "far-pairs,exact";
+  arguments.methods = "boxes,exact";
   arguments.options.device = "cpu";
-  const Scene scene = make_builtin_scene("two-spheres");
-  EXPECT_EQ(compare(scene, arguments).runs.size(), 2u);
-  arguments.resolutions = "32,auto";
-  const Comparison comparison = compare(scene, arguments);
-  ASSERT_EQ(comparison.runs.size(), 3u);
-  EXPECT_EQ(comparison.runs[0][0].options.resolution, 32);
-  EXPECT_EQ(comparison.runs[1][0].options.resolution, 0);
-  for (const auto& repeats : comparison.runs)
-    EXPECT_EQ(repeats[0].collisions.pairs, comparison.runs[2][0].collisions.pairs);
+  arguments.resolutions = "32,64";
+  const Comparison comparison = compare(make_builtin_scene("two-spheres"), arguments);
+  ASSERT_EQ(comparison.runs.size(), 2u);
+  EXPECT_EQ(comparison.runs[0][0].collisions.pairs, comparison.runs[1][0].collisions.pairs);
+}
+
+TEST(RunPairs, TheOldNameIsAnErrorThatGivesTheNewOne) {
+  const Error error = error_of([] { parse_method("far-pairs"); });
+  EXPECT_TRUE(error.remedy.starts_with("far-pairs is now called boxes"));
+  // The twin: another unknown name has no such hint.
+  EXPECT_FALSE(has_text(error_of([] { parse_method("far-pair"); }).remedy, "now called"));
+}
+
+TEST(RunPairs, OptionsOfDrawingAreRefused) {
+  for (const char* name : {"views", "resolution", "device"}) {
+    const std::string value = name == std::string("views")    ? "x"
+                              : name == std::string("device") ? "native"
+                                                              : "64";
+    const Error error = error_of([&] { read_options({{"method", "boxes"}, {name, value}}); });
+    EXPECT_EQ(error.where, "{" + std::string(name) + "}");
+    EXPECT_TRUE(has_text(error.reason, "has no meaning"));
+    // The twin: a method that draws takes it.
+    EXPECT_NO_THROW(read_options({{"method", "far"}, {name, value}}));
+  }
 }
 
 }  // namespace

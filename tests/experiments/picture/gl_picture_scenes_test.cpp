@@ -140,7 +140,7 @@ TEST(GlPictureScenes, TheCommandInTheFileAsksForTheSame) {
   for (const char* words :
        {"two-tori --compare cullide:64,far:32,exact --offset exact --zoom --view -x --up z",
         "mannequin-devil --method s-cullide --self --view-depth 1:1:0 --resolution 128",
-        "'a b.obj' c.off --method far-pairs --device cpu --size 301x200",
+        "'a b.obj' c.off --method boxes --size 301x200",
         "two-bunnies --method far --frame 3 --frames 2:9 --radius 0.5 --depth fixed"}) {
     const std::string once = command_of(picture_arguments(words));
     EXPECT_EQ(command_of(picture_arguments(once)), once) << words;

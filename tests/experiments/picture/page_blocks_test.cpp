@@ -123,8 +123,8 @@ TEST(PageSteps, PanelsOfOneMethodAreItsStepsOnce) {
 }
 
 TEST(PageSteps, MethodsWithoutAChoiceStayAsTheyAre) {
-  EXPECT_EQ(titles(at_resolutions({of(Method::exact), of(Method::far_pairs)}, {32, 64})),
-            (std::vector<std::string>{"exact", "far-pairs"}));
+  EXPECT_EQ(titles(at_resolutions({of(Method::exact), of(Method::boxes)}, {32, 64})),
+            (std::vector<std::string>{"exact", "boxes"}));
 }
 
 // The radius makes another method of it.

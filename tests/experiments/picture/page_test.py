@@ -410,7 +410,7 @@ def check_frames(b, page, said):
     for frame in (3, 4, 5, 6):
         b.wait(f"document.getElementById('frame-value').textContent === '{frame}'")
         scenes.append(look(b))
-        for method in ("cullide", "far-pairs"):
+        for method in ("cullide", "boxes"):
             set_value(b, "method", method, "change")
             b.wait(f"document.getElementById('headline').textContent.startsWith('{method}')")
             seen.append(text(b, "headline").replace(":", f", frame {frame}:", 1))

@@ -44,10 +44,10 @@ if grep -q 'three.js' errors; then
 fi
 ((status == 0)) || { cat errors >&2; exit 1; }
 "$farcull" picture "${tori[@]}" --method cullide --resolution 256 --size 400x340 -o flat.png >/dev/null || exit 1
-"$farcull" picture cylinders:10 --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
+"$farcull" picture cylinders:10 --compare cullide:64,boxes --frames 3:6 --size 200x160 \
   --html moving.html >said-of-frames || exit 1
 # A scene of usual size, where its meshes are there.
-if ! "$farcull" picture two-bunnies --compare cullide:64,far-pairs --size 200x160 --html large.html \
+if ! "$farcull" picture two-bunnies --compare cullide:64,boxes --size 200x160 --html large.html \
   >/dev/null 2>errors; then
   grep -q 'meshes.sh' errors || { cat errors >&2; exit 1; }
 fi

@@ -127,7 +127,7 @@ def test_runs_of_scenes_answer_the_same(scene):
     read = farcull.Scene(*files, self=True)
     starts = read.object_starts.tolist()
     assert starts == OBJECTS and read.names == ["o0", "o1", "o2", "o3"]
-    for method in ("far-pairs", "exact"):
+    for method in ("boxes", "exact"):
         record = read.run(method, contacts=True)
         whole, _ = program.rows()
         assert rows_of(record) == whole and record.complete
@@ -188,7 +188,7 @@ def test_what_a_scene_file_ignores_is_ignored(scene):
                                 "ignore": [["o0", "o*"]]}))
     read = farcull.Scene(path)
     assert read.ignored.tolist() == [[0, 1], [0, 2], [0, 3]] and whole.ignored.shape == (0, 2)
-    for method in ("far-pairs", "exact"):
+    for method in ("boxes", "exact"):
         expected = whole.run(method, contacts=True, ignore=[(0, 1), (2, 0), (0, 3), (1, 2)])
         record = read.run(method, contacts=True, ignore=[("o1", "o2")])
         assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, contacts=True))

@@ -79,15 +79,13 @@ def one_call(rng):
             arguments[name] = rng.choice([random_array, lambda r: r.choice(JUNK)])(rng)
     call = rng.choice([farcull.collide, farcull.collide, streamed, farcull.distances])
     options = {
-        farcull.collide: ("self", "clearance", "neighbours", "device", "threads", "contacts", "ignore", "limit", "poses"),
+        farcull.collide: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
         streamed: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
         farcull.distances: ("self", "kind", "k", "within", "inside", "threads", "ignore", "poses"),
     }[call]
     for name in options:
         if rng.random() < 0.12:
             arguments[name] = rng.choice(JUNK)
-    if arguments.get("device") == "gl":
-        del arguments["device"]
     arguments.setdefault("threads", 1)
     return call, arguments
 

@@ -343,14 +343,13 @@ def test_threads_of_llvmpipe_are_named(threads):
         + """
     import farcull
     assert os.environ["LP_NUM_THREADS"] == "0"
-    report = farcull.collide([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]], [0, 1], device="gl").report
-    print(report.device, report.promises, report.promises_reason, sep="|")
+    device = farcull.Scene("two-spheres").run("cullide", resolution=64, device="software").json()["device"]
+    print(device["renderer"], device["threads"], sep="|")
     """,
         # With the verdicts and the compiled shaders that other tests keep.
         env={**os.environ, "XDG_CACHE_HOME": os.path.dirname(os.environ["FARCULL_PROGRAM"]) + "/test-cache"},
     )
-    device, promises, reason = out.strip().split("|")
+    device, found = out.strip().split("|")
     if "llvmpipe" not in device:
         pytest.skip(f"the device is {device}")
-    assert promises == str(threads == 0), reason
-    assert ("draws in 2 threads" in reason) == (threads == 2), reason
+    assert found == str(threads)

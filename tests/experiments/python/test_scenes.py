@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from lab import PROGRAM, error_of, refused, same_pairs
 
-METHODS = ["far", "cullide", "quick-cullide", "i-collide", "far-pairs", "exact"]
+METHODS = ["far", "cullide", "quick-cullide", "i-collide", "boxes", "exact"]
 
 
 def program(*arguments):
@@ -54,7 +54,7 @@ def test_every_built_in_scene_answers_as_the_program(name):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_answers_as_the_program(method):
-    options = {} if method in ("i-collide", "exact") else {"resolution": 128, "device": "cpu"}
+    options = {} if method in ("i-collide", "boxes", "exact") else {"resolution": 128, "device": "cpu"}
     words = [f"--{name}={value}" for name, value in options.items()]
     record = farcull.Scene("two-tori").run(method, **options)
     assert np.array_equal(listed(record), of_program("two-tori", "--method", method, *words))
@@ -158,7 +158,7 @@ def test_scenes_of_arrays_have_names():
 
 BAD_OPTIONS = [
     dict(method="magic"), dict(method=3), dict(resolution=0), dict(resolution="wide"), dict(resolution=True),
-    dict(resolution=[]), dict(radius=2),  # not of far-pairs
+    dict(resolution=[]), dict(resolution=64), dict(views="x"), dict(device="cpu"), dict(radius=2),  # not of boxes
     dict(radius=-1, method="far"), dict(offset="round", method="far"), dict(depth="deep", method="far"),
     dict(depth_format=16, method="far"), dict(query="?", method="far"), dict(clusters=[1], method="far"),
     dict(rounds=0, method="far"), dict(clear="some", method="far"), dict(level="atoms", method="far"), dict(views="q"),

@@ -120,7 +120,7 @@ TEST(DefaultMethod, IsSaidWhereNoneIsNamed) {
   EXPECT_EQ(method_reason(options), "--method");
   options.method_is_default = true;
   const std::string line = default_method_line(options);
-  EXPECT_TRUE(line.starts_with("default    no --method: far-pairs ")) << line;
+  EXPECT_TRUE(line.starts_with("default    no --method: boxes ")) << line;
   for (const Method method : all_methods())
     EXPECT_EQ(line.find(" " + to_string(method)) != std::string::npos, true) << line;
 }

@@ -205,11 +205,11 @@ def test_examples_are_a_table_and_a_file_of_the_suite():
 
 def test_the_table_says_whom_to_trust_for_what():
     chapter = chapter_of("libraries", [
-        row("small/pairs/random", "theirs", of_pairs(missed=5), 1.0), row("small/pairs/random", "far-pairs", of_pairs(True), 1.0),
+        row("small/pairs/random", "theirs", of_pairs(missed=5), 1.0), row("small/pairs/random", "boxes", of_pairs(True), 1.0),
         row("small/distance/all", "theirs", {"asked": 9, "answered": 7, "wrong": 2, "refused": 2, "library": "x 1", "zero": 2}, 1.0)])
     found = next(table for table in chapter.tables if table.name == "libraries-trust")
     assert [name for name, _ in found.columns] == ["contestant", "library", "pairs", "distance", "ns a pair"]
-    assert [line[:4] for line in found.rows] == [["far-pairs", "farcull", "0 of 500", ""],
+    assert [line[:4] for line in found.rows] == [["boxes", "farcull", "0 of 500", ""],
                                                  ["theirs", "x 1", "5 of 500 + 500 none", "2 of 7 + 2 none"]]
     assert cells(chapter, "libraries-distances")["zero"] == "2"
 
@@ -236,8 +236,8 @@ def test_the_page_of_cases_has_what_each_contestant_said(tmp_path):
 
 def test_libraries_are_rows_from_the_best_to_the_worst():
     """Ours are marked, and wrong answers count only where the documentation promises the answer."""
-    chapter = libraries(("far-pairs", of_pairs(True)), ("a", of_pairs(missed=3, library="FCL 1")),
+    chapter = libraries(("boxes", of_pairs(True)), ("a", of_pairs(missed=3, library="FCL 1")),
                         ("b", of_pairs(missed=400, own_missed=2, library="CGAL 1")))
     rows = [[(s.name, s.x[0]) for s in panel.strip] for panel in figure(chapter, "libraries-time").panels]
-    assert rows[0] == [("far-pairs (ours)", 0), ("b", 4000), ("a", 6000)]
-    assert [name for name, _ in rows[2]] == ["far-pairs (ours)", "b", "a"]
+    assert rows[0] == [("boxes (ours)", 0), ("b", 4000), ("a", 6000)]
+    assert [name for name, _ in rows[2]] == ["boxes (ours)", "b", "a"]

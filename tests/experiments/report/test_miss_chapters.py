@@ -35,7 +35,7 @@ def series(chapter, figure_name, name, panel=0):
 
 PROMISING = {"accuracy": far(), "error-time": far(), "radius": far("degenerate"), "precision": lemma(
     more={"promises": True}, depth_format="float32", resolution=508), "stability": far("contacts:slivers:24:1e2"),
-    "cloth": row("cloth:200:1e2", "far-pairs", counts(0, True, total=1.0, slack=0.0, converged=True, iterations=3),
+    "cloth": row("cloth:200:1e2", "boxes", counts(0, True, total=1.0, slack=0.0, converged=True, iterations=3),
                  frame=0)}
 
 
@@ -66,24 +66,22 @@ def test_missing_rows_are_told(study):
 
 
 # A sentence about misses says what decided, and how many pairs could have been missed.
-def said_of_misses(far_more=(), *others, far_pairs=()):
+def said_of_misses(far_more=(), *others):
     return findings(chapter_of("accuracy", [
-        far(more=far_more), row("s", "far-pairs", counts(0, True, **dict(far_pairs)), resolution=64, views="x,y,z"),
-        *others]))
+        far(more=far_more), row("s", "boxes", counts(0, True, views_used=0)), *others]))
 
 
 def test_what_decided_stands_beside_what_was_not_missed():
     said = said_of_misses({"at_risk": 4, "at_risk_bare": 9})
-    assert ("missed 0 of 40 colliding pairs in 2 runs on 1 scene in which views decided; at risk there: 4 "
-            "pairs with 0.9 of the radius (counted in 1 of 2 runs) and 18 pairs without a ball.") in said
+    assert ("missed 0 of 20 colliding pairs in 1 run on 1 scene in which views decided; at risk there: 4 "
+            "pairs with 0.9 of the radius and 9 pairs without a ball.") in said
     assert "Culled where views decided, of all triangles: FAR (OBB) 20 % by boxes and 50 % by views" in said
     # The twins: a join of boxes tests no radius, and says so; and nothing at risk is said.
-    said = said_of_misses(far_pairs={"views_used": 0})
-    assert ("FAR pairs missed 0 of 20 colliding pairs in 1 run on 1 scene in which boxes alone decided; no "
+    assert ("Boxes missed 0 of 20 colliding pairs in 1 run on 1 scene in which boxes alone decided; no "
             "view was drawn, so these tested no radius, pixel or depth.") in said
     assert "no pair was at risk, so this says nothing about the radius" in said_of_misses(
         {"at_risk": 0, "at_risk_bare": 0})
-    assert "at risk there: 14 pairs without a ball." in said_of_misses((), row("s", "cullide", counts(7), resolution=64))
+    assert "at risk there: 7 pairs without a ball." in said_of_misses((), row("s", "cullide", counts(7), resolution=64))
     assert "was not counted" in said_of_misses((), row("s", "cullide", counts(7), resolution=128)), "other pixels"
     assert "test that a ball is needed, not how large it has to be" in said_of_misses({"at_risk": 0, "at_risk_bare": 3})
 
@@ -142,21 +140,21 @@ def test_accuracy_shows_the_spread_of_seeds_and_the_size_of_triangles():
 # ---- errors against time
 
 def timed_rows(exact_ms=9, runs=(None, None), left_out=""):
-    return [row("s", "fcl-float", counts(2, wrong=3), 1, left_out), row("s", "far-pairs", counts(0, True), 4,
+    return [row("s", "fcl-float", counts(2, wrong=3), 1, left_out), row("s", "boxes", counts(0, True), 4,
                                                                         runs=runs[0]),
             row("s", "exact", counts(0), exact_ms, runs=runs[1]), row("s", "cullide", counts(8), 2, resolution=64)]
 
 
 def test_error_time_has_the_front_of_what_nothing_beats():
     chapter = chapter_of("error-time", timed_rows())
-    assert [r[1] for r in table(chapter, "error-time-front")] == ["fcl-float", "FAR pairs"]
+    assert [r[1] for r in table(chapter, "error-time-front")] == ["fcl-float", "Boxes"]
     said = findings(chapter)
     assert "fcl-float misses 2 of 20 colliding pairs and reports 3" in said
-    assert "Fastest without an error: FAR pairs on 1 of 1 scenes." in said
+    assert "Fastest without an error: Boxes on 1 of 1 scenes." in said
     panel = figure(chapter, "error-time").panels[0]
     assert {s.name: [y for y in s.y if y == y] for s in panel.series} == {
         "FCL and ODE, their own tests": [25], "CULLIDE": [40]}
-    assert [s.name for s in panel.strip] == ["FAR pairs", "exact"], "those that were never wrong"
+    assert [s.name for s in panel.strip] == ["Boxes", "exact"], "those that were never wrong"
     # Rows are the same in each panel, empty where the method was wrong; FAR has a row for each resolution.
     rows = [row(scene, method, counts(n), ms, resolution=px) for scene, n in (("s", 0), ("u", 4)) for method, ms, px in (
         ("exact", 8, 0), ("cullide", 2, 64))] + [far(ms=4), far("u", ms=1), far("u", ms=2, resolution=128)]
@@ -182,13 +180,13 @@ def test_error_time_gives_ratios_with_their_intervals():
 def test_void_rounds_are_left_out_and_counted():
     def chapter(void):
         rows = timed_rows()
-        rows[1] = row("s", "far-pairs", counts(0, True), 4, runs=(4, 5, 6, 99, 98, 97, 5, 5, 5), void=void)
+        rows[1] = row("s", "boxes", counts(0, True), 4, runs=(4, 5, 6, 99, 98, 97, 5, 5, 5), void=void)
         return chapter_of("error-time", rows)
 
     clean, loud = chapter([1]), chapter([])
     said = "1 round of 1 of 1 timed points are void and left out"
     assert any(said in limit for limit in clean.limits) and not any("void" in limit for limit in loud.limits)
-    assert [series(of, "error-time", "FAR pairs").x_high[0] for of in (clean, loud)] == [6, 99]
+    assert [series(of, "error-time", "Boxes").x_high[0] for of in (clean, loud)] == [6, 99]
 
 
 # FAR takes 4 ms: the CULLIDE of 3 ms counts, that of 5 ms does not, though it misses less.
@@ -205,9 +203,9 @@ def test_error_time_compares_cullide_in_the_time_of_far(far_ms, last_ms, best, s
 
 
 def test_error_time_joins_seeds():
-    chapter = chapter_of("error-time", [row(scene, "far-pairs", counts(0, True), ms) for scene, ms in (
+    chapter = chapter_of("error-time", [row(scene, "boxes", counts(0, True), ms) for scene, ms in (
         ("s", 1), ("s@seed101", 9), ("s@seed102", 2))])
-    assert table(chapter, "error-time-front")[0] == ["s", "FAR pairs", "2", "-", "0", "0", "60"]
+    assert table(chapter, "error-time-front")[0] == ["s", "Boxes", "2", "-", "0", "0", "60"]
 
 
 # ---- radius
@@ -308,7 +306,7 @@ def stability_rows(risk=7, kept=30):
                  far(scene, more={"at_risk": risk, "at_risk_bare": 9, "kept_triangles": kept}), row(scene, "exact", counts(
                      0))]
     rows += [far("contacts:gap:24:-1e3"), far("contacts:gap:24:1e3"), far("contacts:offset:24:1e9"),
-             row("cloth:450:1e8", "far-pairs", counts(0, True), frame=40), far("cloth:450:1e8@apart", frame=40)]
+             row("cloth:450:1e8", "boxes", counts(0, True), frame=40), far("cloth:450:1e8@apart", frame=40)]
     return rows
 
 
@@ -343,10 +341,10 @@ def cloth_rows(last, far_colliding=5):
                                    "total": total, "slack": 0.125, "residual": 1e-6, "iterations": 3,
                                    "converged": True, **more}, frame=number)
 
-    out = [frame("cloth:200:1e8", "far-pairs", 2, **{"total": 0.625, **last})]
+    out = [frame("cloth:200:1e8", "boxes", 2, **{"total": 0.625, **last})]
     for scene in ("cloth:200:1e2", "cloth:200:1e8"):
-        out += [frame(scene, "far-pairs", 0, 1), frame(scene, "far", 0, 1, colliding=far_colliding),
-                frame(scene, "far-pairs", 1, 0.5)]
+        out += [frame(scene, "boxes", 0, 1), frame(scene, "far", 0, 1, colliding=far_colliding),
+                frame(scene, "boxes", 1, 0.5)]
     return out
 
 
@@ -361,9 +359,9 @@ def test_cloth_says_that_the_energy_is_bounded_and_what_is_not_run():
 @pytest.mark.parametrize("last, far_colliding, said", [
     ({"total": 0.6259765625}, 5, "At 1e8 N/m the total energy grew by more than the unbalanced forces can do in 1 of 2 "
                                  "steps, by up to 0.000977 J"),  # 2^-10 J more than the slack
-    ({"total": None}, 5, "At 1e8 N/m the total energy grew"), ({"missed": 1}, 5, "cloth:200:1e8, far-pairs"),
+    ({"total": None}, 5, "At 1e8 N/m the total energy grew"), ({"missed": 1}, 5, "cloth:200:1e8, boxes"),
     ({"converged": False}, 5, "At 1e8 N/m 1 of 3 steps did not converge"),
-    ({}, 4, "FAR and FAR pairs found different")])
+    ({}, 4, "FAR and boxes found different")])
 def test_cloth_shouts_what_is_not_as_it_has_to_be(last, far_colliding, said):
     assert "BROKEN: " + said in findings(chapter_of("cloth", cloth_rows(last, far_colliding)))
 

@@ -132,7 +132,7 @@ TEST(MissModel, SaysWhereItHasNoPrediction) {
   const auto line = [&](const RunOptions& of) {
     return misses_line(misses_of(scene, plan(scene, of)));
   };
-  EXPECT_EQ(line({.method = Method::far_pairs}), "");
+  EXPECT_EQ(line({.method = Method::boxes}), "");
   EXPECT_EQ(line(options), "misses     not predicted: conservative rasterization\n");
   EXPECT_TRUE(line({.method = Method::cullide}).find(" colliding pairs expected, ") !=
               std::string::npos);

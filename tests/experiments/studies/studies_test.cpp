@@ -117,8 +117,7 @@ TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
     for (const char* name : {"cullide ", "quick-cullide ", "far obb", "far exact"})
       EXPECT_EQ(resolutions[name], powers) << name;
     EXPECT_GE(resolutions["s-cullide "].size(), quick ? 5u : powers.size());
-    powers.insert(0);
-    EXPECT_EQ(resolutions["far-pairs "], powers);
+    EXPECT_EQ(resolutions["boxes "], std::set<int>{0});
   }
 }
 
@@ -143,10 +142,10 @@ PointResult measured(Lab& lab, const std::string& scene, Method method) {
 
 TEST(RunPoint, DoesNotDependOnEarlierRunsOfTheSession) {
   Lab fresh("cpu");
-  const PointResult first = measured(fresh, "far-apart", Method::far_pairs);
+  const PointResult first = measured(fresh, "far-apart", Method::boxes);
   Lab used("cpu");
-  measured(used, "two-spheres", Method::far_pairs);
-  const PointResult later = measured(used, "far-apart", Method::far_pairs);
+  measured(used, "two-spheres", Method::boxes);
+  const PointResult later = measured(used, "far-apart", Method::boxes);
   EXPECT_EQ(named(first.counts), named(later.counts));
   EXPECT_EQ(first.device, later.device);
 }
@@ -206,20 +205,16 @@ TEST(ContactCells, AreFoundByTheBudgetAndLostBySmallerBalls) {
     EXPECT_LE(10 * far.kept_triangles, 7 * far.triangles) << "at least 30 % are culled";
     EXPECT_GE(far.at_risk.value_or(0), pairs);
     EXPECT_GE(far.at_risk_bare.value_or(0), pairs);
-    RunPoint views = plain_point(cells, Method::far_pairs, kCellsResolution);
-    views.views = "x,y,z";
-    const RunCounts found = counts_of(views);
+    const RunCounts found = counts_of(plain_point(cells, Method::boxes));
     EXPECT_EQ(found.missed, 0u);
-    EXPECT_EQ(found.views_used, 3u);
-    EXPECT_LE(10 * found.kept_triangles, 7 * found.triangles);
+    EXPECT_EQ(found.views_used, 0u);
     EXPECT_FALSE(found.at_risk.has_value());
-    EXPECT_EQ(counts_of(plain_point(cells, Method::far_pairs)).views_used, 0u) << "a join of boxes";
   }
 }
 
 TEST(RunPoint, GivesTheSameAnswerInEveryRun) {
   Lab lab("cpu");
-  for (const Method method : {Method::far_pairs, Method::i_collide, Method::exact}) {
+  for (const Method method : {Method::boxes, Method::i_collide, Method::exact}) {
     const PointResult first = measured(lab, "crowd", method);
     EXPECT_NE(first.answer, measured(lab, "two-spheres", method).answer);
     EXPECT_NO_THROW(require_same({}, first, measured(lab, "crowd", method)));
@@ -228,7 +223,7 @@ TEST(RunPoint, GivesTheSameAnswerInEveryRun) {
 
 // The twin: each way in which two runs may differ is refused, and said.
 TEST(RunPoint, RefusesRunsThatDiffer) {
-  const PointKey point = key_of(plain_point(NamedScene{"crowd"}, Method::far_pairs));
+  const PointKey point = key_of(plain_point(NamedScene{"crowd"}, Method::boxes));
   const PointResult good{.counts = RunCounts{}, .answer = 7, .device = "cpu"};
   EXPECT_NO_THROW(require_same(point, good, good));
   const auto said = [&](const PointResult& other) -> std::string {

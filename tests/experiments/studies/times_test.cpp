@@ -33,7 +33,7 @@ TEST(Times, OfAllPointsComeInRoundsAndOfASceneInTurn) {
   run_studies(lab_request(folder.folder(), {timed_study({"a", "b"}, runs)}));
   std::string round;
   for (const std::string scene : {"a", "a", "b", "b"})
-    round += scene + " far-pairs, " + scene + " exact, ";
+    round += scene + " boxes, " + scene + " exact, ";
   EXPECT_EQ(joined(runs) + ", ", round + round + round);
   const std::vector<Row> rows = rows_of(folder.folder());
   ASSERT_EQ(rows.size(), 4u);
@@ -52,7 +52,7 @@ TEST(Times, LeaveRoomBetweenTheRounds) {
     return right(point, lab);
   };
   run_studies(lab_request(folder.folder(), {timed_study({"a"}, runs), counting}));
-  const std::string round = "a far-pairs, a exact, a far-pairs, a exact";
+  const std::string round = "a boxes, a exact, a boxes, a exact";
   EXPECT_EQ(joined(runs), round + ", counted, counted, counted, " + round + ", " + round);
 }
 
@@ -65,7 +65,7 @@ TEST(Times, GoOnWithTheNextRoundWhereTheyWereEnded) {
     if (runs.size() == 6 && !std::exchange(lost, true)) throw Error("device", "is lost", "again");
     return right(point, lab);
   };
-  // In the second turn of the second round far-pairs fails; the other point goes on.
+  // In the second turn of the second round boxes fails; the other point goes on.
   const StudiesSummary first = run_studies(lab_request(folder.folder(), {ends}));
   EXPECT_EQ(first.failed.size(), 1u);
   EXPECT_EQ(first.studies.front().measured, 1u);

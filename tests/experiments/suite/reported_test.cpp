@@ -242,7 +242,7 @@ std::vector<SuiteMesh> meshes_of(const std::set<std::string>& families) {
 }
 
 void expect_right(Session& session, const SuiteMesh& mesh) {
-  for (const Method method : {Method::far, Method::far_pairs, Method::exact}) {
+  for (const Method method : {Method::far, Method::boxes, Method::exact}) {
     EXPECT_EQ(pairs_by(method, session, mesh.scene), listed(mesh))
         << to_string(method) << ", " << mesh.name << "\n"
         << mesh.note;
@@ -298,7 +298,7 @@ TEST(Motions, AreAnsweredRightlyByWhatKeepsItsState) {  // forwards and backward
     for (const SuiteMesh& mesh : frames) asked.insert(asked.begin() + 12, &mesh);
     for (const SuiteMesh* mesh : asked) {
       EXPECT_EQ(pairs_by(collider, mesh->scene), listed(*mesh)) << mesh->name;
-      for (const Method method : {Method::far, Method::far_pairs, Method::exact, Method::i_collide})
+      for (const Method method : {Method::far, Method::boxes, Method::exact, Method::i_collide})
         EXPECT_EQ(pairs_by(method, session, mesh->scene), listed(*mesh))
             << to_string(method) << ", " << mesh->name;
     }

@@ -153,13 +153,13 @@ bool found_by(Method method, Session& session, const Scene& scene) {
   return record.collisions.pairs.size() + record.collisions.neighbour_pairs.size() > 0;
 }
 
-TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
+TEST(SuiteAnswers, FarAndBoxesAreRightAboutASampleThatIsDrawn) {
   Session session(asked_device(), 1, {});
   for (const PairFamily& family : pair_families()) {
     const SuitePairs pairs = asked_pairs(family);
     for (std::size_t i = 0; i < pairs.pairs.size(); i += 9) {
       const SuitePair& pair = pairs.pairs[i];
-      for (const Method method : {Method::far, Method::far_pairs}) {
+      for (const Method method : {Method::far, Method::boxes}) {
         EXPECT_EQ(found_by(method, session, scene_of(pair)), collides(pair.kind))
             << to_string(method) << ": " << family.name << " " << pair.id << ", "
             << to_string(pair.kind);
@@ -168,12 +168,12 @@ TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
   }
 }
 
-TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
+TEST(SuiteAnswers, BoxesFindTheListsOfAllMeshes) {
   Session session(asked_device(), 0, {});
   for (const SuiteMesh& mesh : asked_meshes()) {
     const std::string& name = mesh.name;
     RunOptions options;
-    options.method = Method::far_pairs;
+    options.method = Method::boxes;
     options.device = asked_device();
     options.verify = false;
     const Record record = run(mesh.scene, options, session);

@@ -238,7 +238,7 @@ TEST(NotAsked, IsSaidBesideThePromise) {
   EXPECT_TRUE(has_text(heading, "\nuntested   3 pairs of triangles inside sheet, "));
   EXPECT_TRUE(has_text(heading, "(add --self)\n"));
   record.options.method = Method::cullide;
-  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --method far-pairs --self)\n"));
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --method boxes --self)\n"));
   record.options.method = Method::exact;
   EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --self)\n"));
   EXPECT_FALSE(has_text(run_heading(folded(true), record), "untested"));

@@ -262,7 +262,7 @@ class Comparison:
             write_scene(folder, objects, f'_{k}')
             write_words(f'{folder}/words_{k}', objects)
         write_scene(folder, frames[0], '_%d', False)
-        for how in (['--method', 'exact'], ['--method', 'far-pairs', '--device', 'cpu', '--clearance', repr(clearance)]):
+        for how in (['--method', 'exact'], ['--method', 'boxes', '--clearance', repr(clearance)]):
             name = f'random scenes {number} {how[1]}'
             status, text = output([self.farcull, 'run', scene, '--frames', f'0:{size - 1}', '--no-verify', *how, '--certificate', f'{folder}/c_%d.json'])
             if status:
@@ -311,7 +311,7 @@ class Comparison:
         write_words(words, objects)
         status, text = output([self.farcull, 'run', scene, '--method', 'exact', '--certificate', certificate]
                               if clearance is None else
-                              [self.farcull, 'run', scene, '--method', 'far-pairs', '--device', 'cpu', '--clearance', repr(clearance),
+                              [self.farcull, 'run', scene, '--method', 'boxes', '--clearance', repr(clearance),
                                '--certificate', certificate])
         if status:
             self.wrong.append(f'{name}: no certificate: {text[:300]}')

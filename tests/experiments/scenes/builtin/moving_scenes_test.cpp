@@ -1,9 +1,8 @@
-// Built-in scenes in motion: they are what they say, and FAR pairs on the CPU misses nothing in any
+// Built-in scenes in motion: they are what they say, and boxes miss nothing in any
 // frame of any of them.
 #include <Eigen/Geometry>
 
-#include "core/pairs/backend.h"
-#include "core/pairs/pairs.h"
+#include "core/boxes/search.h"
 #include "core/view/view.h"
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -83,10 +82,10 @@ FramesResult frames_of(const std::string& name, Method method) {
   return run_frames({name}, question);
 }
 
-// All frames against the exact method, which shares nothing with FAR pairs but the predicates.
+// All frames against the exact method, which shares nothing with boxes but the predicates.
 void expect_nothing_missed(const std::string& name) {
   SCOPED_TRACE(name);
-  const FramesResult pairs = frames_of(name, Method::far_pairs);
+  const FramesResult pairs = frames_of(name, Method::boxes);
   const FramesResult exact = frames_of(name, Method::exact);
   EXPECT_EQ(pairs.json["summary"]["missed"], 0);
   EXPECT_EQ(pairs.broken, "");
@@ -176,7 +175,7 @@ TEST(MovingScenes, ASimulationDependsOnTheNumberOfItsFrame) {
   EXPECT_TRUE(few.at(11).objects[0].self);
   EXPECT_FALSE(few.at(11).objects[1].self);
   EXPECT_EQ(few.warning(), "");
-  const FramesResult result = frames_of("cloth:200:1e3", Method::far_pairs);
+  const FramesResult result = frames_of("cloth:200:1e3", Method::boxes);
   for (const auto& frame : result.json["frames"]) {
     double sum = 0;
     for (const char* part : {"kinetic J", "elastic J", "bending J", "gravitational J", "contact J"})
@@ -378,38 +377,22 @@ TEST(PackagedScenes, DragonBreaksIntoPiecesThatAreItsTriangles) {
   EXPECT_EQ(objects, 200u);
 }
 
-// Frame by frame with one backend, whose buffers stay.
+// Frame by frame with one memory. The twin: the candidates of the first frame miss in every later
+// one.
 TEST(MovingScenes, ChangedTopologyIsSeen) {
   lab::Reconnected reconnected;
-  const auto cpu = cpu_pair_backend(2);
-  std::size_t colliding = 0;
+  FrameMemory memory;
+  std::vector<TrianglePair> first;
   for (long frame = 0; frame < 30; ++frame) {
     const Scene& scene = reconnected.at(frame);
     const std::vector<TrianglePair> truth = lab::truth_of(scene);
-    colliding += truth.size();
-    EXPECT_EQ(lab::missed(truth, find_pairs(scene, {}, *cpu).candidates), 0u) << frame;
+    memory.moved.update(scene);
+    const std::vector<TrianglePair> found =
+        find_boxes(scene, plan_boxes(scene, {}, 2, &memory), &memory).candidates;
+    if (frame == 0) first = found;
+    EXPECT_EQ(lab::missed(truth, found), 0u) << frame;
+    EXPECT_EQ(lab::missed(truth, first) > 0, frame > 0) << frame;
   }
-  EXPECT_GT(colliding, 1000u);
-}
-
-// The twin: who keeps the triangles of the first frame loses pairs in every later one.
-TEST(MovingScenes, StaleTopologyIsCaught) {
-  lab::Reconnected reconnected;
-  const auto cpu = cpu_pair_backend(2);
-  lab::Stale stale(*cpu);
-  const PairSettings views{.blocks = false};
-  EXPECT_EQ(lab::missed(reconnected.at(0), views, stale), 0u);
-  for (long frame = 1; frame < 10; ++frame)
-    EXPECT_GT(lab::missed(reconnected.at(frame), views, stale), 0u) << frame;
-}
-TEST(PackagedScenes, StaleTopologyOfABreakingDragonIsCaught) {
-  MovingScene moving("breaking-dragon:19994", kFrames);
-  const auto cpu = cpu_pair_backend(2);
-  lab::Stale stale(*cpu);
-  std::size_t missed = 0;
-  for (long frame = 1; frame < kFrames; ++frame)
-    missed += lab::missed(moving.at(frame), {.blocks = false}, stale);
-  EXPECT_GT(missed, 100u);
 }
 
 double area_of(const Mesh& mesh, std::size_t t) {

@@ -1,6 +1,6 @@
-// Time and memory of far-pairs on scenes of strays (tests/core/pairs/stray_scenes.h), against the
+// Time and memory of boxes on scenes of strays (tests/lab/strays.h), against the
 // method `exact` on the same scene: farcull_strays [SEEDS [FIRST]]. Each run has a process of its
-// own. Fails where far-pairs takes more than three times as much, and a constant.
+// own. Fails where boxes takes more than three times as much, and a constant.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,11 +32,10 @@ double cpu_ms() {
 Cost cost_of(const Scene& scene, Method method) {
   RunOptions options;
   options.method = method;
-  options.device = "cpu";
   options.verify = false;
   const PeakMemory memory;
   const double start = cpu_ms();
-  Session session(options.device);
+  Session session("native");
   const Record record = run(scene, options, session);
   return {cpu_ms() - start, memory.grown_mib().value_or(0), record.collisions.all().size()};
 }
@@ -59,15 +58,15 @@ Cost measured(const std::function<Scene()>& scene, Method method) {
   return out;
 }
 
-// Whether far-pairs keeps to what it may take.
+// Whether boxes keeps to what it may take.
 bool row(const std::string& name, const std::function<Scene()>& scene) {
-  const Cost exact = measured(scene, Method::exact), pairs = measured(scene, Method::far_pairs);
-  const bool same = exact.ms >= 0 && pairs.ms >= 0 && exact.colliding == pairs.colliding;
+  const Cost exact = measured(scene, Method::exact), boxes = measured(scene, Method::boxes);
+  const bool same = exact.ms >= 0 && boxes.ms >= 0 && exact.colliding == boxes.colliding;
   const bool kept =
-      same && pairs.ms <= kTimes * exact.ms + kMs && pairs.mib <= kTimes * exact.mib + kMib;
+      same && boxes.ms <= kTimes * exact.ms + kMs && boxes.mib <= kTimes * exact.mib + kMib;
   std::printf("| %s | %llu | %.0f | %.0f | %.2f | %.0f | %.0f |%s\n", name.c_str(),
-              static_cast<unsigned long long>(exact.colliding), exact.ms, pairs.ms,
-              pairs.ms / exact.ms, exact.mib, pairs.mib,
+              static_cast<unsigned long long>(exact.colliding), exact.ms, boxes.ms,
+              boxes.ms / exact.ms, exact.mib, boxes.mib,
               kept   ? ""
               : same ? " too much"
                      : " WRONG");
@@ -97,7 +96,7 @@ Scene with_stray(const char* name, bool self, double times, bool corner) {
 
 int main_of(int count, int first) {
   std::printf(
-      "| scene | colliding | exact, ms | far-pairs, ms | ratio | exact, MiB | far-pairs, MiB "
+      "| scene | colliding | exact, ms | boxes, ms | ratio | exact, MiB | boxes, MiB "
       "|\n|---|---:|---:|---:|---:|---:|---:|\n");
   int too_much = 0;
   for (const char* name : {"bunny", "two-bunnies"}) {
@@ -122,7 +121,7 @@ int main_of(int count, int first) {
                   strays.spread ? ", places too" : "", strays.self ? ", with itself" : "");
     too_much += !row(text, [&] { return lab::stray_scene(number, 20'000, strays); });
   }
-  std::printf("far-pairs took too much, or was wrong, in %d scenes\n", too_much);
+  std::printf("boxes took too much, or was wrong, in %d scenes\n", too_much);
   return too_much > 0 ? 1 : 0;
 }
 

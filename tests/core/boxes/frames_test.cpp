@@ -1,6 +1,6 @@
 // Frames of a scene one after the other: what is kept from the last one changes no answer, whatever
 // moved, and whatever happened in between. Each property has a twin that must fail.
-#include "core/pairs/regions.h"
+#include "core/boxes/frames.h"
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/pairs.h"
@@ -77,34 +77,30 @@ std::vector<Scene> scenes() {
 
 // Frames of one scene with a memory, and what it did.
 struct Film {
-  PairWorkspace workspace;
+  FrameMemory memory;
   FrameDecider decider;
   std::size_t kept = 0, decided = 0, candidates = 0;
 
   // The candidates and collisions are those without a memory.
-  void show(const Scene& scene, const PairSettings& settings) {
-    const auto backend = cpu_pair_backend(2);
-    workspace.memory.moved.update(scene);
-    const PairPlan plan = plan_pairs(scene, settings, 2, &workspace.memory);
-    const std::vector<TrianglePair> found = find_pairs(scene, plan, *backend, workspace).candidates;
-    const PairResult fresh = find_pairs(scene, settings, *backend);
-    kept += plan.blocks.kept.size();
-    // Views and oriented boxes may leave more or fewer candidates in another order of triangles.
-    const bool by_runs = plan.choices.empty() && fresh.views.empty() &&
-                         !workspace.memory.oriented &&
-                         std::ranges::find(fresh.stages, Reason::oriented_pairs, &Stage::reason) ==
-                             fresh.stages.end();
-    if (by_runs) {
+  void show(const Scene& scene, const BoxesSettings& settings) {
+    memory.moved.update(scene);
+    const BoxesPlan plan = plan_boxes(scene, settings, 2, &memory);
+    const std::vector<TrianglePair> found = find_boxes(scene, plan, &memory).candidates;
+    const BoxesResult fresh = find_boxes(scene, plan_boxes(scene, settings, 2));
+    kept += plan.decision.blocks.kept.size();
+    // Oriented boxes may leave more or fewer candidates in another order of triangles.
+    const bool same = !memory.oriented && fresh.stage.reason != Reason::oriented_pairs;
+    if (same) {
       ASSERT_EQ(found, fresh.candidates);
     }
     const ExactQuestion question{.clearance = settings.clearance,
                                  .neighbours = settings.neighbours};
     const Collisions expected = decide(scene, fresh.candidates, question);
-    const Collisions collisions = decider.decide(scene, found, workspace.memory.moved, question);
-    workspace.memory.moved.notify(mostly_unmoved(workspace.memory.moved, found));
+    const Collisions collisions = decider.decide(scene, found, memory.moved, question);
+    memory.moved.notify(mostly_unmoved(memory.moved, found));
     ASSERT_EQ(collisions.pairs, expected.pairs);
     ASSERT_EQ(collisions.neighbour_pairs, expected.neighbour_pairs);
-    if (by_runs) {
+    if (same) {
       ASSERT_EQ(collisions.neighbours, expected.neighbours);
       ASSERT_EQ(collisions.apart, expected.apart);
     }
@@ -113,7 +109,7 @@ struct Film {
   }
 };
 
-TEST(PairMemory, ChangesNoAnswerWhateverMoves) {
+TEST(FrameMemory, ChangesNoAnswerWhateverMoves) {
   std::size_t kept = 0, decided = 0, candidates = 0;
   Random random(11);
   for (Scene scene : scenes()) {
@@ -134,26 +130,23 @@ TEST(PairMemory, ChangesNoAnswerWhateverMoves) {
 }
 
 // A memory that was used for another scene, other settings, or a frame that was never found.
-TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
+TEST(FrameMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
   Random random(12);
   std::vector<Scene> all = scenes();
   Film film;
   std::size_t shown = 0;
-  PairSettings settings;
+  BoxesSettings settings;
   for (int frame = 0; frame < trials(300, 60); ++frame) {
     if (random.below(3) == 0) shown = random.below(3);
     Scene& scene = all[shown];
     switch (random.below(8)) {
       case 0:  // planned, and not found
-        if (random.below(2) == 0) film.workspace.memory.moved.update(scene);
-        plan_pairs(scene, {}, 2, &film.workspace.memory);
+        if (random.below(2) == 0) film.memory.moved.update(scene);
+        plan_boxes(scene, {}, 2, &film.memory);
         break;
-      case 1: {  // found without a plan of the memory
-        PairWorkspace& workspace = film.workspace;
-        const auto backend = cpu_pair_backend(1);
-        find_pairs(scene, plan_pairs(scene, {}, 1), *backend, workspace);
+      case 1:  // found without a plan of the memory
+        find_boxes(scene, plan_boxes(scene, {}, 1), &film.memory);
         break;
-      }
       case 2:
         scene.objects[0].self = !scene.objects[0].self;
         break;
@@ -169,7 +162,7 @@ TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
     if (random.below(3) == 0) {
       settings.clearance = random.below(3) == 0 ? 0.02 : 0.0;
       settings.neighbours = random.below(3) != 0;
-      settings.blocks = random.below(6) != 0;
+      settings.full = random.below(6) == 0;
     }
     film.show(scene, settings);
     if (testing::Test::HasFatalFailure()) return;
@@ -177,24 +170,23 @@ TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
   EXPECT_GT(film.kept, 1000u);
 }
 
-TEST(PairMemory, OfAFrameInWhichNothingMovedComparesAndDecidesNothing) {
+TEST(FrameMemory, OfAFrameInWhichNothingMovedComparesAndDecidesNothing) {
   const Scene scene = with_self(make_builtin_scene("crumpled:4000"));
-  PairWorkspace workspace;
+  FrameMemory memory;
   FrameDecider decider;
-  const auto backend = cpu_pair_backend(2);
   for (int frame = 0; frame < 3; ++frame) {
-    workspace.memory.moved.update(scene);
-    const PairPlan plan = plan_pairs(scene, {}, 2, &workspace.memory);
-    const auto found = find_pairs(scene, plan, *backend, workspace).candidates;
-    decider.decide(scene, found, workspace.memory.moved);
+    memory.moved.update(scene);
+    const BoxesPlan plan = plan_boxes(scene, {}, 2, &memory);
+    const auto found = find_boxes(scene, plan, &memory).candidates;
+    decider.decide(scene, found, memory.moved);
     ASSERT_GT(found.size(), 1000u);
-    EXPECT_EQ(plan.blocks.pairs.size() > 0, frame == 0);
+    EXPECT_EQ(plan.decision.blocks.pairs.size() > 0, frame == 0);
     EXPECT_EQ(decider.decided(), frame == 0 ? found.size() : 0);
   }
 }
 
 // Little moves in a frame after the other, so that what is kept for long is right too.
-TEST(PairMemory, IsRightAfterManyFramesOfSmallMotions) {
+TEST(FrameMemory, IsRightAfterManyFramesOfSmallMotions) {
   Random random(13);
   std::size_t kept = 0, candidates = 0;
   for (Scene scene : scenes()) {
@@ -235,9 +227,8 @@ TEST(MovedCorners, AreThoseSinceTheFrameBeforeWhoeverFindsThem) {
 // Candidates of frames in which the first vertices move, one more in each; if `tells` is false, the
 // memory is told that the last of them did not.
 std::vector<TrianglePair> found_after_frames(Scene& scene, bool tells) {
-  const auto backend = cpu_pair_backend(2);
-  PairWorkspace workspace;
-  MovedCorners& moved = workspace.memory.moved;
+  FrameMemory memory;
+  MovedCorners& moved = memory.moved;
   std::vector<TrianglePair> out;
   for (std::size_t frame = 0; frame < 4; ++frame) {
     if (frame > 0) scene.vertices[frame].x() += 1e-3;
@@ -245,15 +236,15 @@ std::vector<TrianglePair> found_after_frames(Scene& scene, bool tells) {
     if (frame == 3)
       for (std::size_t v = 4; v < scene.vertices.size() / 2; v += 4) scene.vertices[v].x() += 0.1;
     moved.update(tells ? scene : told);
-    const PairPlan plan = plan_pairs(scene, {}, 2, &workspace.memory);
-    EXPECT_TRUE(frame != 2 || !plan.blocks.kept.empty());
-    out = find_pairs(scene, plan, *backend, workspace).candidates;
+    const BoxesPlan plan = plan_boxes(scene, {}, 2, &memory);
+    EXPECT_TRUE(frame != 2 || !plan.decision.blocks.kept.empty());
+    out = find_boxes(scene, plan, &memory).candidates;
   }
   return out;
 }
 
 // Twin: a memory that does not see what moved keeps pairs that are no longer right.
-TEST(PairMemoryTwin, ThatDoesNotSeeWhatMovedMisses) {
+TEST(FrameMemoryTwin, ThatDoesNotSeeWhatMovedMisses) {
   for (const bool tells : {true, false}) {
     Scene scene = make_builtin_scene("two-spheres");
     const std::vector<TrianglePair> found = found_after_frames(scene, tells);

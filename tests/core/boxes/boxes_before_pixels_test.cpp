@@ -1,4 +1,4 @@
-#include "core/pairs/regions.h"
+#include "core/boxes/meetings.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "core/boxes/block.h"
+#include "core/view/regions.h"
 #include "tests/lab/reference.h"
 
 namespace farcull {

@@ -1,0 +1,156 @@
+// What a frame of a scene leaves for the next one.
+#include "core/boxes/frames.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+
+#include "core/base/parallel.h"
+
+namespace farcull {
+namespace {
+
+// Per triangle the block that it is in.
+std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std::size_t triangles) {
+  std::vector<std::uint32_t> out(triangles);
+  for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
+    const TriangleBlock& range = blocks.ranges[k];
+    for (std::uint32_t i = 0; i < range.count; ++i) out[blocks.triangle(range.first + i)] = k;
+  }
+  return out;
+}
+
+// Pairs of blocks that overlap and of which one moved, each once. moved: per block; moved_blocks:
+// the blocks that did, ascending.
+BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectMeeting>& meetings,
+                          const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
+                          const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
+  struct Question {
+    std::uint32_t block, of, with;  // block of object `of`, and the other object
+    bool second;                    // `of` is the second object of its meeting
+  };
+  std::vector<Question> questions;
+  const auto ask = [&](std::uint32_t of, std::uint32_t with, bool second) {
+    for (auto k = std::ranges::lower_bound(moved_blocks, blocks.first[of]);
+         k != moved_blocks.end() && *k < blocks.first[of + 1]; ++k)
+      questions.push_back({*k, of, with, second});
+  };
+  for (const ObjectMeeting& meeting : meetings) {
+    ask(meeting.a, meeting.b, false);
+    if (meeting.a != meeting.b) ask(meeting.b, meeting.a, true);
+  }
+  const std::size_t chunks = chunks_for(questions.size(), 64, threads);
+  std::vector<BlockPairs> found(chunks);
+  for_chunks(questions.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<BlockPair> own;
+    for (std::size_t q = begin; q < end; ++q) {
+      const auto& [block, of, with, second] = questions[q];
+      own.clear();
+      pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
+      for (const auto& [a, b] : own) {
+        // Of two that moved, each finds the other.
+        if (of == with) {
+          if (!moved[b] || a <= b) {
+            found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
+          }
+        } else if (!second) {
+          found[chunk].between.push_back({a, b});
+        } else if (!moved[b]) {
+          found[chunk].between.push_back({b, a});
+        }
+      }
+    }
+  });
+  BlockPairs out;
+  for (const BlockPairs& some : found) {
+    out.between.insert(out.between.end(), some.between.begin(), some.between.end());
+    out.inside.insert(out.inside.end(), some.inside.begin(), some.inside.end());
+  }
+  return out;
+}
+
+// The decision of a frame in which nothing moved: everything is as before.
+BlockDecision unmoved_decision(const FrameMemory& memory) {
+  BlockDecision out{.blocks = {}, .pairs = memory.object_pairs, .self = memory.self};
+  out.blocks.kept = memory.pairs;
+  out.blocks.overlaps = memory.overlaps;
+  out.blocks.meetings = memory.meetings;
+  out.blocks.triangles = memory.triangles;
+  return out;
+}
+
+// The decision of a frame in which some blocks moved: the boxes, trees and pairs of these are made
+// anew. Null if many more pairs of blocks overlap than when the blocks were made, or if the
+// meetings say that a tree decides.
+std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
+                                               FrameMemory& memory) {
+  constexpr std::size_t kMostGrowth = 2;
+  if (memory.blocks.use_count() > 1)  // somebody has the last frame's plan
+    memory.blocks = std::make_shared<TriangleBlocks>(*memory.blocks);
+  TriangleBlocks& blocks = *memory.blocks;
+  std::vector<std::uint8_t> moved(blocks.ranges.size(), 0);
+  for (const std::uint32_t t : memory.moved.triangles()) moved[memory.block_of[t]] = 1;
+  std::vector<std::uint32_t> moved_blocks;
+  for (std::uint32_t k = 0; k < moved.size(); ++k) {
+    if (moved[k]) moved_blocks.push_back(k);
+  }
+  const Vec3 origin = blocks.origin;
+  update_boxes(scene, memory.clearance, moved, threads, blocks);
+  const ObjectMeetings meetings = find_meetings(scene, blocks, memory.ignored);
+  if (decide_by_meetings(blocks, meetings)) return std::nullopt;
+  if (origin == blocks.origin) {
+    memory.trees->update(blocks, moved_blocks);
+  } else {
+    memory.trees.emplace(blocks, blocks.objects);
+  }
+  BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};
+  out.blocks.of = memory.blocks;
+  out.blocks.meetings = meetings.all.size();
+  out.blocks.pairs =
+      pairs_of_moved(*memory.trees, meetings.all, blocks, moved, moved_blocks, threads);
+  const auto has_moved = [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; };
+  const auto renew = [&](std::vector<BlockPair>& all, const std::vector<BlockPair>& anew) {
+    std::erase_if(all, has_moved);
+    all.insert(all.end(), anew.begin(), anew.end());
+  };
+  renew(memory.overlapping.between, out.blocks.pairs.between);
+  renew(memory.overlapping.inside, out.blocks.pairs.inside);
+  out.blocks.overlaps = memory.overlapping.size();
+  if (out.blocks.overlaps > kMostGrowth * memory.usual + blocks.ranges.size()) return std::nullopt;
+  out.blocks.triangles = triangles_in(memory.overlapping, blocks);
+  std::ranges::copy_if(memory.pairs, std::back_inserter(out.blocks.kept),
+                       [&](const TrianglePair& pair) {
+                         return !moved[memory.block_of[pair.a]] && !moved[memory.block_of[pair.b]];
+                       });
+  return out;
+}
+
+}  // namespace
+
+BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory) {
+  if (!memory.moved.any()) return unmoved_decision(memory);
+  if (memory.blocks) {
+    if (auto decision = decision_of_moved(scene, threads, memory)) return *std::move(decision);
+  }
+  const double clearance = memory.clearance;
+  memory.blocks = std::make_shared<TriangleBlocks>(make_ordered_blocks(scene, clearance, threads));
+  const TriangleBlocks& blocks = *memory.blocks;
+  const ObjectMeetings meetings = find_meetings(scene, blocks, memory.ignored);
+  auto decision = decide_by_meetings(blocks, meetings);
+  if (!decision) {
+    decision = decide_by_pairs(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
+                               threads, memory.blocks);
+  }
+  if (decision->tree == Reason::none && !decision->blocks.oriented) {
+    memory.trees.emplace(blocks, blocks.objects);
+    memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
+    memory.overlapping = decision->blocks.pairs;
+    memory.usual = memory.overlapping.size();
+  } else {
+    memory.blocks.reset();
+  }
+  return *std::move(decision);
+}
+
+}  // namespace farcull

@@ -1,0 +1,48 @@
+// What boxes of blocks keep of a frame of a scene for the next one, so that triangles that did not
+// move cost little.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/boxes/meetings.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Kept between plan_boxes() and find_boxes() of one frame and those of the next. A frame that does
+/// not come to its end leaves nothing behind for the next one.
+///
+/// Whether the boxes of two triangles overlap depends on their corners alone, and whether those of
+/// two blocks do depends on the corners of their triangles. So the pairs of two blocks in which no
+/// corner moved are those of the last frame, and only blocks in which one moved are looked at. The
+/// order of triangles is kept too: any order is right, and one that was good remains so for a
+/// while.
+struct FrameMemory {
+  MovedCorners moved;
+  std::optional<std::uint64_t> frame;  // that was planned and found, and blocks decided it
+  double clearance = 0;
+  bool neighbours = true;
+  std::vector<ObjectPair> ignored;
+  std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
+  bool oriented = false;  // by oriented boxes, so they are of use only while nothing moves
+  /// Counts of that frame: of BlockMeetings and ObjectMeetings.
+  std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
+
+  /// Blocks of the last frame, with all triangles of scattered objects in order; null: not made
+  /// yet, and what follows is empty. Its plan has it too, until it is destroyed.
+  std::shared_ptr<TriangleBlocks> blocks;
+  std::optional<BlockTrees> trees;      // of all objects
+  std::vector<std::uint32_t> block_of;  // per triangle
+  BlockPairs overlapping;               // all of the last frame
+  std::size_t usual = 0;                // their number when the blocks were made
+};
+
+/// decide_by_blocks() for the frame that comes after the one in `memory`. Preconditions:
+/// memory.moved says what moved since memory.frame; its clearance, neighbours and ignored objects
+/// are those of now; and if anything moved, it was not decided by oriented boxes.
+BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory);
+
+}  // namespace farcull

@@ -1,0 +1,302 @@
+// Boxes of objects are joined, then those of the blocks of objects that meet. How often these
+// overlap says what decides: blocks along the axes, oriented ones, or a tree of all boxes.
+#include "core/boxes/meetings.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/boxes/oriented.h"
+
+namespace farcull {
+namespace {
+
+bool collides_with_itself(const Object& object) { return object.self && object.triangle_count > 1; }
+
+constexpr std::size_t kMeetingsPerBlock = 8;
+
+}  // namespace
+
+ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
+                             std::span<const ObjectPair> ignored) {
+  std::vector<std::uint32_t> objects(blocks.objects.size());
+  std::iota(objects.begin(), objects.end(), 0u);
+  const std::size_t most = kMeetingsPerBlock * blocks.ranges.size();
+  ObjectMeetings out;
+  out.self = static_cast<std::uint64_t>(std::ranges::count_if(scene.objects, collides_with_itself));
+  const std::vector<TrianglePair> pairs = box_join(blocks.objects, objects, objects, most);
+  out.crowded = pairs.size() > most;
+  if (out.crowded) return out;
+  for (const auto& [a, b] : pairs) {
+    if (std::ranges::binary_search(ignored, ObjectPair{std::min(a, b), std::max(a, b)})) continue;
+    const bool ordered = blocks.count(a) <= blocks.count(b);
+    out.all.push_back({ordered ? a : b, ordered ? b : a});
+  }
+  out.pairs = out.all.size();
+  for (const std::uint32_t o : objects) {
+    if (collides_with_itself(scene.objects[o])) out.all.push_back({o, o});
+  }
+  return out;
+}
+
+std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
+                                   std::span<const ObjectMeeting> meetings) {
+  std::vector<Box> out(blocks.objects.size(), Box::empty());
+  for (const ObjectMeeting& meeting : meetings) {
+    const Box common = intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
+    out[meeting.a].add(common);
+    out[meeting.b].add(common);
+  }
+  return out;
+}
+
+std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks) {
+  std::uint64_t out = 0;
+  for (const std::uint32_t block : blocks_in(pairs, blocks.ranges.size()))
+    out += blocks.ranges[block].count;
+  return out;
+}
+
+namespace {
+
+// Whether a stretched object can meet another one or itself.
+bool is_uneven(const TriangleBlocks& blocks, const ObjectMeetings& meetings) {
+  if (blocks.stretched.empty()) return false;
+  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectMeeting& meeting) {
+           return blocks.is_stretched(meeting.a) || blocks.is_stretched(meeting.b);
+         });
+}
+
+// A part of a meeting: some blocks of the object a, and what they meet.
+struct MeetingPart {
+  std::uint32_t meeting;
+  std::uint32_t from, to;
+  std::vector<BlockPair> pairs = {};
+};
+constexpr std::uint32_t kBlocksOfPart = 256;
+
+// The most pairs of blocks of a meeting: kPairsPerBlock for each block, whether or not it overlaps
+// any.
+std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectMeeting& meeting) {
+  const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
+  return kPairsPerBlock * (blocks.count(meeting.a) + b);
+}
+
+std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
+                                  const std::vector<ObjectMeeting>& meetings) {
+  std::vector<MeetingPart> parts;
+  for (std::uint32_t k = 0; k < meetings.size(); ++k) {
+    const std::uint32_t a = meetings[k].a, end = blocks.first[a] + blocks.count(a);
+    for (std::uint32_t from = blocks.first[a]; from < end; from += kBlocksOfPart) {
+      parts.push_back({.meeting = k, .from = from, .to = std::min(from + kBlocksOfPart, end)});
+    }
+  }
+  return parts;
+}
+
+// Counts different blocks.
+class BlockCounter {
+ public:
+  explicit BlockCounter(std::size_t blocks) : seen_(blocks, 0) {}
+  void start() { ++round_, count_ = 0; }
+  void add(std::uint32_t block) {
+    count_ += seen_[block] != round_;
+    seen_[block] = round_;
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  std::vector<std::uint32_t> seen_;
+  std::uint32_t round_ = 0;
+  std::size_t count_ = 0;
+};
+
+// Appends at most `count` of the pairs, evenly.
+void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
+                   std::vector<BlockPair>& to) {
+  count = std::min(count, from.size());
+  for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
+}
+
+// Puts the pairs of each meeting where they belong. Returns false if too many of a meeting overlap.
+bool sort_in(const std::vector<ObjectMeeting>& all, std::span<MeetingPart> parts,
+             BlockMeetings& out) {
+  BlockCounter counter(out.of->ranges.size());
+  std::size_t between = 0, inside = 0;
+  for (const MeetingPart& part : parts)
+    (all[part.meeting].a == all[part.meeting].b ? inside : between) += part.pairs.size();
+  out.pairs.between.reserve(between);
+  out.pairs.inside.reserve(inside);
+  for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
+    const std::uint32_t own = parts[begin].meeting;
+    const ObjectMeeting& meeting = all[own];
+    std::size_t pairs = 0;
+    counter.start();
+    for (; end < parts.size() && parts[end].meeting == own; ++end) {
+      pairs += parts[end].pairs.size();
+      for (const BlockPair& pair : parts[end].pairs) counter.add(pair.a), counter.add(pair.b);
+    }
+    if (pairs > kPairsPerBlock * counter.count()) return false;
+    std::vector<BlockPair>& to = meeting.a == meeting.b ? out.pairs.inside : out.pairs.between;
+    for (std::size_t k = begin; k < end; ++k) {
+      to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
+      std::vector<BlockPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
+    }
+    ++out.meetings;
+  }
+  out.triangles = triangles_in(out.pairs, *out.of);
+  out.overlaps = out.pairs.size();
+  return true;
+}
+
+// No more pairs of blocks of a whole scene are listed.
+std::size_t most_pairs(const TriangleBlocks& blocks) {
+  return kMostPairsPerBlock * blocks.ranges.size();
+}
+
+enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
+
+// Looks for the pairs of blocks of each part, and gives a meeting with more than most_pairs() up,
+// or everything if there are more of the whole scene. ObjectMeetings that are given up count as one
+// pair more than they may have, so that the answer does not depend on threads. find(meeting, part,
+// most): appends pairs to the part, as pair_blocks().
+template <class Find>
+Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectMeeting>& meetings,
+                  unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
+  std::vector<std::atomic<std::size_t>> found(meetings.size());
+  std::atomic<std::size_t> sum = 0;
+  const std::size_t most_of_all = most_pairs(blocks);
+  const std::size_t chunks = chunks_for(parts.size(), 1, threads);
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> given_up = false;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    MeetingPart scratch;  // so that a part has room for its own pairs only
+    for (std::size_t k = next++; k < parts.size(); k = next++) {
+      MeetingPart& part = parts[k];
+      const ObjectMeeting& meeting = meetings[part.meeting];
+      std::atomic<std::size_t>& of_meeting = found[part.meeting];
+      const std::size_t most = std::min(most_pairs(blocks, meeting), most_of_all);
+      if (sum > most_of_all) return;
+      if (of_meeting > most) continue;
+      scratch.from = part.from;
+      scratch.to = part.to;
+      scratch.pairs.clear();
+      find(meeting, scratch, most);
+      const std::size_t pairs = scratch.pairs.size(), before = of_meeting.fetch_add(pairs);
+      sum += std::min(before + pairs, most + 1) - std::min(before, most + 1);
+      if (before + pairs <= most) {
+        part.pairs = scratch.pairs;
+      } else {
+        given_up = true;
+      }
+    }
+  });
+  if (sum > most_of_all) return Found::too_many;
+  return given_up ? Found::too_many_of_a_meeting : Found::all;
+}
+
+// Oriented boxes decide if, in a sample, they leave at most so many pairs for each triangle.
+constexpr std::size_t kOrientedPerTriangle = 64;
+
+// Whether more than `often` pairs of boxes of triangles overlap for each triangle, by a sample of
+// the pairs of blocks.
+bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
+                    std::size_t often) {
+  constexpr std::size_t kSampled = 64;  // pairs of blocks
+  const std::size_t all = meetings.pairs.size();
+  if (all == 0) return false;
+  BlockPairs some;
+  for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
+    const std::vector<BlockPair>& pairs = meetings.pairs.*list;
+    append_evenly(pairs, (kSampled * pairs.size() + all - 1) / all, some.*list);
+  }
+  const std::uint64_t found =
+      give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
+  const double each = static_cast<double>(found) / static_cast<double>(some.size());
+  return each * static_cast<double>(all) > static_cast<double>(often * meetings.triangles);
+}
+
+// All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
+std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
+                                               const std::vector<ObjectMeeting>& meetings,
+                                               std::span<const Box> regions, double clearance,
+                                               unsigned threads) {
+  BlockMeetings out;
+  out.oriented = make_oriented(scene, clearance, regions, threads);
+  if (!out.oriented) return std::nullopt;
+  out.of = {out.oriented, &out.oriented->blocks};
+  std::vector<MeetingPart> parts = parts_of(*out.of, meetings);
+  const Found found = find_blocks(
+      *out.of, meetings, threads, parts,
+      [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
+        pair_oriented(*out.oriented, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      });
+  if (found != Found::all || !sort_in(meetings, parts, out) ||
+      overlaps_often(scene, out, clearance, kOrientedPerTriangle)) {
+    return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
+                                                const ObjectMeetings& meetings) {
+  const bool uneven = is_uneven(blocks, meetings);
+  if (!uneven && !meetings.crowded) return std::nullopt;
+  return BlockDecision{.blocks = {},
+                       .tree = uneven ? Reason::join_uneven : Reason::join_crowded,
+                       .pairs = meetings.pairs,
+                       .self = meetings.self};
+}
+
+BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings,
+                              const std::vector<Box>& regions, double clearance, unsigned threads,
+                              std::shared_ptr<const TriangleBlocks> of) {
+  const TriangleBlocks& blocks = *of;
+  BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};
+  out.blocks.of = std::move(of);
+  const BlockTrees trees(blocks, regions);
+  std::vector<MeetingPart> parts = parts_of(blocks, meetings.all);
+  const Found found =
+      find_blocks(blocks, meetings.all, threads, parts,
+                  [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
+                    pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+                  });
+  if (found == Found::all && sort_in(meetings.all, parts, out.blocks) &&
+      !overlaps_often(scene, out.blocks, clearance, kOverlapsPerTriangle)) {
+    return out;
+  }
+  out.blocks = {};
+  if (found == Found::too_many) {
+    out.tree = Reason::join_many_blocks;
+    out.tree_n = most_pairs(blocks);
+  } else if (auto oriented = oriented_meetings(scene, meetings.all, regions, clearance, threads)) {
+    out.blocks = *std::move(oriented);
+  } else {
+    out.tree = Reason::join_often;
+  }
+  return out;
+}
+
+BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads,
+                               std::span<const ObjectPair> ignored) {
+  const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads));
+  const ObjectMeetings meetings = find_meetings(scene, *blocks, ignored);
+  if (auto decision = decide_by_meetings(*blocks, meetings)) return *std::move(decision);
+  const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
+  gather_scattered(scene, clearance, regions, threads, *blocks);
+  return decide_by_pairs(scene, meetings, regions, clearance, threads, blocks);
+}
+
+std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
+                                                        std::span<const ObjectPair> ignored,
+                                                        bool oriented, bool neighbours,
+                                                        unsigned threads) {
+  const BlockDecision decision = decide_by_blocks(scene, 0, threads, ignored);
+  if (decision.tree != Reason::none || (decision.blocks.oriented && !oriented)) return std::nullopt;
+  return pairs_of_blocks(scene, decision.blocks, 0, neighbours, threads);
+}
+
+}  // namespace farcull

@@ -1,0 +1,91 @@
+// Which objects of a scene can meet, and whether boxes of blocks of their triangles find the pairs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/stage.h"
+#include "core/boxes/join.h"
+#include "core/boxes/triangle_blocks.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Two objects whose boxes, grown by half the clearance, overlap, or one that is tested against
+/// itself (a == b). a has no more blocks than b.
+struct ObjectMeeting {
+  std::uint32_t a, b;
+};
+
+/// All meetings of a scene.
+struct ObjectMeetings {
+  std::vector<ObjectMeeting> all;
+  std::uint64_t pairs = 0;  // of two objects
+  std::uint64_t self = 0;   // of an object with itself
+  bool crowded = false;     // there are more pairs of objects than 8 for each block. They are not
+                            // listed, since that takes more memory than the scene: `all` is empty
+};
+/// ignored: objects that are not tested against each other, as in_order() gives them.
+ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
+                             std::span<const ObjectPair> ignored);
+
+/// Per object the box in which it can meet another one or itself; empty if it cannot.
+std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
+                                   std::span<const ObjectMeeting> meetings);
+
+/// Boxes of blocks decide if at most so many pairs of them overlap for each block that overlaps
+/// any, in each meeting.
+constexpr std::size_t kPairsPerBlock = 32;
+/// Oriented boxes of blocks are tried if, in a sample, the boxes of more pairs of triangles overlap
+/// than this for each triangle, neighbours apart: slivers that lie askew have such boxes.
+constexpr std::size_t kOverlapsPerTriangle = 16;
+/// If boxes of more pairs of blocks overlap than this for each block of the scene, oriented boxes
+/// are not tried.
+constexpr std::size_t kMostPairsPerBlock = 1024;
+
+/// How the pairs of a scene are found: by boxes of blocks, or by a tree of the boxes of all
+/// triangles.
+struct BlockDecision {
+  BlockMeetings blocks;               // empty if nothing can meet, or if a tree decides
+  Reason tree = Reason::none;         // why a tree decides; none: blocks decide
+  std::uint64_t tree_n = 0;           // the number that the reason speaks of
+  std::uint64_t pairs = 0, self = 0;  // as ObjectMeetings has them
+};
+
+/// Compares the boxes of the blocks of objects that meet, and decides by how often these overlap.
+/// Blocks along the axes decide where few of them overlap, oriented ones where a sample says that
+/// few overlap so, and a tree decides all else: also where there are too many meetings to list, or
+/// an object is stretched (core/boxes/triangle_blocks.h). Whatever decides finds every pair whose
+/// triangles are at most the clearance apart. threads: 0 for as many as there are cores; changes no
+/// answer. ignored: as find_meetings().
+BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
+                               std::span<const ObjectPair> ignored = {});
+
+/// As above, where the blocks and meetings are known. Null: the decision depends on the pairs of
+/// blocks.
+std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
+                                                const ObjectMeetings& meetings);
+/// Likewise, where the blocks have their boxes or lanes, and decide_by_meetings() says nothing.
+/// regions: where its objects meet.
+BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings,
+                              const std::vector<Box>& regions, double clearance, unsigned threads,
+                              std::shared_ptr<const TriangleBlocks> blocks);
+
+/// Triangles in all blocks of some pairs.
+std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
+
+/// All pairs of triangles whose boxes overlap, or some of them by oriented boxes, sorted, for what
+/// is drawn afterwards. Null if a tree would decide, or if oriented boxes would and may not.
+/// ignored, threads: as decide_by_blocks(). neighbours: false leaves out pairs of one object that
+/// share a vertex index.
+std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
+                                                        std::span<const ObjectPair> ignored,
+                                                        bool oriented, bool neighbours,
+                                                        unsigned threads);
+
+}  // namespace farcull

@@ -1,0 +1,162 @@
+// Blocks give the pairs of triangles whose boxes overlap, or a tree of all boxes does.
+#include "core/boxes/search.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/boxes/join.h"
+#include "core/boxes/oriented.h"
+
+namespace farcull {
+namespace {
+
+// Whether results of the previous frame are stored and can be reused. If not, the memory is made
+// ready to keep this one.
+bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
+  const std::optional<std::uint64_t> last =
+      std::exchange(memory.frame, {});  // until this frame is found
+  if (last && !settings.full && memory.moved.follows(*last) &&
+      memory.clearance == settings.clearance && memory.neighbours == settings.neighbours &&
+      memory.ignored == settings.ignored && (!memory.oriented || !memory.moved.any()) &&
+      mostly_unmoved(memory.moved, memory.pairs))
+    return true;
+  memory.clearance = settings.clearance;
+  memory.neighbours = settings.neighbours;
+  memory.ignored = settings.ignored;
+  memory.blocks.reset();
+  return false;
+}
+
+// The words for pairs that a stage of boxes leaves out.
+std::string apart(const BoxesSettings& settings) {
+  return settings.ignored.empty() ? "" : "ignored ones";
+}
+
+Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
+  const BlockDecision& decision = plan.decision;
+  const bool full = plan.settings.full;
+  return {.kind = StageKind::boxes,
+          .ran = true,
+          .reason = full                                    ? Reason::full
+                    : decision.tree == Reason::join_crowded ? Reason::crowded
+                                                            : Reason::meetings,
+          .detail = full ? "" : apart(plan.settings),
+          .n = full ? 0 : decision.pairs,
+          .m = full ? 0 : decision.self,
+          .ms = ms,
+          .in = scene.triangles.size(),
+          .out = plan.by_tree() ? scene.triangles.size() : decision.blocks.triangles,
+          .unit = Unit::triangles};
+}
+
+// Keeps what blocks found for the next frame. What a tree found is not kept.
+void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, FrameMemory& memory) {
+  const BlockDecision& decision = plan.decision;
+  memory.frame = plan.by_tree() ? std::nullopt : std::optional(memory.moved.frame());
+  // While nothing moves the plan has no blocks, and the pairs are those of the frame before.
+  if (decision.blocks.of) memory.oriented = decision.blocks.oriented != nullptr;
+  memory.pairs = plan.by_tree() ? std::vector<TrianglePair>() : found;
+  memory.overlaps = decision.blocks.overlaps;
+  memory.meetings = decision.blocks.meetings;
+  memory.triangles = decision.blocks.triangles;
+  memory.object_pairs = decision.pairs;
+  memory.self = decision.self;
+}
+
+}  // namespace
+
+BoxesPlan plan_boxes(const Scene& scene, const BoxesSettings& settings, unsigned threads,
+                     FrameMemory* memory) {
+  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
+    throw std::logic_error("plan_boxes: the clearance is negative or not finite");
+  }
+  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31) {
+    throw Error(scene.name, "has 2^31 triangles and objects, or more", "split it into scenes");
+  }
+  const Stopwatch watch;
+  BoxesPlan plan;
+  plan.settings = settings;
+  plan.threads = threads;
+  plan.remembers = memory != nullptr;
+  const bool known = memory && knows_last_frame(settings, *memory);
+  if (settings.full) {
+    plan.decision.tree = Reason::join_all;
+  } else if (known) {
+    plan.decision = decide_next_frame(scene, threads, *memory);
+  } else {
+    plan.decision = decide_by_blocks(scene, settings.clearance, threads, settings.ignored);
+  }
+  plan.trace.push_back(stage_of_objects(scene, plan, watch.ms()));
+  return plan;
+}
+
+Stage planned_stage(const BoxesPlan& plan) {
+  const BlockDecision& decision = plan.decision;
+  if (plan.by_tree()) {
+    return {.kind = StageKind::join,
+            .ran = true,
+            .reason = decision.tree,
+            .n = decision.tree_n,
+            .unit = Unit::pairs};
+  }
+  if (plan.nothing_can_meet()) {
+    return {.kind = StageKind::blocks,
+            .reason = Reason::no_boxes_overlap,
+            .detail = apart(plan.settings),
+            .unit = Unit::pairs};
+  }
+  const std::size_t compared = decision.blocks.pairs.size();
+  return {.kind = StageKind::blocks,
+          .ran = true,
+          .reason = decision.blocks.oriented ? Reason::oriented_pairs : Reason::block_pairs,
+          .detail = compared < decision.blocks.overlaps ? std::to_string(compared) : "",
+          .n = decision.blocks.overlaps,
+          .m = decision.blocks.meetings,
+          .in = decision.blocks.triangles,
+          .unit = Unit::pairs};
+}
+
+BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* memory,
+                       const Progress& progress, const TakePairs& take) {
+  const Stopwatch watch;
+  const auto& [clearance, full, neighbours, lists, ignored] = plan.settings;
+  BoxesResult out;
+  out.stage = planned_stage(plan);
+  if (progress) progress(plan.by_tree() ? "joining boxes" : "comparing boxes of blocks");
+  if (plan.by_tree()) {
+    OrderedPairs tree(scene, clearance, ignored, neighbours, plan.threads);
+    out.given = static_cast<bool>(take);
+    if (out.given) {
+      out.count = tree.give(take);
+    } else {
+      out.candidates = tree.all();
+    }
+    out.stage.m = tree.compared();
+    out.stage.in = scene.triangles.size();
+  } else if (!plan.nothing_can_meet()) {
+    const BlockMeetings& blocks = plan.decision.blocks;
+    out.given = take && !lists && !plan.remembers;
+    if (out.given) {
+      out.count = give_pairs_of_blocks(scene, blocks, blocks.pairs, clearance, neighbours,
+                                       plan.threads, take);
+    } else {
+      out.candidates = pairs_of_blocks(scene, blocks, clearance, neighbours, plan.threads);
+    }
+  }
+  if (!out.given) out.count = out.candidates.size();
+  if (plan.remembers) remember(plan, out.candidates, *memory);
+  out.stage.ms = watch.ms();
+  out.stage.out = out.count;
+  return out;
+}
+
+std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const BoxesSettings& settings,
+                                         unsigned threads) {
+  return find_boxes(scene, plan_boxes(scene, settings, threads)).candidates;
+}
+
+}  // namespace farcull
