@@ -190,8 +190,6 @@ std::string reason_of(const Stage& stage) {
     case Reason::chosen:
       return stage.detail + (stage.n > 0 ? ": " + number(stage.n) + " x " + number(stage.m) + " px"
                                          : std::string());
-    case Reason::tests_instead:
-      return "exact tests on the cores of a CPU take less time than drawing there";
     case Reason::few_candidates:
       return "exact tests of " + counted(stage.n, "candidate", "candidates") +
              " are cheaper than a further view";

@@ -83,7 +83,6 @@ enum class Reason : std::uint8_t {
   views_chosen,         // by the scene
   views_given,          // by the caller
   chosen,               // the view is looked at, for `detail`, n x m px
-  tests_instead,        // on the cores of a CPU exact tests take less time than drawing
   few_candidates,       // exact tests of n candidates are cheaper than a further view
   enough_views,         // as many as a run looks at
   given_up,             // the view removes no candidate: it is more work than n pairs of intervals

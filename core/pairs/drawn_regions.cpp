@@ -9,11 +9,9 @@ namespace farcull {
 
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool oriented, bool neighbours,
-                                                        unsigned threads) {
+                                                        bool neighbours, unsigned threads) {
   const PairParts parts = split_meetings(scene, 0, threads, false, ignored);
-  if (parts.join != Reason::none || !parts.rest.triangles.empty() ||
-      (parts.blocks.oriented && !oriented)) {
+  if (parts.join != Reason::none || !parts.rest.triangles.empty() || parts.blocks.oriented) {
     return std::nullopt;
   }
   return pairs_of_blocks(scene, parts.blocks, 0, neighbours, threads);

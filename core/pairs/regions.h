@@ -95,19 +95,17 @@ constexpr std::size_t kOverlapsPerTriangle = 16;
 /// (core/boxes/triangle_blocks.h), neither blocks nor views decide: PairParts::join.
 constexpr std::size_t kMostPairsPerBlock = 1024;
 
-// Boxes before pixels: FAR draws no triangle whose box meets no box of a triangle that it can
-// collide with (docs/reliability.md, "Boxes before pixels").
+// Boxes before pixels: with a broad phase of triangles FAR draws no triangle whose box meets no box
+// of a triangle that it can collide with (docs/reliability.md, "Boxes before pixels").
 
 /// All pairs a < b of triangles whose boxes overlap: of different objects that are not ignored, and
 /// of one object that is tested against itself. Sorted, each once. Empty where boxes of blocks do
 /// not decide the whole scene, because too many of them overlap or triangles lie too unevenly.
-/// oriented: where oriented boxes of blocks do, gives the pairs whose oriented boxes overlap as
-/// well, which are all that collide; else these are empty too. neighbours: false leaves out pairs
-/// of one object that share a vertex index. threads: 0 for as many as there are cores.
+/// neighbours: false leaves out pairs of one object that share a vertex index. threads: 0 for as
+/// many as there are cores.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool oriented, bool neighbours,
-                                                        unsigned threads);
+                                                        bool neighbours, unsigned threads);
 
 /// The regions that drawing needs to decide about these pairs: their triangles, and the places in
 /// which boxes of two overlap, one for each object that is the first one of a pair. Every common

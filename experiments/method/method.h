@@ -74,8 +74,8 @@ inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool chooses_views(Method method) { return traits(method).chooses_views; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
-/// Whether boxes of objects or of triangles decide what the method draws.
-inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
+/// Whether a broad phase between objects decides what the method draws.
+inline bool has_broad_phase(Method method) { return draws(method) && !tests_self_alone(method); }
 /// Whether the method looks along views, on a canvas or without one.
 inline bool looks(Method method) { return draws(method) || chooses_views(method); }
 inline bool culls(Method method) { return traits(method).culls; }

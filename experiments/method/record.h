@@ -1,6 +1,7 @@
 // The record of a run: what was asked and planned, what each stage found, and how long each took.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -64,6 +65,8 @@ struct Candidates {
   /// The views in `by`; empty if it holds another kind.
   const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }
   const std::vector<PairView>& pair_views() const { return all_of<PairView>(); }
+  /// Whether a method that draws drew. Else boxes left nothing, or pixels could resolve no view.
+  bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
     return swept ? std::optional(swept->triangles) : std::nullopt;

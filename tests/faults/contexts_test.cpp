@@ -216,7 +216,6 @@ TEST(SessionFaults, ASessionGoesOnAfterAFailure) {
     RunOptions options;
     options.method = method;
     options.resolution = 32;
-    if (takes_boxes(method)) options.boxes = BoxLevel::triangles;  // so that something is drawn
     options.verify = false;
     Session session("software");
     const auto right = run(scene, options, session).collisions.pairs;

@@ -133,7 +133,7 @@ bad {software0} with OpenGL 3.3 | EGL: .*older than 4\.3
   | ^device     cpu, lanes of .*, 24 depth bits: --device native$
 0 occlusion on native | run {native} --device native --query occlusion --json - | ^  "query": null,$
 0 occlusion on GL | run {native} --device software --query occlusion --json - | ^  "query": "occlusion",$
-""", native='two-spheres --method far --boxes triangles --resolution 64', cpu=['native', 'cpu'],
+""", native='two-spheres --method far --resolution 64', cpu=['native', 'cpu'],
      options=['--device native', '--device native --query occlusion', '--device native --depth-format 24'],
      gl=['run two-spheres --method far --device gl --json old.json', 'doctor',
          'verify two-spheres --method far --device gl --json old.json', 'compare two-spheres --device gl --json old.json'],

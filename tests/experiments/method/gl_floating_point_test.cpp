@@ -19,12 +19,10 @@ using lab::environments;
 TEST(GlFloatingPoint, EveryMethodThatPromises) {
   RunOptions far{.method = Method::far};
   far.resolution = 64;
-  far.boxes = BoxLevel::triangles;  // so that something is drawn
   std::vector<RunOptions> ways(4, far);
   ways[1].query = QueryMode::occlusion;
   ways[2].offset = "exact";
   ways[3].method = Method::far_pairs;
-  ways[3].boxes.reset();
   ways[3].device = "software";
   for (const Environment& environment : environments()) {
     std::vector<Record> records;
