@@ -245,7 +245,7 @@ std::string accounting_lines(const Scene& scene, const Record& record) {
 
 // Elements and queries of the methods that draw.
 std::string work_line(const Record& record) {
-  if (!draws(record.options.method)) return "";
+  if (!record.found.drew()) return "";
   const Stage sum = work_of(record.trace);
   return fmt::format("drawn      {}, {}{}\n", counted(sum.draws, "element", "elements"),
                      counted(sum.queries, "query", "queries"),

@@ -242,7 +242,7 @@ $ script -qec "env NO_COLOR=1 TERM=xterm '$farcull' verify two-spheres" /dev/nul
 $ grep -q '^verified: ' shown
 0 a pipe | TERM=xterm verify two-spheres | {verified}
 0 negative direction | run {spheres} --views -y,x
-0 compare | compare two-spheres --device software --resolutions 32,64 --json compare.json | ^cullide +- +64[ ]
+0 compare | compare two-spheres --device software --resolutions 32,64 --json compare.json | ^cullide +- +64[ ] | ^far +obb +64[ ]
   | ^exact +-[ ] | @compare.json ^  "runs": \[
 # The JSON has every key, stands alone on stdout, and is JSON: farcull's own reader of scene files refuses it for its
 # keys and not, with a line, for its syntax.
