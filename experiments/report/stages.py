@@ -182,8 +182,7 @@ def main():
         "## Directions", "",
         f"What one view of the form `triangles` leaves at best, of {DIRECTIONS} directions (the axes, others at random) at "
         f"{' and '.join(map(str, SIDES))} px, on the scenes whose exact tests take longest. *Pairs* are those whose boxes "
-        "overlap. A triangle is culled only if it lies in front of everything in all of its pixels; `far-pairs`, which "
-        "compares two depth intervals at a time, takes most of these pairs away.", "",
+        "overlap. A triangle is culled only if it lies in front of everything in all of its pixels.", "",
         "| scene | triangles | pairs | triangles left | pairs left | best view |", "|" + "---|" * 6,
         *(looked_along(program, scene) for scene in LOOKED_AT if scene in results), "",
         "## Beside other libraries", "",
