@@ -54,32 +54,32 @@ device=(${DEVICE:+--device "$DEVICE"})
 
 # mesh_scene SCENE: FAR on a scene and its copies.
 mesh_scene() {
-  local scene copy resolutions methods boxes
+  local scene copy resolutions methods phase
   for copy in "" @far @tiny @huge @ground; do
     scene=$1$copy resolutions=128,1024 methods=far,exact
     if [[ -z $copy ]]; then resolutions=64,128,256,512,1024,2048 methods=far,cullide,exact; fi
-    for boxes in objects triangles; do
+    for phase in objects triangles; do
       # Few triangles are drawn after boxes of triangles, so the same pairs may be at risk in finer pixels.
-      if [[ $boxes == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
+      if [[ $phase == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
       build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
-        --boxes $boxes "${device[@]}" --json "$out/$scene.$boxes.json" || failed+=("$scene")
-      risk_of "$scene" $boxes "$resolutions"
+        --broad-phase $phase "${device[@]}" --json "$out/$scene.$phase.json" || failed+=("$scene")
+      risk_of "$scene" $phase "$resolutions"
     done
   done
 }
 
-# risk_of SCENE BOXES RESOLUTIONS: prints how many pairs are at risk. Where there are none, "0 missed" does not show that the radius
+# risk_of SCENE PHASE RESOLUTIONS: prints how many pairs are at risk. Where there are none, "0 missed" does not show that the radius
 # is large enough.
 risk_of() {
   local risk='' offset resolution lost
   for offset in obb exact; do
     for resolution in ${3//,/ }; do
-      lost=$(build/farcull run "$1" --method far --offset $offset --resolution "$resolution" --radius 0.9 --boxes "$2" \
+      lost=$(build/farcull run "$1" --method far --offset $offset --resolution "$resolution" --radius 0.9 --broad-phase "$2" \
         "${device[@]}" --json - | sed -nE 's/^ *"false_negatives": ([0-9]+),?$/\1/p') || true
       risk+=" $offset $resolution px ${lost:-?},"
     done
   done
-  printf 'at risk at 0.9 of the radius, boxes of %s:%s\n\n' "$2" "${risk%,}"
+  printf 'at risk at 0.9 of the radius, broad phase of %s:%s\n\n' "$2" "${risk%,}"
 }
 
 # boxes_run SCENE [OPTIONS]

@@ -171,8 +171,6 @@ std::string reason_of(const Stage& stage) {
       return triangles(stage.n) + ", at most " + m;
     case Reason::clusters_flags:
       return "flags: a question costs nothing";
-    case Reason::tests_instead:
-      return "exact tests on the cores of a CPU take less time than drawing there";
     case Reason::sweep:
       if (stage.detail.empty()) return "boxes of objects, then of their triangles";
       return "boxes of " + objects(stage.n) + " overlap, which have " + triangles(stage.m) + "; " +

@@ -75,7 +75,6 @@ enum class Reason : std::uint8_t {
   clusters_large,       // occlusion queries on many triangles
   clusters_small,       // occlusion queries on n triangles or fewer
   clusters_flags,       // flags are read back at once
-  tests_instead,        // on the cores of a CPU exact tests take less time than drawing
   sweep,                // boxes of n objects overlap, which have m triangles; `detail`
   not_cleared,          // pairs that boxes found, but for those that drawing cleared
   join_kept,            // boxes of what is kept

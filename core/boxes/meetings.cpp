@@ -292,10 +292,9 @@ BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned th
 
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool oriented, bool neighbours,
-                                                        unsigned threads) {
+                                                        bool neighbours, unsigned threads) {
   const BlockDecision decision = decide_by_blocks(scene, 0, threads, ignored);
-  if (decision.tree != Reason::none || (decision.blocks.oriented && !oriented)) return std::nullopt;
+  if (decision.tree != Reason::none || decision.blocks.oriented) return std::nullopt;
   return pairs_of_blocks(scene, decision.blocks, 0, neighbours, threads);
 }
 

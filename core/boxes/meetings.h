@@ -79,13 +79,11 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings
 /// Triangles in all blocks of some pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
-/// All pairs of triangles whose boxes overlap, or some of them by oriented boxes, sorted, for what
-/// is drawn afterwards. Null if a tree would decide, or if oriented boxes would and may not.
-/// ignored, threads: as decide_by_blocks(). neighbours: false leaves out pairs of one object that
-/// share a vertex index.
+/// All pairs of triangles whose boxes overlap, sorted, for what is drawn afterwards. Null if a tree
+/// or oriented boxes would decide. ignored, threads: as decide_by_blocks(). neighbours: false
+/// leaves out pairs of one object that share a vertex index.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
-                                                        bool oriented, bool neighbours,
-                                                        unsigned threads);
+                                                        bool neighbours, unsigned threads);
 
 }  // namespace farcull

@@ -267,6 +267,9 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> words = app.remaining(true);
   if (!words.empty()) {
     const std::string& word = words.front();
+    if (word == "--boxes" || word.starts_with("--boxes="))
+      return Error("--boxes", "is now called --broad-phase",
+                   "give that, with objects or triangles");
     if (word.starts_with("-")) return Error(word, name + " has no such option", help);
     if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
     std::string known;

@@ -449,7 +449,8 @@ void make_self(Scene& scene) {
 }
 
 std::string missed(const Record& record) {
-  return fmt::format("{} culled pairs that collide: {}", describe(record.options),
+  return fmt::format("{} culled pairs that collide: {}",
+                     describe(record.options, not_drawn_text(record)),
                      grouped(record.verification->false_negatives));
 }
 

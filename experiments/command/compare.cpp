@@ -34,8 +34,8 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
                 "for far, separated by commas: obb, exact;\ndefault obb"},
                {"--repeat", &arguments_.repeat, "N",
                 "runs of each, the one with the median time is shown;\ndefault 1"}} +
-          options_.rows({"views", "rounds", "clear", "level", "boxes", "conservative", "device",
-                         "self", "clearance"}) +
+          options_.rows({"views", "rounds", "clear", "level", "broad_phase", "conservative",
+                         "device", "self", "clearance"}) +
           Rows{{"--json", &outputs_.json, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull compare two-tori\n"

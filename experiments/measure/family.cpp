@@ -127,7 +127,6 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod&
                                    Session& session, const Progress& progress) {
   RunOptions options = arguments.options;
   options.method = contestant.method;
-  if (takes_boxes(options.method)) options.boxes = BoxLevel::objects;  // the published forms
   options.offset = fattens(contestant.method) ? contestant.offset : "obb";
   if (!draws(contestant.method)) {
     options.resolution = 0;

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
+#include "core/view/view.h"
 #include "experiments/method/asked.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
@@ -23,22 +23,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The keys of a run's record that differ between frames; the others hold for all frames.
-constexpr std::array kOfFrame = {"views",
-                                 "stages",
-                                 "pcs",
-                                 "object_triangles",
-                                 "candidate_pairs",
-                                 "colliding_pairs",
-                                 "neighbour_pairs",
-                                 "all_colliding_pairs",
-                                 "neighbours",
-                                 "contacts",
-                                 "ignored",
-                                 "decided_pairs",
-                                 "complete",
-                                 "verification",
-                                 "time_ms"};
+// The keys of a run's record that differ between frames; the others hold for all frames. Options of
+// drawing are among them, since boxes may leave nothing to draw in a frame.
+std::vector<std::string> keys_of_frame() {
+  std::vector<std::string> keys = split_list(
+      "views,stages,pcs,object_triangles,candidate_pairs,colliding_pairs,neighbour_pairs,"
+      "all_colliding_pairs,neighbours,contacts,ignored,decided_pairs,complete,verification,"
+      "time_ms");
+  for (const Option& option : run_options()) {
+    if (option.of_drawing) keys.emplace_back(option.name);
+  }
+  return keys;
+}
 
 Json rate_json(double ms) { return json_of(per_second(ms)); }
 
@@ -51,7 +47,7 @@ Json frame_json(const Scene& scene, const Record& record, long frame, double rea
               {"triangles", scene.triangles.size()},
               {"folded_polygons", scene.folded.size()},
               {"topology_changed", source.topology_changed()}};
-  for (const char* key : kOfFrame) out[key] = run[key];
+  for (const std::string& key : keys_of_frame()) out[key] = run[key];
   out["time_ms"]["read"] = read_ms;
   out["fps"] = rate_json(record.ms.cull + record.ms.exact);
   const Stage work = work_of(record.trace);
@@ -321,7 +317,7 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     }
     if (frame == question.range.first) {
       out.json = to_json(scene, record);
-      for (const char* key : kOfFrame) out.json.erase(key);
+      for (const std::string& key : keys_of_frame()) out.json.erase(key);
       rows.insert(0, run_heading(scene, record) + "\n");
       if (question.pairs) csv.insert(0, "frame," + pairs_header(scene, question.columns));
     }
@@ -337,9 +333,9 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
       out.pairs_csv += csv;
     }
     if (out.broken.empty() && broken(record, question.strict)) {
-      out.broken =
-          fmt::format("frame {}: {} culled pairs that collide: {}", frame, describe(record.options),
-                      grouped(record.verification->false_negatives));
+      out.broken = fmt::format("frame {}: {} culled pairs that collide: {}", frame,
+                               describe(record.options, not_drawn_text(record)),
+                               grouped(record.verification->false_negatives));
     }
   };
   for_each_frame(question.range, sink ? "what they gave is written" : "nothing was written",

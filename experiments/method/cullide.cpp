@@ -2,7 +2,6 @@
 // offset after the other, and the boxes of what is kept are joined.
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -69,13 +68,11 @@ Stage offset_stage(const Fattener& fattener) {
 }
 
 Stage join_stage(const DrawPlan& work) {
-  const bool draws = !work.fatteners.empty() || work.regions.triangles.empty();
   return {.kind = StageKind::join,
           .ran = true,
           .reason = work.pairs               ? Reason::not_cleared
                     : work.patches.count > 0 ? Reason::join_patches
-                    : draws                  ? Reason::join_kept
-                                             : Reason::join_all,
+                                             : Reason::join_kept,
           .unit = Unit::pairs};
 }
 
@@ -184,12 +181,6 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   plan.trace.back().ms = watch.ms();
 }
 
-// Whether exact tests take the place of drawing.
-bool tests_instead(const RunOptions& options) {
-  return boxes_of(options) == BoxLevel::enough && promises(options) && !options.objects_alone &&
-         (options.device.empty() || is_cpu(options.device));
-}
-
 // Boxes of triangles: all pairs whose boxes overlap. False: they do not decide here.
 bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
@@ -197,7 +188,7 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   Stage stage{.kind = StageKind::boxes, .unit = Unit::triangles};
   stage.in = stage.out = scene.triangles.size();
   std::optional<std::vector<TrianglePair>> pairs =
-      pairs_of_boxes(scene, options.ignored, tests_instead(options), options.neighbours, threads);
+      pairs_of_boxes(scene, options.ignored, options.neighbours, threads);
   if (!pairs) {
     stage.kind = StageKind::blocks;
     stage.reason = Reason::boxes_decide_little;
@@ -208,14 +199,6 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.ran = true;
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
-  work.regions.triangles = members_of(*pairs, scene.triangles.size());
-  if (tests_instead(options)) {
-    work.pairs = {.drawn = {}, .other = *std::move(pairs)};
-    stage.out = work.regions.triangles.size();
-    stage.ms = watch.ms();
-    plan.trace.push_back(stage);
-    return true;
-  }
   // Each object is one owner, until it is known what is drawn of those that collide with
   // themselves.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
@@ -240,20 +223,15 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   return true;
 }
 
-// The stage that says why nothing is drawn; without a reason: something is.
-Stage nothing_to_draw(const RunOptions& options, const DrawPlan& work) {
-  Stage stage{.kind = StageKind::draw, .unit = Unit::triangles};
-  const Regions& regions = work.regions;
-  if (regions.triangles.empty()) {
-    stage.reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
-                       ? Reason::nothing_to_look_at
-                   : work.pairs             ? Reason::no_box_pairs
-                   : regions.places.empty() ? Reason::no_boxes_overlap
-                                            : Reason::no_triangle_meets;
-  } else if (tests_instead(options)) {
-    stage.reason = Reason::tests_instead;
-  }
-  return stage;
+// The stage that says why there is nothing to draw. Precondition: no triangle takes part.
+Stage nothing_to_draw(const DrawPlan& work) {
+  return {.kind = StageKind::draw,
+          .reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
+                        ? Reason::nothing_to_look_at
+                    : work.pairs                  ? Reason::no_box_pairs
+                    : work.regions.places.empty() ? Reason::no_boxes_overlap
+                                                  : Reason::no_triangle_meets,
+          .unit = Unit::triangles};
 }
 
 }  // namespace
@@ -262,23 +240,16 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   const RunOptions& options = plan.options;
   DrawPlan work;
   work.self = tests_self_alone(options.method);
-  const bool objects = boxes_of(options) == BoxLevel::objects;
-  if (objects || !compare_boxes(scene, threads, plan, work)) {
-    if (tests_instead(options)) {  // nothing is drawn: places and patches are not needed
-      work.regions.triangles.resize(scene.triangles.size());
-      std::iota(work.regions.triangles.begin(), work.regions.triangles.end(), 0u);
-    } else {
-      find_places(scene, plan, work);
-    }
-  }
+  const bool objects = options.broad_phase == BroadPhase::objects;
+  if (objects || !compare_boxes(scene, threads, plan, work)) find_places(scene, plan, work);
   if (options.objects_alone && work.patches.cut) {
     throw Error("{level}", "an object that is tested against itself is asked in patches",
                 "leave {level} objects or the self-collision out");
   }
   work.settings = settings_of(options, work.regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
-  if (const Stage stage = nothing_to_draw(options, work); stage.reason != Reason::none) {
-    plan.trace.push_back(stage);
+  if (work.regions.triangles.empty()) {
+    plan.trace.push_back(nothing_to_draw(work));
   } else {
     work.fatteners = fatteners_of(options);
     CullSettings first = work.settings;
@@ -299,22 +270,20 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
 }
 
 Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& session,
-                           const Progress& progress, const TakePairs& take) {
+                           const Progress& progress, const TakePairs&) {
   const auto& work = std::get<DrawPlan>(plan.work);
   const Stopwatch watch;
   Candidates out;
   out.by = std::vector<ViewReport>();
   if (work.fatteners.empty()) {
-    out.device.note = reason_of(plan.trace.back()) + ": nothing to draw";
+    out.device.note = reason_of(plan.trace.back()) + ": nothing left to draw";
   } else {
     cull_by_offsets(scene, work, plan.options, session, progress, out);
   }
   const Stopwatch join;
   if (progress) progress("joining boxes");
-  const bool draws = !work.fatteners.empty();
-  const std::uint64_t left = work.pairs ? work.pairs->drawn.size() + work.pairs->other.size()
-                             : draws    ? out.triangles.size()
-                                        : work.regions.triangles.size();
+  const std::uint64_t left =
+      work.pairs ? work.pairs->drawn.size() + work.pairs->other.size() : out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
   if (work.pairs) {
     out.pairs = work.pairs->drawn;
@@ -327,19 +296,10 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
     add_members(scene, out);
-  } else if (draws) {
+  } else {
     out.pairs = box_join(boxes, join_owners(scene), out.triangles, SIZE_MAX, session.threads());
-  } else if (left > 0) {
-    // Of all triangles; who takes or lists the pairs leaves out the ignored ones, and counts them.
-    OrderedPairs pairs(scene, 0, {}, plan.options.neighbours, session.threads());
-    out.given = static_cast<bool>(take);
-    if (out.given) {
-      out.count = pairs.give(take);
-    } else {
-      out.pairs = pairs.all();
-    }
   }
-  if (!out.given) out.count = out.pairs.size();
+  out.count = out.pairs.size();
   Stage stage = join_stage(work);
   stage.ms = join.ms();
   stage.in = left;

@@ -72,8 +72,8 @@ std::string method_names(const std::function<bool(const Traits&)>& can = {});
 inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
-/// Whether boxes of objects or of triangles decide what the method draws.
-inline bool takes_boxes(Method method) { return draws(method) && !tests_self_alone(method); }
+/// Whether a broad phase between objects decides what the method draws.
+inline bool has_broad_phase(Method method) { return draws(method) && !tests_self_alone(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }
 inline bool takes_clearance(Method method) { return traits(method).takes_clearance; }

@@ -420,7 +420,8 @@ double centre_probability(double area, double width, double height, double radiu
 }
 
 std::string why_unpredicted(const RunOptions& options) {
-  if (!takes_boxes(options.method)) return "the method does not draw objects against each other";
+  if (!has_broad_phase(options.method))
+    return "the method does not draw objects against each other";
   if (promises(options)) return "the method misses nothing";
   if (options.conservative) return "conservative rasterization";
   if (options.objects_alone) return "objects are culled as a whole";

@@ -94,14 +94,11 @@ bool take_device(const std::string& text, RunOptions& options) {
   return is_device(text);
 }
 
-// The words of BoxLevel, in its order.
-constexpr const char* kBoxLevels[] = {"objects", "triangles", "enough"};
-
 // Values of Option::serves: the methods that have an option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
-bool drawing_levels(const Traits& t) { return takes_boxes(t.method); }
+bool drawing_levels(const Traits& t) { return has_broad_phase(t.method); }
 bool drawing_triangles(const Traits& t) { return t.draws && !t.fattens; }
 
 std::optional<std::string> only_if(bool unusual, std::string value) {
@@ -135,7 +132,8 @@ const Option kOptions[] = {
      .take = [](Given text, RunOptions& o) { return take_number_from(1, text, o.resolution); },
      .kind = "resolution",
      .remedy = "give a whole number of pixels from 1, such as 512",
-     .value = [](Run o) { return value_if(draws(o.method), resolution_of(o)); }},
+     .value = [](Run o) { return value_if(draws(o.method), resolution_of(o)); },
+     .of_drawing = true},
     {.name = "radius",
      .type = "RADIUS",
      .help = "of the ball that fattens a primitive, for far: budget,\n"
@@ -146,6 +144,7 @@ const Option kOptions[] = {
      .remedy =
          "give budget, published, or a factor of 0 to 100000 on the budget radius, such as 0.9",
      .value = [](Run o) { return value_if(fattens(o.method), radius_text(o.radius)); },
+     .of_drawing = true,
      .words = {"budget", "published"}},
     {.name = "offset",
      .type = "OFFSET",
@@ -153,6 +152,7 @@ const Option kOptions[] = {
      .serves = fattening,
      .take = [](Given text, RunOptions& o) { return o.offset = text, true; },  // see require_range
      .value = [](Run o) { return value_if(fattens(o.method), o.offset); },
+     .of_drawing = true,
      .words = kOffsets},
     {.name = "depth",
      .type = "fragment|fixed",
@@ -179,7 +179,8 @@ const Option kOptions[] = {
          [](Run o) {
            return text_if(draws(o.method),
                           depth_of(o) == DepthMode::fragment ? "fragment" : "fixed");
-         }},
+         },
+     .of_drawing = true},
     {.name = "depth_format",
      .type = "32f|24",
      .help = "of the depth buffer; default 32f",
@@ -194,7 +195,8 @@ const Option kOptions[] = {
      .value =
          [](Run o) {
            return text_if(draws(o.method), o.depth_format == DepthFormat::float32 ? "32f" : "24");
-         }},
+         },
+     .of_drawing = true},
     {.name = "query",
      .type = "flags|occlusion",
      .help = "how visibility is asked; default flags, but occlusion\n"
@@ -210,34 +212,28 @@ const Option kOptions[] = {
      .value =
          [](Run o) {
            return text_if(draws(o.method), query_of(o) == QueryMode::flags ? "flags" : "occlusion");
-         }},
-    {.name = "boxes",
-     .type = "objects|triangles|enough",
-     .help = "which boxes come before drawing. objects: a triangle\n"
-             "is drawn if its box meets that of another object, as\n"
-             "published; triangles: that of a triangle of one; enough:\n"
-             "the same, but on the cores of a CPU nothing is drawn,\n"
-             "since exact tests take less time; default enough for\n"
-             "far where it promises to miss nothing, else objects",
+         },
+     .of_drawing = true},
+    {.name = "broad_phase",
+     .type = "objects|triangles",
+     .help = "whose boxes are compared before drawing. objects: a\n"
+             "triangle is drawn if its box meets that of another\n"
+             "object, as published; triangles: that of a triangle of\n"
+             "one; default objects",
      .serves = drawing_levels,
      .take =
          [](Given text, RunOptions& o) {
-           const auto known = std::ranges::find(kBoxLevels, text);
-           if (known == std::end(kBoxLevels)) return false;
-           o.boxes = static_cast<BoxLevel>(known - std::begin(kBoxLevels));
-           return true;
+           return take_word(text, "objects", BroadPhase::objects, "triangles",
+                            BroadPhase::triangles, o.broad_phase);
          },
      .kind = "choice",
-     .remedy = "give objects, triangles or enough",
-     .unusual =
-         [](Run o) {
-           return only_if(o.boxes.has_value(), kBoxLevels[static_cast<std::size_t>(boxes_of(o))]);
-         },
-     .copy = copy_value<&RunOptions::boxes>,
+     .remedy = "give objects or triangles",
+     .unusual = [](Run o) { return only_if(o.broad_phase == BroadPhase::triangles, "triangles"); },
+     .copy = copy_value<&RunOptions::broad_phase>,
      .value =
          [](Run o) {
            return text_if(drawing_levels(traits(o.method)),
-                          kBoxLevels[static_cast<std::size_t>(boxes_of(o))]);
+                          o.broad_phase == BroadPhase::objects ? "objects" : "triangles");
          }},
     {.name = "clusters",
      .type = "LIST|none",
@@ -267,7 +263,8 @@ const Option kOptions[] = {
      .unusual = [](Run o) { return only_if(o.rounds > 0, std::to_string(o.rounds)); },
      .why_not = [](const Traits&) { return "has no rounds"; },
      .copy = copy_value<&RunOptions::rounds>,
-     .value = [](Run o) { return value_if(draws(o.method) && o.rounds > 0, o.rounds); }},
+     .value = [](Run o) { return value_if(draws(o.method) && o.rounds > 0, o.rounds); },
+     .of_drawing = true},
     {.name = "clear",
      .type = "any|all",
      .help = "how many views have to clear a triangle before it is\n"
@@ -283,7 +280,8 @@ const Option kOptions[] = {
      .why_not = [](const Traits&) { return "clears nothing view by view"; },
      .copy = copy_value<&RunOptions::clear>,
      .value =
-         [](Run o) { return text_if(draws(o.method), o.clear == ClearRule::all ? "all" : "any"); }},
+         [](Run o) { return text_if(draws(o.method), o.clear == ClearRule::all ? "all" : "any"); },
+     .of_drawing = true},
     {.name = "level",
      .type = "objects|triangles",
      .help = "objects: objects are culled as a whole, their triangles\n"
@@ -307,7 +305,8 @@ const Option kOptions[] = {
          [](Run o) {
            return text_if(drawing_levels(traits(o.method)),
                           o.objects_alone ? "objects" : "triangles");
-         }},
+         },
+     .of_drawing = true},
     {.name = "conservative",
      .type = "",
      .help = "draw every pixel that a triangle touches, for the\n"
@@ -321,7 +320,8 @@ const Option kOptions[] = {
                             : "draws no triangles";
          },
      .copy = copy_value<&RunOptions::conservative>,
-     .value = [](Run o) { return value_if(drawing_triangles(traits(o.method)), o.conservative); }},
+     .value = [](Run o) { return value_if(drawing_triangles(traits(o.method)), o.conservative); },
+     .of_drawing = true},
     {.name = "device",
      .type = "DEVICE",
      .help = "which draws: " + std::string(kDeviceHelp),

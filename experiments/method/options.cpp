@@ -51,8 +51,8 @@ void validate(const RunOptions& options, const GivenOptions& given) {
                 "use {depth} fragment, or {offset} obb");
   }
   refuse_idle(options, given);
-  if (options.full && boxes_of(options) != BoxLevel::objects) {
-    throw Error("{boxes}", "of triangles leave out what {full} asks for",
+  if (options.full && options.broad_phase == BroadPhase::triangles) {
+    throw Error("{broad_phase}", "triangles leaves out what {full} asks for",
                 "leave one of the two out");
   }
   if (options.objects_alone && options.clusters && !options.clusters->empty()) {
@@ -77,14 +77,6 @@ std::string views_of(const RunOptions& options) {
 
 DepthMode depth_of(const RunOptions& options) {
   return options.depth.value_or(fattens(options.method) ? DepthMode::fragment : DepthMode::fixed);
-}
-
-BoxLevel boxes_of(const RunOptions& options) {
-  // `enough` is the usual level only if the method promises; else it is the published form. `full`
-  // leaves nothing out, and if only objects are culled, only their boxes matter.
-  const bool usual =
-      fattens(options.method) && promises(options) && !options.full && !options.objects_alone;
-  return options.boxes.value_or(usual ? BoxLevel::enough : BoxLevel::objects);
 }
 
 QueryMode query_of(const RunOptions& options) {
@@ -135,8 +127,9 @@ std::string radius_text(const RadiusRule& radius) {
   return {text, std::to_chars(text, text + sizeof text, radius.factor, form).ptr};
 }
 
-std::string describe(const RunOptions& options) {
+std::string describe(const RunOptions& options, const std::string& not_drawn) {
   if (!draws(options.method)) return to_string(options.method);
+  if (!not_drawn.empty()) return to_string(options.method) + ", " + not_drawn;
   const std::string form = form_text(options);
   return to_string(options.method) + " at " + std::to_string(resolution_of(options)) + " px" +
          (form.empty() ? "" : ", " + form);

@@ -26,11 +26,9 @@ inline constexpr Method kDefaultMethod = Method::boxes;
 /// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 
-/// What boxes decide before anything is drawn. objects: which triangles meet the box of another
-/// object, as published. triangles: which triangles meet the box of a triangle of another object.
-/// enough: as `triangles`, and nothing is drawn if exact tests of the pairs that are left take less
-/// time.
-enum class BoxLevel : std::uint8_t { objects, triangles, enough };
+/// Whose boxes decide what is drawn. objects: a triangle is drawn if its box meets that of another
+/// object, as published. triangles: if its box meets that of a triangle of another object.
+enum class BroadPhase : std::uint8_t { objects, triangles };
 
 struct RunOptions {
   Method method = kDefaultMethod;
@@ -43,13 +41,13 @@ struct RunOptions {
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
-  int rounds = 0;                      // the most rounds; 0: until a round changes nothing, or
-                                       // far's rule
-  ClearRule clear = ClearRule::any;    // how many views have to clear a triangle
-  bool objects_alone = false;          // culls only objects, not triangles; not s-cullide
-  bool conservative = false;           // a fragment in each pixel touched; not far
-  std::optional<BoxLevel> boxes = {};  // default: enough if far promises, else objects
-  std::string views = {};              // "": x,y,z
+  int rounds = 0;                    // the most rounds; 0: until a round changes nothing, or
+                                     // far's rule
+  ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
+  bool objects_alone = false;        // culls only objects, not triangles; not s-cullide
+  bool conservative = false;         // a fragment in each pixel touched; not far
+  BroadPhase broad_phase = BroadPhase::objects;  // not s-cullide
+  std::string views = {};                        // "": x,y,z
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even if only a software
                             // renderer answers; hardware, software or a number: that GL device;
                             // "": GL if a hardware device answers, else the cores of the CPU
@@ -92,6 +90,8 @@ struct Option {
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
   /// The value for records; null: the record has it elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
+  /// Says how to draw: null in the record of a method that draws and found nothing to draw.
+  bool of_drawing = false;
   std::vector<std::string> words = {};  // words that a shell completes, if not listed by `type`
 };
 
@@ -138,7 +138,6 @@ int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
-BoxLevel boxes_of(const RunOptions& options);
 /// Whether the method promises to miss nothing: boxes and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);
@@ -150,8 +149,9 @@ std::string form_text(const RunOptions& options);
 RunOptions with_fitting_form(RunOptions options);
 /// "published", "budget", or the factor on the budget radius.
 std::string radius_text(const RadiusRule& radius);
-/// The method in words for messages, such as "cullide at 512 px, --rounds 1".
-std::string describe(const RunOptions& options);
+/// The method in words for messages, such as "cullide at 512 px, --rounds 1". not_drawn: why a
+/// method that draws did not, in place of the resolution; empty if it did.
+std::string describe(const RunOptions& options, const std::string& not_drawn = "");
 
 /// Why the method was run, as "--method" or "no --method: boxes misses nothing, ...".
 std::string method_reason(const RunOptions& options);

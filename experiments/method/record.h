@@ -1,6 +1,7 @@
 // The record of a run: what was asked and planned, what each stage found, and how long each took.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -67,6 +68,8 @@ struct Candidates {
     const auto* views = std::get_if<std::vector<ViewReport>>(&by);
     return views ? *views : none;
   }
+  /// Whether a method that draws drew. Else boxes left nothing, or pixels could resolve no view.
+  bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
     return swept ? std::optional(swept->triangles) : std::nullopt;

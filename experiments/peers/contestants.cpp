@@ -32,7 +32,7 @@ std::vector<KnownContestant> make_list() {
   constexpr const char* kNode = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
   add("ours", "", "pair mesh", {"boxes"});
   add("ours", "", "pair mesh distance self inside clash", {"exact"});
-  add("ours", "", "pair mesh", {"far", "far-drawn", "i-collide", "far-drawn-at-0.9"});
+  add("ours", "", "pair mesh", {"far", "i-collide", "far-at-0.9"});
   add("cgal", "libcgal-dev", "pair mesh inside", {"cgal-exact"});
   add("cgal", "libcgal-dev", "pair mesh self", {"cgal-self-intersections"});
   add("cgal", "libcgal-dev", "pair", {"cgal-do-intersect", "cgal-double"});

@@ -191,7 +191,6 @@ struct ViewRun {
 ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Session& session) {
   options.views = view;
   options.depth_format = DepthFormat::float32;
-  if (takes_boxes(options.method)) options.boxes = BoxLevel::objects;  // the published form
   Plan planned = plan(scene, options);
   // Runs only the method's own offset, to the end, without clusters: the picture shows its depth.
   auto& work = std::get<DrawPlan>(planned.work);
@@ -302,6 +301,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
   DrawnPanel panel;
   PanelResult& result = panel.result;
   result.title = panel_title(options) + ", along " + *arguments.depth_view;
+  result.drew = true;
   result.device = run.found.device.gl->renderer;
   result.colliding = truth.pairs.size();
   result.neighbours = result.colliding - without_neighbours(scene, truth).pairs.size();

@@ -165,6 +165,7 @@ struct PanelResult {
   std::uint64_t rings = 0;             // around misses that are too small to see
   std::uint64_t first_pass = 0, second_pass = 0, culled = 0;  // of depth_view: triangles fully
                                                               // visible in that pass alone, in both
+  bool drew = false;                                          // it drew in views at a resolution
   bool broken = false;                           // the method promises, and missed a pair
   std::string device;                            // what answered: a renderer, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px

@@ -200,7 +200,10 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
   std::ranges::set_difference(kept, hit, std::back_inserter(answer.idle));
   answer.lost = members_of(answer.missed);
   PanelResult& result = answer.result;
-  result.title = panel_title(options);
+  const std::string not_drawn = not_drawn_text(record);
+  result.title =
+      not_drawn.empty() ? panel_title(options) : method_title(options) + ", " + not_drawn;
+  result.drew = record.found.drew();
   result.colliding = truth.size();
   result.neighbours = truth.size() - without_neighbours(scene, lab.truth()).pairs.size();
   result.missed = answer.missed.size();
@@ -306,8 +309,8 @@ PngTexts provenance(const PictureArguments& arguments, const PictureResult& resu
   for (std::size_t i = 0; i < result.panels.size(); ++i) {
     const RunOptions& options = arguments.panels[i];
     const PanelResult& panel = result.panels[i];
-    const int resolution = resolution_of(options);
-    const bool far = fattens(options.method);
+    const int resolution = panel.drew ? resolution_of(options) : 0;
+    const bool far = panel.drew && fattens(options.method);
     out.emplace_back(
         fmt::format("Panel {}", i + 1),
         fmt::format("method {}; resolution {}; radius {}; offset {}; device {}; colliding {}; "

@@ -226,7 +226,7 @@ Json stages_json(const std::vector<Stage>& trace) {
 
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
-  Json views = Json::array();
+  Json views = nullptr;
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
   Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
               {"method", to_string(o.method)},
@@ -234,6 +234,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   for (const Option& option : run_options()) {
     if (!option.value) continue;
     std::visit([&](const auto& value) { out[option.name] = json_or_null(value); }, option.value(o));
+    if (option.of_drawing && draws(o.method) && !record.found.drew()) out[option.name] = nullptr;
   }
   if (record.found.device.cpu) out["query"] = nullptr;
   const Json rest = {
@@ -419,7 +420,7 @@ Certificate certificate_of(const Scene& scene, const Record& record, const Whole
   const std::vector<TrianglePair> kept = pairs_left(record);
   Certificate::Run run;
   run.method = to_string(options.method);
-  run.offset = fattens(options.method) ? options.offset : "none";
+  run.offset = fattens(options.method) && record.found.drew() ? options.offset : "none";
   for (const ViewReport& view : record.found.views()) {
     if (!view.drawn) continue;
     run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
@@ -448,6 +449,9 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
   for (const Stage& stage : plan.stages())
     table.add({name_of(stage), decision_of(stage), reason_of(stage)});
   const RunOptions& options = plan.options;
+  const auto* const work = std::get_if<DrawPlan>(&plan.work);
+  const bool idle = work && work->fatteners.empty();
+  const bool on_cpu = options.device.empty() || is_cpu(options.device);
   const std::uint64_t self = self_objects(scene);
   const std::string tested = self == 0 ? ""
                                        : fmt::format("self       {} tested against {}\n",
@@ -455,9 +459,11 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
                                                      self == 1 ? "itself" : "themselves");
   return fmt::format("{}: {}, {}, {}{}\n{}\n{}", scene.name,
                      counted(scene.objects.size(), "object", "objects"),
-                     counted(scene.triangles.size(), "triangle", "triangles"), describe(options),
-                     options.full ? ", --full" : "",
-                     default_method_line(options) + tested + not_asked_line(scene), table.text());
+                     counted(scene.triangles.size(), "triangle", "triangles"),
+                     describe(options, idle ? kNothingToDraw : ""), options.full ? ", --full" : "",
+                     default_method_line(options) + (on_cpu && !idle ? faster_line(options) : "") +
+                         tested + not_asked_line(scene),
+                     table.text());
 }
 
 Json plan_json(const Scene& scene, const Plan& plan, const std::optional<MissPrediction>& misses) {

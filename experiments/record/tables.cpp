@@ -63,6 +63,11 @@ std::string place_text(const Scene& scene, std::uint32_t triangle) {
   return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
 }
 
+std::string not_drawn_text(const Record& r) {
+  if (!draws(r.options.method) || r.found.drew()) return "";
+  return r.found.views().empty() ? kNothingToDraw : "no view could be drawn";
+}
+
 std::string folded_text(const Scene& scene) {
   if (scene.folded.empty()) return "";
   std::string out = fmt::format(", {} folded", counted(scene.folded.size(), "polygon", "polygons"));
@@ -99,9 +104,10 @@ std::string promise_line(const Record& record) {
 
 std::string method_text(const Record& record) {
   const RunOptions& o = record.options;
-  std::string text = describe(o);
-  if (fattens(o.method)) text += fmt::format(", {} offsets", o.offset);
-  if (draws(o.method)) {
+  const bool drew = record.found.drew();
+  std::string text = describe(o, not_drawn_text(record));
+  if (fattens(o.method) && drew) text += fmt::format(", {} offsets", o.offset);
+  if (drew) {
     text += depth_of(o) == DepthMode::fragment ? ", fragment depth" : ", fixed-function depth";
     // The native canvas has no query modes.
     if (!record.found.device.cpu)
@@ -227,7 +233,7 @@ std::string accounting_lines(const Scene& scene, const Record& record) {
 
 // Elements and queries of the methods that draw.
 std::string work_line(const Record& record) {
-  if (!draws(record.options.method)) return "";
+  if (!record.found.drew()) return "";
   const Stage sum = work_of(record.trace);
   return fmt::format("drawn      {}, {}{}\n", counted(sum.draws, "element", "elements"),
                      counted(sum.queries, "query", "queries"),
@@ -251,14 +257,8 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-// Whether exact tests took the place of drawing.
-bool was_not_drawn(const Record& r) {
-  return draws(r.options.method) && boxes_of(r.options) == BoxLevel::enough &&
-         r.found.views().empty();
-}
-
 std::string resolution_text(const Record& r) {
-  if (!draws(r.options.method) || was_not_drawn(r)) return "-";
+  if (!draws(r.options.method) || !not_drawn_text(r).empty()) return "-";
   return std::to_string(resolution_of(r.options));
 }
 
@@ -337,6 +337,12 @@ std::string default_method_line(const RunOptions& options) {
   return fmt::format("default    {};\n           others: {} (farcull help methods)\n",
                      method_reason(options),
                      method_names([](const Traits& t) { return t.method != kDefaultMethod; }));
+}
+
+std::string faster_line(const RunOptions& options) {
+  if (!draws(options.method) || !promises(options)) return "";
+  return fmt::format("hint       exact tests take less time than drawing on a CPU: {} {}\n",
+                     option_word("method"), to_string(kDefaultMethod));
 }
 
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self) {
@@ -419,6 +425,7 @@ std::string run_answer(const Scene& scene, const Record& record, const std::stri
 
 std::string run_details(const Record& record) {
   std::string out = default_method_line(record.options);
+  if (record.found.device.cpu && record.found.drew()) out += faster_line(record.options);
   if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
   out += radius_line(record);
   out += fmt::format("kept       {}, {}, {}\n",
@@ -455,8 +462,8 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
         reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
     const std::string form = form_text(r.options);
     table.add({to_string(r.options.method) + (form.empty() ? "" : " " + form),
-               fattens(r.options.method) ? r.options.offset : "-", resolution_text(r),
-               grouped(r.found.object_count), grouped(r.found.triangle_count),
+               r.found.drew() && fattens(r.options.method) ? r.options.offset : "-",
+               resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
                grouped(r.found.count), grouped(r.collisions.pairs.size()),
                self ? "+ " + grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
                fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
@@ -470,11 +477,8 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   out += self ? ";\n+ neighbours: colliding pairs of triangles of one object that share a vertex "
                 "position.\n"
               : ".\n";
-  if (std::ranges::any_of(records, was_not_drawn)) {
-    out +=
-        "- for far: nothing was drawn, since exact tests take less time on a CPU;\n"
-        "  --boxes triangles draws.\n";
-  }
+  if (std::ranges::any_of(records, [](const Record& r) { return !not_drawn_text(r).empty(); }))
+    out += "-: a method that draws had nothing left to draw, or no view that it could draw.\n";
   if (reference) {
     out +=
         "x exact: cull + exact ms over those of the method exact in this run\n"

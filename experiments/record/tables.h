@@ -31,6 +31,14 @@ NothingToTest nothing_to_test(const Scene& scene);
 /// method.
 std::string default_method_line(const RunOptions& options);
 
+/// What the line of a method that draws says if boxes leave nothing to draw.
+inline constexpr const char* kNothingToDraw = "nothing left to draw";
+/// Why a method that draws did not, such as kNothingToDraw; empty if it did, and for other methods.
+std::string not_drawn_text(const Record& record);
+/// The line that names a faster method, for a method that promises and draws on the cores of a CPU;
+/// empty for others (docs/results/stages.md).
+std::string faster_line(const RunOptions& options);
+
 /// "298 pairs", or with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62 of
 /// neighbours".
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);

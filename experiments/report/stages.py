@@ -1,7 +1,7 @@
 """`python3 stages.py PROGRAM PAGE FIGURE [SCENE...]`: what each stage of FAR takes away and what it costs.
 
-FAR runs in its three forms (--boxes objects, triangles, enough) in turn with the method exact, every run in a process
-of its own. PAGE is written as Markdown, FIGURE as SVG. `bash experiments/results.sh stages` starts it.
+FAR runs as published and with --broad-phase triangles, in turn with the default method and the method exact, every run
+in a process of its own. PAGE is written as Markdown, FIGURE as SVG. `bash experiments/results.sh stages` starts it.
 """
 import datetime
 import json
@@ -21,7 +21,8 @@ ROUNDS, SIDE = 5, 256  # runs of each form, pixels of a view
 SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres "
           "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers fans stack "
           "mannequin-devil+self cad-cut").split()
-FORMS = ["objects", "triangles", "enough", "exact"]
+DEFAULT = "boxes"
+FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then methods
 # Scenes of the list whose exact tests take longer than their views, and in which views are tried.
 LOOKED_AT = "needles-crossed needles-layers fans cad-cut mannequin-devil+self".split()
 DIRECTIONS, SIDES = 20, (64, 1024)
@@ -49,12 +50,12 @@ def record_of(program, command, scene, *words):
 
 
 def drawn(form, side, *words):
-    return ("--method", "far", "--boxes", form, "--device", "native", "--resolution", str(side), "--no-verify", *words)
+    return ("--method", "far", "--broad-phase", form, "--device", "native", "--resolution", str(side), "--no-verify", *words)
 
 
 def run(program, scene, form):
     """Milliseconds of each part, the triangles that boxes and each view of round 1 left, pairs tested, pairs found."""
-    words = ("--method", "exact", "--no-verify") if form == "exact" else drawn(form, SIDE)
+    words = ("--method", form, "--no-verify") if form in (DEFAULT, "exact") else drawn(form, SIDE)
     record = record_of(program, "run", scene, *words)
     ms, left = dict.fromkeys(PARTS, 0.0), {}
     for stage in record["stages"]:
@@ -130,7 +131,7 @@ def table(results):
 
 
 def looked_along(program, scene):
-    """A row: what one view of `--boxes triangles` leaves at best, in the axes and random directions."""
+    """A row: what one view of `--broad-phase triangles` leaves at best, in the axes and random directions."""
     numbers = random.Random(1)
     directions = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
     while len(directions) < DIRECTIONS:
@@ -170,10 +171,11 @@ def main():
         f"- **Commit:** {version}, {datetime.date.today()}.",
         f"- **Load:** {load:.1f} at the end; medians of {ROUNDS} runs in turn, each in a process of its own.", "",
         "Times are shares of the time of `exact` (boxes and exact tests) on the same scene. *Boxes*: comparing boxes of "
-        "objects, runs and triangles. *Views*: fattening, drawing, asking. *Pairs*: the join of what is left, or taking "
-        "what drawing cleared from the list. *Tests*: exact predicates. Forms are those of `--boxes`; `enough` is the "
-        "default. A view's column says how many triangles are left after it in round 1.", "",
-        "**Where pixels add nothing:** compare *tests* of the form `enough` with *views* of the form `triangles`. Even a "
+        "objects, blocks and triangles. *Views*: fattening, drawing, asking. *Pairs*: the join of what is left, or taking "
+        "what drawing cleared from the list. *Tests*: exact predicates. The forms `objects`, which is FAR as published, and "
+        "`triangles` are those of `--broad-phase`; the others are methods that do not draw. A view's column says how many "
+        "triangles are left after it in round 1.", "",
+        f"**Where pixels add nothing:** compare *tests* of `{DEFAULT}` with *views* of the form `triangles`. Even a "
         "culling that removed every pair for nothing could save no more than these tests. A scene gains by drawing only if "
         "its views take less.", "",
         f"![Stages](figures/{pathlib.Path(picture).name})", "", *table(results), "",

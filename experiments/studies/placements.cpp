@@ -291,7 +291,6 @@ PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
   options.depth = DepthMode::fragment;
   options.resolution = point.resolution;
   options.verify = false;
-  options.boxes = BoxLevel::objects;  // so that every placement is drawn
   PlacementCounts counts;
   counts.promises = promises(options);
   PointResult out{.device = "native"};

@@ -268,7 +268,6 @@ RunOptions options_of(const RunPoint& point, const Lab& lab) {
   options.clear = point.clear;
   options.objects_alone = point.objects_alone;
   options.conservative = point.conservative;
-  if (takes_boxes(point.method)) options.boxes = BoxLevel::objects;  // the published forms
   options.device = lab.device();
   options.verify = false;
   return options;

@@ -223,7 +223,6 @@ TEST(SessionFaults, ASessionGoesOnAfterAFailure) {
     RunOptions options;
     options.method = Method::far;
     options.resolution = 32;
-    options.boxes = BoxLevel::triangles;  // so that something is drawn
     options.verify = false;
     Session session("software");
     const auto right = run(scene, options, session).collisions.pairs;

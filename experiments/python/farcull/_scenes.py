@@ -118,7 +118,7 @@ class Scene:
         """Culls the scene, tests what is left, and accounts for every pair.
 
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
-        ``depth_format``, ``query``, ``boxes``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
+        ``depth_format``, ``query``, ``broad_phase``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
         ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
         for every pair) and ``threads``. ``contacts``, ``ignore`` and ``limit`` are those of
         :func:`collide`; ``ignore`` takes names as well, as in [("link*", "hand")]: every two different

@@ -60,7 +60,7 @@ TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {
     std::vector<ObjectPair> ignored;
     if (seed % 3 == 0 && scene.objects.size() > 1) ignored.push_back({0, 1});
     const bool neighbours = seed % 2 == 0;
-    const auto pairs = pairs_of_boxes(scene, ignored, false, neighbours, 1);
+    const auto pairs = pairs_of_boxes(scene, ignored, neighbours, 1);
     if (!pairs) {
       ++undecided;
       continue;
@@ -75,7 +75,7 @@ TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {
 TEST(BoxesBeforePixels, PlacesAreWhereTheBoxesOfTwoTrianglesMeet) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Scene scene = scattered(seed);
-    const auto pairs = pairs_of_boxes(scene, {}, false, true, 1);
+    const auto pairs = pairs_of_boxes(scene, {}, true, 1);
     if (!pairs) continue;
     const Regions regions = regions_of(scene, *pairs);
     EXPECT_EQ(regions.triangles, members_of(*pairs, scene.triangles.size()));

@@ -112,8 +112,7 @@ TEST(Oriented, DecideAPartThatIsCut) {
   const std::vector<TrianglePair> pairs = pairs_of_blocks(scene, blocks, 0, true, 2);
   EXPECT_EQ(missed(truth_of(scene), pairs), 0u);
   EXPECT_LT(pairs.size(), 16 * scene.triangles.size());
-  EXPECT_EQ(pairs_of_boxes(scene, {}, false, true, 2), std::nullopt);
-  EXPECT_EQ(pairs_of_boxes(scene, {}, true, true, 2), pairs);
+  EXPECT_EQ(pairs_of_boxes(scene, {}, true, 2), std::nullopt) << "boxes along the axes alone";
   // Boxes along the axes leave many more.
   EXPECT_GT(all_colliding_pairs(scene).box_pairs, 10 * pairs.size());
 }

@@ -20,6 +20,10 @@ bad clusters '{sizes}' | --clusters: | run two-spheres --method far --clusters {
 bad rounds '{rounds}' | --rounds: | run two-spheres --method cullide --rounds {rounds}
 bad boxes with {form} | {form0}: .*cullide | run two-spheres --method boxes {*form}
 bad compare without a use for {form} | {form0}: | compare two-spheres --methods boxes,exact {*form}
+bad the old name of an option | --boxes: .*--broad-phase | run two-spheres --method far --boxes objects
+bad a broad phase '{phase}' | --broad-phase: .*objects or triangles | run two-spheres --method far --broad-phase {phase}
+bad a broad phase of what does not draw | --broad-phase: .*cullide | run two-spheres --broad-phase triangles
+bad a broad phase of everything | --broad-phase: .*--full | run two-spheres --method far --full --broad-phase triangles
 bad far drawn conservatively | --conservative: .*cullide | run two-spheres --method far --conservative
 bad s-cullide of objects alone | --level: | run folded.obj --method s-cullide --self --level objects
 bad far of objects alone against themselves | --level: .*self | run cloth:400 --method far --self --level objects
@@ -41,7 +45,7 @@ bad savings of nothing known | nope: | experiment savings nope
 each {0}: | experiment savings far-apart | --methods exact | --repeat 0 | --methods nope
 """, quick=['quick-cullide', 's-cullide'], sizes=['', '1', '0', 'x', '32,32', '16,32', '32,', '1e3'],
      objects=['i-collide', 'boxes', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
-     form=['--rounds 1', '--clear all', '--level objects', '--conservative'])
+     form=['--rounds 1', '--clear all', '--level objects', '--conservative'], phase=['enough', 'boxes', ''])
 
 # ---- good cases
 
@@ -53,12 +57,13 @@ rows(r"""
 0 the default of plan | plan two-spheres | ^default    no --method: boxes[ ]
 0 named | run two-spheres --method boxes --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
 
-0 plan | plan far-apart --method far | ^draw +left out +no boxes of two triangles | ^untested +[0-9]
+0 plan | plan far-apart --method far | far, nothing left to draw$ | ^draw +left out +no two objects' boxes | ^untested +[0-9]
+0 plan of a broad phase | plan far-apart --method far --broad-phase triangles | ^draw +left out +no boxes of two triangles
 0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +runs[ ] | ^verify +left out[ ]
 0 plan as JSON | plan two-spheres --method boxes --json - | "decision": "depends"
 0 plan of self-collision | plan folded.obj --method boxes --self | ^self +1 object is tested against itself
-0 plan of far inside objects | plan two-spheres --method far --boxes objects --self | ^patches +.*32 patches of at most 320 triangles
-0 far inside a small object | verify folded.obj --method far --boxes triangles --self -v | ^patches .*boxes alone$ | promises to miss nothing$
+0 plan of far inside objects | plan two-spheres --method far --self | ^patches +.*32 patches of at most 320 triangles
+0 far inside a small object | verify folded.obj --method far --self -v | ^patches .*boxes alone$ | promises to miss nothing$
 
 0 quick-cullide | run crowd --method quick-cullide {small} --json - | "draws_saved": [1-9] | "promises": false
 0 cullide by occlusion queries | run two-spheres --method cullide {small} --query occlusion --depth-format 24

@@ -133,7 +133,7 @@ bad {software0} with OpenGL 3.3 | EGL: .*older than 4\.3
   | ^device     cpu, lanes of .*, 24 depth bits: --device native$
 0 occlusion on native | run {native} --device native --query occlusion --json - | ^  "query": null,$
 0 occlusion on GL | run {native} --device software --query occlusion --json - | ^  "query": "occlusion",$
-""", native='two-spheres --method far --boxes triangles --resolution 64', cpu=['native', 'cpu'],
+""", native='two-spheres --method far --resolution 64', cpu=['native', 'cpu'],
      options=['--device native', '--device native --query occlusion', '--device native --depth-format 24'],
      gl=['run two-spheres --method far --device gl --json old.json', 'doctor',
          'verify two-spheres --method far --device gl --json old.json', 'compare two-spheres --device gl --json old.json'],
@@ -242,7 +242,7 @@ $ script -qec "env NO_COLOR=1 TERM=xterm '$farcull' verify two-spheres" /dev/nul
 $ grep -q '^verified: ' shown
 0 a pipe | TERM=xterm verify two-spheres | {verified}
 0 negative direction | run {spheres} --views -y,x
-0 compare | compare two-spheres --device software --resolutions 32,64 --json compare.json | ^cullide +- +64[ ]
+0 compare | compare two-spheres --device software --resolutions 32,64 --json compare.json | ^cullide +- +64[ ] | ^far +obb +64[ ]
   | ^exact +-[ ] | @compare.json ^  "runs": \[
 # The JSON has every key, stands alone on stdout, and is JSON: farcull's own reader of scene files refuses it for its
 # keys and not, with a line, for its syntax.

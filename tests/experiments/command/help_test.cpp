@@ -70,9 +70,8 @@ void expect_explained(const std::vector<std::string>& words) {
 Record record_of(const Scene& scene, Method method) {
   RunOptions options;
   options.method = method;
-  if (takes_boxes(method)) options.boxes = BoxLevel::objects;  // so that something is drawn
-  options.device = looks(method) ? "native" : "";
-  options.resolution = looks(method) ? 64 : 0;
+  options.device = draws(method) ? "native" : "";
+  options.resolution = draws(method) ? 64 : 0;
   options.method_is_default = true;
   Session session(options.device);
   return run(scene, options, session);
@@ -103,8 +102,8 @@ TEST(Help, ExplainsEveryLineAndColumnOfATable) {
   const Record far = record_of(scene, Method::far);
   const std::string table = run_table(scene, far, verdict_text(*far.verification) + "\n");
   std::vector<std::string> lines;
-  for (const char* line : {"scene", "device", "method", "default", "untested", "views", "radius",
-                           "kept", "colliding", "drawn", "accounted", "time"}) {
+  for (const char* line : {"scene", "device", "method", "default", "hint", "untested", "views",
+                           "radius", "kept", "colliding", "drawn", "accounted", "time"}) {
     EXPECT_EQ(cells_of(line_with(table, line)).at(0).find(line), 0u) << line;
     lines.emplace_back(line);
   }

@@ -227,8 +227,10 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
         frame["time_ms"]["cull"].get<double>() + frame["time_ms"]["exact"].get<double>();
     EXPECT_EQ(frame["fps"], 1000 / ms);
     EXPECT_EQ(frame["draws"], 0);  // nothing is drawn there
+    EXPECT_TRUE(frame.contains("radius")) << "boxes may leave nothing to draw in a frame";
     EXPECT_EQ(frame["warning"], nullptr);
   }
+  EXPECT_FALSE(result.json.contains("radius"));
   for (const char* column : {"fps", "PCS objects", "PCS triangles"})
     EXPECT_TRUE(has_text(result.table, column)) << column;
   EXPECT_FALSE(has_text(result.table, "draws"));

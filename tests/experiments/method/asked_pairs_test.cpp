@@ -44,7 +44,7 @@ TEST(AskedPairs, IgnoredObjectsAreLeftOutByEveryMethodAndAccountedFor) {
     EXPECT_EQ(some.collisions.pairs, expected) << to_string(method);
     EXPECT_NE(some.collisions.pairs, all.collisions.pairs);
     // Boxes of blocks make no candidates of two such objects in the first place.
-    const bool by_blocks = method == Method::boxes || method == Method::far;
+    const bool by_blocks = method == Method::boxes;
     EXPECT_EQ(some.found.count + (by_blocks ? removed_of(all) : some.found.ignored),
               all.found.count)
         << to_string(method);

@@ -17,7 +17,6 @@ namespace {
 RunOptions far_on(const std::string& device) {
   RunOptions options{.method = Method::far};
   options.resolution = 64;
-  options.boxes = BoxLevel::objects;  // so that something is drawn
   options.device = device;
   return options;
 }

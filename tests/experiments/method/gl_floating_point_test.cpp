@@ -19,7 +19,6 @@ using lab::environments;
 TEST(GlFloatingPoint, EveryMethodThatPromises) {
   RunOptions far{.method = Method::far};
   far.resolution = 64;
-  far.boxes = BoxLevel::triangles;  // so that something is drawn
   std::vector<RunOptions> ways(3, far);
   ways[1].query = QueryMode::occlusion;
   ways[2].offset = "exact";

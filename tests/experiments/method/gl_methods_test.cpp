@@ -25,7 +25,6 @@ RunOptions options_of(Method method, int resolution = 64) {
   RunOptions options;
   options.method = method;
   options.resolution = resolution;
-  if (takes_boxes(method)) options.boxes = BoxLevel::objects;  // so that something is drawn
   return options;
 }
 

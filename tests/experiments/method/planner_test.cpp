@@ -62,36 +62,64 @@ TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
   EXPECT_FALSE(record.found.device.note.empty());
 }
 
-TEST(Planner, DrawsNothingWhereTheBoxesOfTrianglesAreEnough) {
+// FAR draws on every scene whose objects' boxes overlap, without a flag. Where none do it says so.
+void expect_drawn(bool of_packaged_meshes) {
+  std::size_t drawn = 0, apart = 0;
+  for (const std::string& name : lab::scene_names(of_packaged_meshes)) {
+    const Scene scene = make_builtin_scene(name);
+    const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+    bool meet = false;
+    for (auto a = boxes.begin(); a != boxes.end() && !meet; ++a)
+      meet = std::any_of(boxes.begin(), a, [&](const Box& b) { return overlap(*a, b); });
+    const Plan planned = plan(scene, {.method = Method::far});
+    EXPECT_EQ(has(planned, StageKind::fatten), meet) << name;
+    const std::string heading = plan_table(scene, planned).substr(0, 200);
+    EXPECT_EQ(has_text(heading, ", far at 512 px"), meet) << heading;
+    EXPECT_EQ(has_text(heading, ", far, nothing left to draw"), !meet) << heading;
+    EXPECT_EQ(has_text(heading, "exact tests take less time"), meet) << heading;
+    ++(meet ? drawn : apart);
+  }
+  EXPECT_GT(drawn, apart);
+  EXPECT_GT(apart, 0u) << "the twin: a scene of separate boxes";
+}
+
+TEST(Planner, FarDrawsWhereverBoxesOfObjectsOverlap) { expect_drawn(false); }
+TEST(PackagedScenes, FarDrawsWhereverBoxesOfObjectsOverlap) { expect_drawn(true); }
+
+TEST(Planner, ABroadPhaseOfTrianglesLeavesLessToDraw) {
   const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions far{.method = Method::far};
-  Plan planned = plan(scene, far);
-  EXPECT_EQ(decision(planned, "draw"), "left out");
-  EXPECT_EQ(stage_named(planned, "draw").reason, Reason::tests_instead);
+  RunOptions far{.method = Method::far, .device = "native"};
   const Record exact = run(scene, {.method = Method::exact});
-  const Record enough = run(scene, far);
-  EXPECT_EQ(enough.collisions.pairs, exact.collisions.pairs);
-  EXPECT_EQ(enough.found.count, exact.found.count);
-  EXPECT_TRUE(enough.found.views().empty());
-  // Asked to draw all the same, in windows where triangles meet: fewer pairs, the same answer.
-  far.boxes = BoxLevel::triangles;
-  planned = plan(scene, far);
-  EXPECT_EQ(decision(planned, "fatten x, round 1"), "runs");
-  Session native("native");
-  const Record drawn = run(scene, far, native);
+  const Record published = run(scene, far);
+  far.broad_phase = BroadPhase::triangles;
+  const Record drawn = run(scene, far);
   EXPECT_EQ(drawn.collisions.pairs, exact.collisions.pairs);
   EXPECT_LT(drawn.found.count, exact.found.count);
-  far.boxes = BoxLevel::objects;
-  const Record published = run(scene, far, native);
   EXPECT_LE(drawn.found.triangle_count, published.found.triangle_count);
   EXPECT_LT(drawn.found.views()[0].pixel_size, published.found.views()[0].pixel_size);
-  // What promises nothing is drawn, and in the published form unless another one is given.
-  far.radius.factor = 0.9;
-  far.boxes = BoxLevel::enough;
-  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
-  far.boxes = {};
-  EXPECT_EQ(boxes_of(far), BoxLevel::objects);
-  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+}
+
+// A record names only what drew.
+TEST(Planner, OptionsOfDrawingAreNullWhereNothingIsLeftToDraw) {
+  for (const Method method : {Method::far, Method::cullide}) {
+    const Scene apart = make_builtin_scene("far-apart"),
+                spheres = make_builtin_scene("two-spheres");
+    const RunOptions options{.method = method, .resolution = 64, .device = "native"};
+    const nlohmann::ordered_json none = to_json(apart, run(apart, options));
+    const nlohmann::ordered_json some = to_json(spheres, run(spheres, options));
+    for (const char* key : {"resolution", "depth", "depth_format", "clear", "level", "views"}) {
+      EXPECT_TRUE(none.at(key).is_null()) << key;
+      EXPECT_FALSE(some.at(key).is_null()) << key;
+    }
+    for (const char* key : {"radius", "offset", "budget"}) {
+      EXPECT_TRUE(none.at(key).is_null()) << key;
+      EXPECT_EQ(some.at(key).is_null(), method != Method::far && key != std::string("budget"));
+    }
+    EXPECT_EQ(none.at("broad_phase"), "objects");
+    const std::string table = run_table(apart, run(apart, options));
+    EXPECT_TRUE(has_text(table, "method     " + to_string(method) + ", nothing left to draw"));
+    EXPECT_FALSE(has_text(table, " px"));
+  }
 }
 
 TEST(Planner, BoxesBeforePixelsGiveTheAnswerOfExactInsideObjectsToo) {
@@ -100,9 +128,8 @@ TEST(Planner, BoxesBeforePixelsGiveTheAnswerOfExactInsideObjectsToo) {
     Scene scene = make_builtin_scene(name);
     for (Object& object : scene.objects) object.self = true;
     const Record exact = run(scene, {.method = Method::exact});
-    for (const BoxLevel boxes : {BoxLevel::objects, BoxLevel::triangles, BoxLevel::enough}) {
-      RunOptions far{.method = Method::far, .resolution = 256};
-      far.boxes = boxes;
+    for (const BroadPhase phase : {BroadPhase::objects, BroadPhase::triangles}) {
+      const RunOptions far{.method = Method::far, .resolution = 256, .broad_phase = phase};
       const Record record = run(scene, far, native);
       EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs) << name;
       EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << name;
@@ -116,18 +143,14 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
   Scene scene = lab::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}},
                                {{Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}}});
   scene.triangles[1][0] = scene.triangles[0][0];
-  const RunOptions far{.method = Method::far};
-  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::tests_instead);
-  const RunOptions all{.method = Method::far, .boxes = BoxLevel::triangles};
-  EXPECT_EQ(stage_named(plan(scene, all), "draw").reason, Reason::nothing_to_look_at);
+  const RunOptions far{.method = Method::far, .broad_phase = BroadPhase::triangles};
+  EXPECT_EQ(stage_named(plan(scene, far), "draw").reason, Reason::nothing_to_look_at);
   EXPECT_EQ(run(scene, far).collisions.pairs.size(), 1u);
   const auto at = [](double x) {
     return std::array{Vec3(x, x, x), Vec3(x + 1, x, x), Vec3(x, x + 1, x)};
   };
   const Scene apart = lab::scene_of({{at(0), at(10)}, {at(5), at(15)}});
   EXPECT_EQ(stage_named(plan(apart, far), "draw").reason, Reason::no_box_pairs);
-  EXPECT_EQ(stage_named(plan(make_builtin_scene("needles"), far), "draw").reason,
-            Reason::tests_instead);
 }
 
 // An object that is tested against itself is cut into patches, which are no objects, also where
@@ -138,15 +161,15 @@ TEST(Planner, RefusesToAskObjectsAloneWhereOneIsCut) {
   far.objects_alone = true;
   EXPECT_NO_THROW(plan(scene, far));
   for (Object& object : scene.objects) object.self = true;
-  for (const BoxLevel boxes : {BoxLevel::enough, BoxLevel::triangles, BoxLevel::objects}) {
-    far.boxes = boxes;
+  for (const BroadPhase phase : {BroadPhase::objects, BroadPhase::triangles}) {
+    far.broad_phase = phase;
     EXPECT_THROW(plan(scene, far), Error);
   }
 }
 
 TEST(Planner, SaysWhatItLeavesOut) {
   const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions far{.method = Method::far, .boxes = BoxLevel::objects};
+  RunOptions far{.method = Method::far};
   EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
   EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
@@ -200,7 +223,6 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
   Scene scene = make_builtin_scene("two-spheres");
   RunOptions options;
   options.method = Method::far;
-  options.boxes = BoxLevel::objects;
   EXPECT_FALSE(has(plan(scene, options), StageKind::patches));
   scene.objects[0].self = true;  // of 5120 triangles, so its patches have 320
   const Plan planned = plan(scene, options);
@@ -212,7 +234,7 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
 // An object of one patch has nothing to draw: the answer is that of a box join, without a device.
 TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
   int colliding = 0;
-  const RunOptions options{.method = Method::far, .boxes = BoxLevel::triangles};
+  const RunOptions options{.method = Method::far, .broad_phase = BroadPhase::triangles};
   for (int seed = 0; seed < 20; ++seed) {
     Scene scene = lab::random_scene(seed);
     scene.objects.resize(1);

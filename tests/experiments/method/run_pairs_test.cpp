@@ -136,38 +136,36 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
     };
     const Record exact = run(scene, asked(Method::exact));
     EXPECT_GT(exact.collisions.pairs.size(), 100u);
-    for (const Method method : {Method::boxes, Method::far}) {
-      const Record record = run(scene, asked(method));
-      EXPECT_TRUE(record.found.given) << to_string(method);
-      EXPECT_TRUE(record.found.pairs.empty());
-      EXPECT_EQ(record.found.count, exact.found.count);
-      EXPECT_EQ(record.decided, record.found.count);
-      EXPECT_EQ(record.found.triangles.size(), record.found.triangle_count);
-      EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs);
-      EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
-      EXPECT_EQ(record.collisions.neighbours, exact.collisions.neighbours);
-      ASSERT_TRUE(record.verification);
-      EXPECT_TRUE(record.verification->adds_up());
-      EXPECT_FALSE(broken(record, true));
-      // The twin: the accounting notices an answer that lost one of its pairs.
-      Collisions lost = record.collisions;
-      lost.pairs.pop_back();
-      EXPECT_EQ(account(scene, lost.all(), {.ignored = ignored}).false_negatives, 1u);
-      RunOptions first = asked(method);
-      first.limit = 3;
-      const Record some = run(scene, first);
-      EXPECT_FALSE(some.found.given);
-      EXPECT_EQ(some.found.count, record.found.count);
-      EXPECT_EQ(some.found.triangles, record.found.triangles);
-      const std::vector<TrianglePair> all = exact.collisions.all();
-      EXPECT_EQ(some.collisions.all(), std::vector(all.begin(), all.begin() + 3));
-      Session session("cpu");
-      const Record alone =
-          run(scene, asked(method), session, {}, {.answer_only = true, .decide_neighbours = false});
-      EXPECT_EQ(alone.collisions.pairs, exact.collisions.pairs);
-      EXPECT_TRUE(alone.collisions.neighbour_pairs.empty());
-      EXPECT_EQ(alone.collisions.neighbours, exact.collisions.neighbours);
-    }
+    const Record record = run(scene, asked(Method::boxes));
+    EXPECT_TRUE(record.found.given);
+    EXPECT_TRUE(record.found.pairs.empty());
+    EXPECT_EQ(record.found.count, exact.found.count);
+    EXPECT_EQ(record.decided, record.found.count);
+    EXPECT_EQ(record.found.triangles.size(), record.found.triangle_count);
+    EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs);
+    EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
+    EXPECT_EQ(record.collisions.neighbours, exact.collisions.neighbours);
+    ASSERT_TRUE(record.verification);
+    EXPECT_TRUE(record.verification->adds_up());
+    EXPECT_FALSE(broken(record, true));
+    // The twin: the accounting notices an answer that lost one of its pairs.
+    Collisions lost = record.collisions;
+    lost.pairs.pop_back();
+    EXPECT_EQ(account(scene, lost.all(), {.ignored = ignored}).false_negatives, 1u);
+    RunOptions first = asked(Method::boxes);
+    first.limit = 3;
+    const Record some = run(scene, first);
+    EXPECT_FALSE(some.found.given);
+    EXPECT_EQ(some.found.count, record.found.count);
+    EXPECT_EQ(some.found.triangles, record.found.triangles);
+    const std::vector<TrianglePair> all = exact.collisions.all();
+    EXPECT_EQ(some.collisions.all(), std::vector(all.begin(), all.begin() + 3));
+    Session session("cpu");
+    const Record alone = run(scene, asked(Method::boxes), session, {},
+                             {.answer_only = true, .decide_neighbours = false});
+    EXPECT_EQ(alone.collisions.pairs, exact.collisions.pairs);
+    EXPECT_TRUE(alone.collisions.neighbour_pairs.empty());
+    EXPECT_EQ(alone.collisions.neighbours, exact.collisions.neighbours);
   }
 }
 
