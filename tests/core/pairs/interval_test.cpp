@@ -83,7 +83,7 @@ Tally compare(Evaluate evaluate, int triangles, float shrink = 0) {
   Random random(11);
   Tally tally;
   for (int n = 0; n < triangles; ++n) {
-    if (n == triangles / 2) random = Random(seed_of_day(11));
+    if (n == triangles / 2) random = Random(test_seed(11));
     if (triangles > 100) glsl_chance::rounding() = static_cast<glsl_chance::Rounding>(n % 3);
     const IntervalCase c = interval_cases::random_case(random);
     const FloatTriangle& t = c.corners;
@@ -207,7 +207,7 @@ TEST(Interval, PartsOfAPixelAreExactHoweverTheDeviceRounds) {
   Random random(14);
   int seen[8] = {};
   for (int n = 0; n < trials(300'000); ++n) {
-    if (n == trials(150'000)) random = Random(seed_of_day(14));
+    if (n == trials(150'000)) random = Random(test_seed(14));
     const CutCell cell = random_cut(random);
     glsl_chance::rounding() = std::array{Rounding::random, Rounding::up, Rounding::down}[n % 3];
     const int part =
@@ -266,7 +266,7 @@ TEST(Interval, SlicesAreExactHoweverTheDeviceRounds) {
   Random random(13);
   std::array<int, kSlices> seen{};
   for (int n = 0; n < trials(300'000); ++n) {
-    if (n == trials(150'000)) random = Random(seed_of_day(13));
+    if (n == trials(150'000)) random = Random(test_seed(13));
     const DeepWindow w = random_depths(random);
     const DepthSlices cut = depth_slices(w.near, w.far);
     ASSERT_EQ(std::exp2(std::ilogb(cut.steps_per_px)), cut.steps_per_px);
