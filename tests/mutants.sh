@@ -30,8 +30,6 @@
 #   text in its place; none to remove it
 set -euo pipefail
 export LC_ALL=C
-# Whether a mutant is noticed must not depend on the day.
-export FARCULL_SEED=${FARCULL_SEED:-1}
 
 # shellcheck source-path=SCRIPTDIR source=../experiments/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"

@@ -1,35 +1,29 @@
-// The seed of the day, how many random cases are tried, and where failures are written. A listener
-// prints the seed once at the start of a test program and beside each failure.
+// Seeds of random tests, how many cases they try, and where failures are written. A listener prints
+// FARCULL_SEED at the start of a test program and beside each failure.
 #include "tests/lab/test.h"
-
-#include <ctime>
 
 namespace farcull {
 namespace {
 
-std::uint64_t make_seed() {
-  if (const char* given = std::getenv("FARCULL_SEED"); given != nullptr && *given != 0) {
-    char* end = nullptr;
-    const std::uint64_t seed = std::strtoull(given, &end, 10);
-    if (*end != 0)
-      throw std::runtime_error("FARCULL_SEED: '" + std::string(given) + "' is no number");
-    return seed;
-  }
-  const std::time_t now = std::time(nullptr);
-  std::tm day{};
-  ::gmtime_r(&now, &day);
-  return static_cast<std::uint64_t>(day.tm_year + 1900) * 10000 + (day.tm_mon + 1) * 100 +
-         day.tm_mday;
+// 0: that of an ordinary run.
+std::uint64_t given_seed() {
+  const char* const given = std::getenv("FARCULL_SEED");
+  if (given == nullptr) return 0;
+  char* end = nullptr;
+  const std::uint64_t seed = std::strtoull(given, &end, 10);
+  if (*end != 0)
+    throw std::runtime_error("FARCULL_SEED: '" + std::string(given) + "' is no number");
+  return seed;
 }
 
 class SaysTheSeed : public ::testing::EmptyTestEventListener {
-  void OnTestProgramStart(const ::testing::UnitTest&) override { say("seed of the day"); }
+  void OnTestProgramStart(const ::testing::UnitTest&) override { say("random tests"); }
   void OnTestEnd(const ::testing::TestInfo& test) override {
-    if (test.result()->Failed()) say("a test failed; seed of the day");
+    if (test.result()->Failed()) say("a test failed");
   }
   static void say(const char* what) {
-    const auto seed = static_cast<unsigned long long>(seed_of_day());
-    std::printf("[ %s %llu; FARCULL_SEED=%llu replays it ]\n", what, seed, seed);
+    if (const auto seed = static_cast<unsigned long long>(given_seed()); seed != 0)
+      std::printf("[ %s; FARCULL_SEED=%llu repeats it ]\n", what, seed);
   }
 };
 
@@ -43,21 +37,20 @@ bool all_trials() {
 
 [[maybe_unused]] const bool kListens = [] {
   const char* const most = all_trials() ? " max_success=100" : " max_success=25";
-  ::setenv("RC_PARAMS", ("seed=" + std::to_string(seed_of_day()) + most).c_str(), 0);
+  ::setenv("RC_PARAMS", ("seed=" + std::to_string(given_seed()) + most).c_str(), 0);
   ::testing::UnitTest::GetInstance()->listeners().Append(new SaysTheSeed);  // which owns it
   return true;
 }();
 
 }  // namespace
 
-std::uint64_t seed_of_day() {
-  static const std::uint64_t seed = make_seed();
-  return seed;
-}
-
-std::uint64_t seed_of_day(std::uint64_t fixed) {
+std::uint64_t test_seed(std::uint64_t own) {
+  static const std::uint64_t given = given_seed();
+  // tests/seeds.sh finds the tests that read it by this.
+  ::testing::Test::RecordProperty("reads_the_seed", 1);
+  if (given == 0) return own;
   // The finalizer of splitmix64 (Steele, Lea, Flood 2014), so that near seeds give far ones.
-  std::uint64_t x = fixed + 0x9e3779b97f4a7c15 * seed_of_day();
+  std::uint64_t x = own + 0x9e3779b97f4a7c15 * given;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
   return x ^ (x >> 31);

@@ -141,8 +141,8 @@ struct GlFaultOutcome {
 
 /// Runs `answer` once per call (or allocation) of an undisturbed run with that one at fault, and
 /// again undisturbed after each. `answer` returns whether its answer is right, or throws.
-/// `fresh` makes what the run starts from. Of more than 40 calls every fourth is tried, other ones
-/// each day; all of them with FARCULL_TRIALS=all.
+/// `fresh` makes what the run starts from. Of more than 40 calls every fourth is tried, which ones
+/// by FARCULL_SEED; all of them with FARCULL_TRIALS=all.
 inline std::vector<GlFaultOutcome> try_gl_faults(GlFault fault, const std::function<void()>& fresh,
                                                  const std::function<bool()>& answer) {
   GlHooks hooks;
@@ -152,7 +152,7 @@ inline std::vector<GlFaultOutcome> try_gl_faults(GlFault fault, const std::funct
   const long count = fault == GlFault::drop ? GlCalls::calls : GlCalls::allocations;
   const long step = count > 40 ? 4 / trials(4) : 1;
   std::vector<GlFaultOutcome> out;
-  for (long k = static_cast<long>(seed_of_day() % 4) % step; k < count; k += step) {
+  for (long k = static_cast<long>(test_seed(0) % 4) % step; k < count; k += step) {
     fresh();
     GlFaultOutcome o;
     o.at = k;

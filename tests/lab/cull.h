@@ -62,20 +62,19 @@ inline std::vector<Small> random_small(std::uint64_t seed, int count) {
   return out;
 }
 
-/// Checks a property on `tests` inputs that grow to 60 elements: a half by the seed, a half by that
-/// of the day.
-template <class Property>
-void expect_property(std::uint64_t fixed, int tests, const Property& property) {
-  for (const std::uint64_t seed : seeds(fixed)) {
+/// Checks a property on `tests` inputs that grow to 60 elements, and on as many again until `seen`.
+template <class Property, class Seen>
+void expect_property(std::uint64_t seed, int tests, const Property& property, const Seen& seen) {
+  for (std::uint64_t n = 0; more_cases(n, 1, seen()); ++n) {
     rc::detail::TestParams params;
-    params.seed = seed;
-    params.maxSuccess = tests / 2;
+    params.seed = test_seed(seed) + n;
+    params.maxSuccess = tests;
     params.maxSize = 60;
     const auto result = rc::detail::checkTestable(property, rc::detail::TestMetadata{}, params);
     if (result.template is<rc::detail::SuccessResult>()) continue;
     std::ostringstream text;
     rc::detail::printResultMessage(result, text);
-    ADD_FAILURE() << text.str() << "\nseed " << seed;
+    FAIL() << text.str();
   }
 }
 

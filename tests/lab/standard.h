@@ -10,10 +10,12 @@
 #include <chrono>
 #include <climits>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -29,6 +31,7 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <source_location>
 #include <span>
 #include <sstream>
 #include <stdexcept>

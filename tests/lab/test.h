@@ -1,5 +1,5 @@
-// What nearly every test uses: googletest and the standard library; how many random cases are
-// tried, of which seeds; what a call throws; and folders of a test's own.
+// What nearly every test uses: googletest and the standard library; which random cases are tried,
+// and how many; what a call throws; and folders of a test's own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,31 +8,35 @@
 
 namespace farcull {
 
-/// FARCULL_SEED, else today's date in UTC as a number (20261125), so that inputs are tried that
-/// nobody has tried before. Every test program prints it at its start and beside a failure.
-/// Rapidcheck's own properties use it too, unless RC_PARAMS is set.
-std::uint64_t seed_of_day();
-
-/// A seed of the day for the loop that has this fixed seed; loops with other seeds get others.
-std::uint64_t seed_of_day(std::uint64_t fixed);
-
-/// The seeds of a loop. What asserts power (that something is lost, or culled) belongs to the fixed
-/// one, whose counts are known; of the day's inputs only the promise is asserted.
-inline std::array<std::uint64_t, 2> seeds(std::uint64_t fixed) {
-  return {fixed, seed_of_day(fixed)};
-}
-
-/// The seed of scene i of n: one half has the fixed seeds 0 .. n / 2 - 1, the other those of the
-/// day.
-inline std::uint64_t nth_seed(std::uint64_t i, std::uint64_t n) {
-  return i < n / 2 ? i : seed_of_day(i);
-}
+/// The seed of a loop of random cases: `own`, so that a run repeats the last one. Where the
+/// variable FARCULL_SEED is set and not 0, another one, which is different for each value and each
+/// `own`. Then every test program prints the variable at its start and beside a failure.
+/// Rapidcheck's own properties follow it too, unless RC_PARAMS is set. tests/seeds.sh tries many
+/// values.
+std::uint64_t test_seed(std::uint64_t own);
 
 /// How many random cases a loop tries: all n if FARCULL_TRIALS is "all" (a campaign of
 /// tests/run.sh), else a quarter of them, and an eighth with the address sanitizer, which makes
 /// every case several times slower and looks for faults of memory, which a few cases of each kind
 /// show. At least `least`. Rapidcheck's own properties follow the variable too.
 int trials(int n, int least = 1);
+
+/// Whether a loop makes case n: the first `least` cases, and then more until it has `seen` what it
+/// asks for. So no test asks for luck:
+///     for (int n = 0; more_cases(n, trials(4000), lost > 0 && kept > 9); ++n)
+/// At case `most` it ends and the test fails. 0 stands for 20 * least. A loop asks for no more than
+/// `most` / 20 cases are expected to show. The number shown by `most` cases is a Poisson variable
+/// of mean 20 w or more if w is asked for, and is less than w with a chance below
+/// e^(-20 w) (20 e)^w < e^(-16 w), which is 1.2e-7 at w = 1.
+inline bool more_cases(std::integral auto n, std::integral auto least, bool seen, int most = 0,
+                       std::source_location loop = std::source_location::current()) {
+  if (std::cmp_less(n, least)) return true;
+  if (seen) return false;
+  if (most == 0 ? std::cmp_less(n / 20, least) : std::cmp_less(n, most)) return true;
+  ADD_FAILURE_AT(loop.file_name(), static_cast<int>(loop.line()))
+      << n << " cases, the bound of this loop, do not show what it asks for";
+  return false;
+}
 
 /// A file of the build tree for a minimized input that failed, to be moved to tests/cases. Makes
 /// the folder.

@@ -91,9 +91,8 @@ Points random_points(Random& random) {
 }
 
 TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {
-  Random random(501);
+  Random random(test_seed(501));
   for (int n = 0; n < trials(30'000); ++n) {
-    if (n == 15'000) random = Random(seed_of_day(501));
     const Points points = random_points(random);
     const double radius = random.below(4) == 0   ? 0
                           : random.below(3) == 0 ? std::abs(random.scaled(-20, 8))
@@ -151,10 +150,9 @@ void count(Kernel kernel, float cx, float cy, const Solid& solid, Tally& tally) 
 }
 
 TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
-  Random random(508);
+  Random random(test_seed(508));
   int hits = 0;
-  for (int n = 0; n < trials(100'000); ++n) {
-    if (n == 50'000) random = Random(seed_of_day(508));
+  for (int n = 0; more_cases(n, trials(100'000), hits > 1000); ++n) {
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
@@ -166,14 +164,12 @@ TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
     ASSERT_LE(Q(outer->lo), truth->lo) << "case " << n;
     ASSERT_GE(Q(outer->hi), truth->hi) << "case " << n;
   }
-  EXPECT_GT(hits, trials(100'000) / 10);
 }
 
 void expect_holds_adversarial(Kernel kernel, int cases) {
-  Random random(503);
+  Random random(test_seed(503));
   Tally tally;
-  for (int n = 0; n < cases; ++n) {
-    if (n == cases / 2) random = Random(seed_of_day(503));
+  for (int n = 0; more_cases(n, cases, tally.hits > 1000 && tally.misses > 1000); ++n) {
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
@@ -183,8 +179,6 @@ void expect_holds_adversarial(Kernel kernel, int cases) {
       FAIL() << "case " << n << " at " << cx << ", " << cy;
     }
   }
-  EXPECT_GT(tally.hits, cases / 10);
-  EXPECT_GT(tally.misses, cases / 10);
   std::cout << tally.hits << " lines hit, " << tally.exact << " decided with rationals\n";
 }
 
@@ -198,15 +192,14 @@ TEST(ObbKernel, HoldsTheExactIntervalOnTheWorstDevice) {
 }
 
 TEST(ObbKernel, WithoutWideningAdversarialFloatsAreMissed) {
-  Random random(503);
+  Random random(test_seed(503));
   Tally tally;
-  for (int n = 0; n < 200'000; ++n) {
+  for (int n = 0; more_cases(n, 0, tally.violations > 100, 200'000); ++n) {
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
     count(without_widening, cx, cy, solid, tally);
   }
-  EXPECT_GT(tally.violations, 1000);
   std::cout << tally.violations << " of " << tally.hits << " lines violated\n";
 }
 
@@ -222,10 +215,9 @@ void for_pixels(const Points& points, int most, Random& random, Visit visit) {
 }
 
 TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
-  Random random(504);
+  Random random(test_seed(504));
   Tally tally;
-  for (int n = 0; n < trials(60'000); ++n) {
-    if (n == 30'000) random = Random(seed_of_day(504));
+  for (int n = 0; more_cases(n, trials(60'000), tally.hits > 1000); ++n) {
     const Points points = random_points(random);
     const Solid solid = obb_of(points, 0.715);
     for_pixels(points, 12, random, [&](float cx, float cy) {
@@ -233,15 +225,13 @@ TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
     });
     ASSERT_EQ(tally.violations, 0) << "polygon " << n;
   }
-  EXPECT_GT(tally.hits, 5 * trials(60'000) / 3);
 }
 
 // The lemma as the kernel serves it: a point of the polygon in a pixel lies in the interval of that
 // pixel's centre, be it in the pixel's corner.
 TEST(ObbKernel, HoldsEveryPointOfThePixel) {
-  Random random(505);
+  Random random(test_seed(505));
   for (int n = 0; n < trials(60'000); ++n) {
-    if (n == 30'000) random = Random(seed_of_day(505));
     const Points points = random_points(random);
     const Solid solid = obb_of(points, 0.7072);
     for (int k = 0; k < 8; ++k) {

@@ -161,9 +161,9 @@ TEST(Overlap, OverlappingShellsHideNothing) {
 
 // Solids of unit cubes: they overlap iff they have a cube in common.
 TEST(Overlap, OfSolidsOfCubesIsKnown) {
-  RandomNumbers random(seed_of_day(5));
+  RandomNumbers random(test_seed(5));
   int touching = 0, overlapping = 0;
-  for (int k = 0; k < trials(60, 40); ++k) {
+  for (int k = 0; more_cases(k, trials(60, 40), touching > 1 && overlapping > 1); ++k) {
     std::array<std::set<std::array<int, 3>>, 2> cubes;
     for (auto& solid : cubes) {
       const int count = 1 + random.below(6);
@@ -181,8 +181,6 @@ TEST(Overlap, OfSolidsOfCubesIsKnown) {
     ASSERT_EQ(found, common ? Overlap::yes : Overlap::no) << k;
     (common ? overlapping : touching) += 1;
   }
-  EXPECT_GT(touching, trials(5, 0));
-  EXPECT_GT(overlapping, trials(5, 0));
 }
 
 }  // namespace

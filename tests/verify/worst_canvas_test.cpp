@@ -70,15 +70,13 @@ TEST(WorstLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvase
 using lab::far_on;
 
 TEST(WorstFar, MissesNothingOnRandomScenes) {
-  const auto scenes = static_cast<std::uint64_t>(trials(40));
-  std::uint64_t at_risk = 0;
-  for (std::uint64_t n = 1001; n <= 1000 + scenes; ++n) {
-    const bool fixed = n % 2 != 0;
-    const std::uint64_t seed = fixed ? n : seed_of_day(n);
+  std::uint64_t at_risk = 0;  // lost without a radius
+  for (int n = 0; more_cases(n, trials(40), at_risk > 100); ++n) {
+    const std::uint64_t seed = test_seed(static_cast<std::uint64_t>(n));
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Scene scene = lab::random_scene(seed);
     const std::string views = n % 4 ? "x,y,z" : "1:2:0.5,-x";
-    const int resolution = 1 + static_cast<int>(n * n % 61);
+    const int resolution = 1 + n * n % 61;
     for (const Fattener& fattener : lab::fatteners()) {
       WorstCanvas canvas(fattener.solid, {.depth_bits = n % 3 ? 32 : 24});
       const auto lost = [&](const Scene& of, double factor = 1) {
@@ -87,11 +85,9 @@ TEST(WorstFar, MissesNothingOnRandomScenes) {
       lab::expect_not([&](const Scene& of) { return lost(of) > 0; }, scene,
                       "worst-" + std::to_string(seed) + "-" + fattener.name,
                       "views " + views + " resolution " + std::to_string(resolution));
-      if (fixed) at_risk += lost(scene, 0);
+      if (at_risk <= 100) at_risk += lost(scene, 0);
     }
   }
-  std::printf("pairs at risk: %llu at 0\n", static_cast<unsigned long long>(at_risk));
-  EXPECT_GT(at_risk, 300 * scenes / 40) << "pairs lost without a radius";
 }
 
 TEST(WorstFar, MissesNothingOnHardScenesAndTheirCopiesElsewhere) {

@@ -47,13 +47,11 @@ TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
 }
 
 TEST(GlProbe, OtherSeedsPassToo) {
-  for (const std::uint64_t seed : {std::uint64_t{2}, seed_of_day(77)}) {
-    ProbeOptions options = kBrief;
-    options.seed = seed;
-    for (const ProbeResult& r : run(options, ""))
-      EXPECT_TRUE(r.pass) << "seed " << seed << ": " << r.assumption << " " << r.name << ": "
-                          << r.measured << " > " << r.bound << " " << r.note;
-  }
+  ProbeOptions options = kBrief;
+  options.seed = test_seed(2);
+  for (const ProbeResult& r : run(options, ""))
+    EXPECT_TRUE(r.pass) << "seed " << options.seed << ": " << r.assumption << " " << r.name << ": "
+                        << r.measured << " > " << r.bound << " " << r.note;
 }
 
 TEST(GlProbe, SameSeedMeasuresTheSame) {

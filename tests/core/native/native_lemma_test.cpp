@@ -116,12 +116,12 @@ TEST(NativeLemma, Theorem1IntersectingTrianglesSeeEachOther) {
 TEST(NativeLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 40); }
 
 TEST(NativeFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(
-      canvases(), {.canvas = "native", .fixed = 30, .of_the_day = trials(60, 10)});
+  lab::expect_far_survives_all_families(canvases(),
+                                        {.canvas = "native", .scenes = 30 + trials(60, 10)});
 }
 TEST(NativeFarProperty, NorOn24BitDepth) {
   lab::expect_far_survives_all_families(canvases({.depth_bits = 24}),
-                                        {.canvas = "native24", .fixed = 12, .of_the_day = 5});
+                                        {.canvas = "native24", .scenes = 17});
 }
 TEST(NativeFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
 

@@ -41,8 +41,8 @@ def test_ctrl_c_ends_a_call(call):
     import time
     # Where the test runs in the background of a shell, the signal is ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    print("begun", flush=True)
     try:
+        print("begun", flush=True)
         {call}
     except KeyboardInterrupt:
         print("ended", time.monotonic(), flush=True)
@@ -64,7 +64,7 @@ def test_ctrl_c_ends_a_call(call):
 
 
 def test_a_collider_that_was_interrupted_answers_as_a_new_one():
-    out = python("""
+    python("""
     import farcull, random, signal, time
     import numpy as np
 
@@ -82,8 +82,9 @@ def test_a_collider_that_was_interrupted_answers_as_a_new_one():
     begun = time.monotonic()
     collider.find(V, F)
     whole = time.monotonic() - begun
-    interrupted = 0
-    for _ in range(8):
+    interrupted = tried = 0
+    while interrupted < 3 or tried < 8:
+        tried += 1
         V = V.copy()
         moved = rng.random(len(V)) < draw.choice([0.001, 0.3, 1])
         V[moved] += rng.normal(0, 0.01, size=(moved.sum(), 3))
@@ -92,14 +93,13 @@ def test_a_collider_that_was_interrupted_answers_as_a_new_one():
             signal.setitimer(signal.ITIMER_REAL, draw.uniform(0.001, whole))
             collider.find(V, F)
             signal.setitimer(signal.ITIMER_REAL, 0)
+            whole /= 1.5
         except Stop:
             interrupted += 1
     kept, fresh = collider.find(V, F), farcull.collide(V, F, self=True)
     assert np.array_equal(kept.pairs, fresh.pairs) and len(fresh.pairs) > 1000
     assert np.array_equal(kept.neighbour_pairs, fresh.neighbour_pairs)
-    print(interrupted)
     """)
-    assert int(out) > 0  # else it shows nothing
 
 
 def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():

@@ -153,9 +153,9 @@ TEST_F(SceneFileTest, ReadsEachMeshOnce) {
   folder.write("long.obj", text);
   std::string list;
   for (int i = 0; i < 5000; ++i) list += std::string(i ? "," : "") + R"({"mesh": "./long.obj"})";
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   EXPECT_EQ(read("{\"objects\": [" + list + "]}").objects.size(), 5000u);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
 }
 
 TEST_F(SceneFileTest, RefusesBadSyntaxWithItsLine) {

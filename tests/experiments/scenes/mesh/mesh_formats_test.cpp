@@ -15,9 +15,10 @@ void expect_cheap(const Call& call) {
     return usage.ru_maxrss;
   };
   const long before = peak_kilobytes();
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start =
+      std::clock();  // of the processor, which a busy machine does not change
   call();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - start, CLOCKS_PER_SEC);
   EXPECT_LT(peak_kilobytes() - before, 64 * 1024);
 }
 
