@@ -1,7 +1,6 @@
-// The expanding polytope algorithm gives directions, of which the best one is the upper bound, and
-// a polytope in the Minkowski difference, which is the lower bound for nearly convex objects. A
-// search by steps along the axes gives the point of the balls. All this is in plain doubles; what
-// it finds is then proved with exact predicates, or with bounds of all roundings.
+// The expanding polytope algorithm of all corners gives the first upper bound: a direction in which
+// the hulls are apart soonest. Then come the rays through all polytopes of cores, along the normals
+// of their faces, and then the search. All this is in plain doubles; what it finds is proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -9,137 +8,158 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
+#include <queue>
+#include <utility>
 #include <vector>
 
 #include "core/base/floating_point.h"
-#include "verify/closest.h"
-#include "verify/filter_scalars.h"
-#include "verify/inside.h"
-#include "verify/rational.h"
-#include "verify/separation.h"
+#include "core/base/parallel.h"
+#include "verify/within.h"
 
 namespace farcull {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
-using rational::Q;
+using Corners = ClosedObject::Corners;
+using Points = std::vector<Vec3>;
 using separation::kU;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-double down(double x) { return std::nextafter(x, -kInf); }
-
-std::vector<Corners> triangles_of(const Scene& scene, std::uint32_t object) {
-  const Object& o = scene.objects[object];
-  std::vector<Corners> out(o.triangle_count);
-  for (std::uint32_t k = 0; k < o.triangle_count; ++k) out[k] = scene.corners(o.first_triangle + k);
-  return out;
-}
-
-/// Each corner once.
-std::vector<Vec3> corners_of(const std::vector<Corners>& triangles) {
-  std::vector<std::array<double, 3>> places;
-  for (const Corners& t : triangles) {
-    for (const Vec3& p : t) places.push_back({p.x(), p.y(), p.z()});
+const Vec3& farthest(const Points& points, const Vec3& direction) {
+  double most = -kInf;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double value = direction.dot(points[k]);
+    if (value > most) most = value, at = k;
   }
-  std::ranges::sort(places);
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  std::vector<Vec3> out;
-  for (const auto& p : places) out.emplace_back(p[0], p[1], p[2]);
-  return out;
+  return points[at];
 }
 
-/// The largest direction . p over the points, exactly.
-Q largest_along(std::span<const Vec3> points, const Vec3& direction) {
-  // The computed value of each has three products and two sums.
-  const auto bound = [&](const Vec3& p) {
-    return 8 * kU * direction.cwiseAbs().dot(p.cwiseAbs()) + 0x1p-1000;
+// ---- translations that separate ----
+
+/// Whether all corners of a, moved, lie on one side of a plane across the direction, and all of b
+/// on the other. A corner that is moved and projected has 6 roundings, relative to `magnitude`.
+bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t,
+                     double magnitude) {
+  double most = -kInf, least = kInf;
+  for (const Vec3& p : a.corners()) most = std::max(most, t.dot(p + t));
+  for (const Vec3& p : b.corners()) least = std::min(least, t.dot(p));
+  return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
+}
+
+/// Whether the surfaces are apart by more than `margin`, if a is moved.
+bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
+  const auto moved = [&](separation::Bounds box) {
+    for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
+    return box;
   };
-  double least = -kInf;
-  for (const Vec3& p : points) least = std::max(least, direction.dot(p) - bound(p));
-  Q most;
-  bool any = false;
-  for (const Vec3& p : points) {
-    if (direction.dot(p) + bound(p) < least) continue;
-    const Q value = rational::dot(rational::exact(direction), rational::exact(p));
-    if (!any || value > most) most = value;
-    any = true;
-  }
-  return most;
-}
-
-bool separates_points(std::span<const Vec3> a, std::span<const Vec3> b, const Vec3& direction,
-                      const Vec3& translation) {
-  if (direction.isZero(0) || !direction.allFinite() || !translation.allFinite()) return false;
-  const Q moved = rational::dot(rational::exact(direction), rational::exact(translation));
-  return largest_along(a, direction) + largest_along(b, -direction) + moved <= 0;
-}
-
-// ---- the expanding polytope ----
-
-struct Solid {
-  std::vector<Corners> triangles;
-  std::vector<Vec3> points;
-  Vec3 farthest(const Vec3& direction) const {
-    double most = -kInf;
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double value = direction.dot(points[k]);
-      if (value > most) most = value, at = k;
+  const auto extent = [](const ClosedObject::Node& node) {
+    return std::max({node.box.hi[0] - node.box.lo[0], node.box.hi[1] - node.box.lo[1],
+                     node.box.hi[2] - node.box.lo[2]});
+  };
+  std::vector<std::array<std::uint32_t, 2>> stack = {{0, 0}};
+  while (!stack.empty()) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const ClosedObject::Node &of_a = a.nodes()[i], &of_b = b.nodes()[j];
+    if (separation::farther(moved(of_a.box), of_b.box, margin)) continue;
+    if (of_a.count == 0 && (of_b.count > 0 || extent(of_a) > extent(of_b))) {
+      stack.push_back({i + 1, j}), stack.push_back({of_a.second, j});
+      continue;
     }
-    return points[at];
+    if (of_b.count == 0) {
+      stack.push_back({i, j + 1}), stack.push_back({i, of_b.second});
+      continue;
+    }
+    for (std::uint32_t p = 0; p < of_a.count; ++p) {
+      Corners s = a.triangles()[of_a.first + p];
+      for (Vec3& corner : s) corner += t;
+      const separation::Bounds box = separation::bounds_of(s);
+      for (std::uint32_t q = 0; q < of_b.count; ++q) {
+        const Corners& other = b.triangles()[of_b.first + q];
+        if (!separation::farther(box, separation::bounds_of(other), margin) &&
+            is_within(s, other, margin))
+          return false;
+      }
+    }
   }
-};
+  return true;
+}
+
+}  // namespace
+
+// Where the surfaces are apart, a common point of the insides would lie in a region whose boundary
+// has a point of one surface that is inside the other object, and with it all of its piece. So one
+// corner of each piece decides. A coordinate that is moved in doubles is off by 2^-53 of its
+// magnitude at most; the surfaces are farther apart than such an error of a and one of b, so the
+// rounded corner and the true one lie on the same side.
+bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
+  const FloatingPointGuard guard;
+  const double magnitude = a.largest() + b.largest() + t.cwiseAbs().maxCoeff();
+  if (!(magnitude < 0x1p500)) return false;
+  if (plane_separates(a, b, t, magnitude)) return true;
+  const auto all_outside = [](const ClosedObject& inner, const ClosedObject& outer,
+                              const Vec3& move) {
+    return std::ranges::all_of(inner.pieces(),
+                               [&](const Vec3& p) { return outer.has_not(p + move); });
+  };
+  return surfaces_apart(a, b, t, 16 * kU * magnitude) && all_outside(a, b, t) &&
+         all_outside(b, a, -t);
+}
+
+namespace {
+
+// ---- polytopes of differences ----
 
 class Polytope {
  public:
-  Polytope(const Solid& a, const Solid& b) : a_(a), b_(b) {}
+  struct Face {
+    std::array<std::uint32_t, 3> corners;
+    Vec3 normal;      // of length 1, outward
+    double distance;  // of its plane from the origin; negative if the origin is above it
+    bool final;       // no point of the differences is above it
+  };
 
-  /// Expands until no direction is better by more than a small part, or for so many steps. Returns
-  /// whether the origin is inside the polytope, as far as doubles tell.
-  bool expand(int steps) {
-    if (!begin()) return false;
-    for (int step = 0; step < steps; ++step) {
-      const auto nearest = std::ranges::min_element(faces_, {}, &Face::distance);
-      if (nearest == faces_.end()) return false;
+  /// flat: a point this far above a plane is in it, relative to the size. Corners are rounded, so
+  /// that planes of small faces are uncertain far from them.
+  Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
+
+  /// Adds points, always above the face that is nearest to the origin, until the nearest face is
+  /// final, or all are (whole), or for so many steps.
+  void expand(int steps, bool whole) {
+    if (!begin()) faces_.clear();
+    while (steps > 0 && !faces_.empty()) {
+      Face* nearest = nullptr;
+      for (Face& face : faces_) {
+        if ((!whole || !face.final) && (!nearest || face.distance < nearest->distance))
+          nearest = &face;
+      }
+      if (!nearest || nearest->final) break;
       const double distance = nearest->distance;
-      const Vec3 normal = nearest->normal;
-      const Vec3 next = support(normal);
-      if (normal.dot(next) - distance <= 1e-12 * scale_ || !add(next)) break;
+      const Vec3 normal = nearest->normal, next = support(normal);
+      nearest->final = true;
+      if (normal.dot(next) - distance <= 4 * flat_ * scale_ ||
+          std::ranges::count(corners_, next) > 0)
+        continue;
+      add(next);
+      --steps;
+      // A convex surface has fewer faces than twice its corners.
+      if (faces_.size() > 2 * corners_.size()) faces_.clear();
     }
-    return std::ranges::all_of(faces_, [](const Face& face) { return face.distance > 0; });
   }
 
   const Vec3& direction() const { return direction_; }  // of the least overlap
   double overlap() const { return overlap_; }
-
-  /// The polytope as an object of a scene.
-  Scene scene() const {
-    Scene out;
-    out.vertices = corners_;
-    for (const Face& face : faces_) out.triangles.push_back(face.corners);
-    out.source_face.resize(faces_.size());
-    const auto count = static_cast<std::uint32_t>(faces_.size());
-    out.objects.push_back({.name = "difference", .first_triangle = 0, .triangle_count = count});
-    return out;
-  }
+  const std::vector<Face>& faces() const { return faces_; }
+  const Points& corners() const { return corners_; }
 
  private:
-  struct Face {
-    std::array<std::uint32_t, 3> corners;
-    Vec3 normal;  // of length 1, outward
-    double distance;
-  };
-
-  // A point of the difference a - b that is farthest in the direction. Every direction is a
-  // candidate for the translation.
+  // A point of the difference b - a that is farthest in the direction. After a translation of a by
+  // the overlap along the direction, a begins where b ends.
   Vec3 support(const Vec3& direction) {
-    const Vec3 out = a_.farthest(direction) - b_.farthest(-direction);
+    const Vec3 out = farthest(*b_, direction) - farthest(*a_, -direction);
     const double overlap = direction.dot(out);
-    if (overlap < overlap_ && (direction.array() != 0).any())
-      overlap_ = overlap, direction_ = direction;
+    if (overlap < overlap_) overlap_ = overlap, direction_ = direction;
     return out;
   }
 
@@ -147,13 +167,13 @@ class Polytope {
     const Vec3 normal = (corners_[j] - corners_[i]).cross(corners_[k] - corners_[i]);
     const double length = normal.norm();
     if (!(length > 0 && length < kInf)) return false;
-    faces_.push_back({{i, j, k}, normal / length, normal.dot(corners_[i]) / length});
+    faces_.push_back({{i, j, k}, normal / length, normal.dot(corners_[i]) / length, false});
     return true;
   }
 
   // Finds four points that span a tetrahedron.
   bool begin() {
-    std::vector<Vec3> found;
+    Points found;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) found.push_back(support(sign * Vec3::Unit(axis)));
     }
@@ -162,15 +182,15 @@ class Polytope {
         for (const double z : {1.0, -1.0}) found.push_back(support(Vec3(x, y, z).normalized()));
       }
     }
-    const auto farthest = [&](const auto& measure) {
+    const auto most = [&](const auto& measure) {
       return *std::ranges::max_element(found, {}, measure);
     };
     const Vec3 p = found[0];
-    const Vec3 q = farthest([&](const Vec3& x) { return (x - p).norm(); });
+    const Vec3 q = most([&](const Vec3& x) { return (x - p).norm(); });
     scale_ = (q - p).norm();
-    const Vec3 r = farthest([&](const Vec3& x) { return (x - p).cross(q - p).norm(); });
+    const Vec3 r = most([&](const Vec3& x) { return (x - p).cross(q - p).norm(); });
     const Vec3 n = (q - p).cross(r - p);
-    const Vec3 s = farthest([&](const Vec3& x) { return std::abs((x - p).dot(n)); });
+    const Vec3 s = most([&](const Vec3& x) { return std::abs((x - p).dot(n)); });
     corners_ = {p, q, r, s};
     if ((s - p).dot(n) > 0) std::swap(corners_[1], corners_[2]);
     if (!(add_face(0, 1, 2) && add_face(0, 3, 1) && add_face(1, 3, 2) && add_face(2, 3, 0)))
@@ -179,259 +199,353 @@ class Polytope {
     return true;
   }
 
-  // Replaces the faces that see the point by faces to it. False if none does, or a new one is flat.
-  bool add(const Vec3& point) {
-    std::map<std::array<std::uint32_t, 2>, int> edges;  // of faces that see the point, directed
+  // Replaces the faces that see the point by faces to it; nothing if a new one would be flat.
+  void add(const Vec3& point) {
+    std::vector<std::array<std::uint32_t, 2>> edges;  // of faces that see the point, directed
     std::vector<Face> kept;
     for (const Face& face : faces_) {
-      if (face.normal.dot(point - corners_[face.corners[0]]) <= 1e-14 * scale_) {
+      if (face.normal.dot(point - corners_[face.corners[0]]) <= flat_ * scale_) {
         kept.push_back(face);
         continue;
       }
-      for (int i = 0; i < 3; ++i) ++edges[{face.corners[i], face.corners[(i + 1) % 3]}];
+      for (int i = 0; i < 3; ++i) edges.push_back({face.corners[i], face.corners[(i + 1) % 3]});
     }
-    if (kept.size() == faces_.size()) return false;
+    if (edges.empty()) return;
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    for (const auto& [edge, count] : edges) {
-      if (edges.contains({edge[1], edge[0]})) continue;
-      if (add_face(edge[0], edge[1], last)) continue;
-      faces_ = std::move(before);
-      return false;
+    // An edge remains as often as it is passed more in one direction than in the other.
+    std::ranges::sort(edges);
+    for (auto at = edges.begin(); at != edges.end();) {
+      const auto [from, to] = *at;
+      const auto passed = std::ranges::equal_range(edges, *at);
+      auto more =
+          std::ssize(passed) - std::ssize(std::ranges::equal_range(edges, std::array{to, from}));
+      for (; more > 0; --more) {
+        if (add_face(from, to, last)) continue;
+        faces_ = std::move(before);
+        return;
+      }
+      at = passed.end();
     }
-    return true;
   }
 
-  const Solid &a_, &b_;
-  std::vector<Vec3> corners_;
+  const Points *a_, *b_;
+  Points corners_;
   std::vector<Face> faces_;
-  double scale_ = 0;
+  double flat_, scale_ = 0;
   double overlap_ = kInf;
   Vec3 direction_ = Vec3::UnitX();
 };
 
-// ---- from above ----
-
-/// A translation of a along -direction that separates, with room for the rounding of coordinates.
-void bound_above(const Solid& a, const Solid& b, const Vec3& direction, Penetration& out) {
-  const Q overlap = largest_along(a.points, direction) + largest_along(b.points, -direction);
-  double largest = 0;
-  for (const Solid* solid : {&a, &b}) {
-    for (const Vec3& p : solid->points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  }
-  // Corners that are moved in doubles are rounded by this at most, so that they are apart as well.
-  double length = overlap.get_d() + 8 * kU * (largest + std::abs(overlap.get_d()));
-  for (int k = 0; k < 64; ++k) {
-    out.translation = -length / direction.squaredNorm() * direction;
-    out.direction = direction;
-    if (separates_points(a.points, b.points, direction, out.translation)) break;
-    length += std::ldexp(kU, k) * std::abs(length);
-  }
-  out.hi = out.translation.stableNorm() * (1 + 8 * kU);
-  if (out.hi > 0) out.hi = std::nextafter(out.hi, kInf);  // also among subnormal numbers
-  if (!separates_points(a.points, b.points, direction, out.translation)) out.hi = kInf;
-}
-
-// ---- from below, nearly convex ----
-
-/// How far corners of the solid are above planes of its faces, with all roundings; infinite if a
-/// face has no certain plane, or if there are too many faces.
-double height_above_faces(const Solid& solid) {
-  constexpr double kMostTests = 3e8;
-  if (static_cast<double>(solid.triangles.size()) * static_cast<double>(solid.points.size()) >
-      kMostTests)
-    return kInf;
-  double most = 0;
-  for (const Corners& t : solid.triangles) {
-    const filters::Normal n =
-        filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
-    // A component of the normal has two products of differences: 4 roundings each.
-    const double length = std::sqrt(filters::dot(n.n, n.n)) * (1 - 8 * kU) -
-                          8 * kU * (n.m.x + n.m.y + n.m.z) - 0x1p-500;
-    if (!(length > 0 && length < kInf)) return kInf;
-    double above = 0, below = 0;  // the normal may face outward or inward
-    for (const Vec3& p : solid.points) {
-      const auto w = filters::difference(p, t[0]);
-      const double value = filters::dot(n.n, w);
-      const double bound = filters::side_bound<FilterBounds>(n, filters::magnitudes(w));
-      if (!(std::abs(value) + bound < kInf)) return kInf;
-      above = std::max(above, (value + bound) / length);
-      below = std::max(below, (bound - value) / length);
-    }
-    most = std::max(most, std::min(above, below));
-  }
-  return most * (1 + 8 * kU);
-}
-
-/// How much a corner of the convex hull can be outside a convex part of the solid; infinite if
-/// there is no proof.
-double hull_error(const Scene& scene, std::uint32_t object, const Solid& solid) {
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : solid.points) centre += p / static_cast<double>(solid.points.size());
-  if (inside(scene, object, centre) != Inside::yes) return kInf;
-  const double rho = distance_below(scene, object, centre);
-  const double epsilon = height_above_faces(solid);
-  if (!(rho > 2 * epsilon)) return kInf;
-  double radius = 0;
-  for (const Vec3& p : solid.points) radius = std::max(radius, (p - centre).norm());
-  return epsilon / rho * radius * (1 + 32 * kU);
-}
-
-double bound_by_polytope(const Scene& scene, ObjectPair objects, const Solid& a, const Solid& b,
-                         const Polytope& polytope) {
-  const Scene difference = polytope.scene();
-  const Vec3 origin = Vec3::Zero();
-  if (inside(difference, 0, origin) != Inside::yes) return 0;
-  double largest = 0;
-  for (const Vec3& p : difference.vertices) largest = std::max(largest, p.norm());
-  const double error = hull_error(scene, objects.a, a) + hull_error(scene, objects.b, b) +
-                       4 * kU * largest;  // corners are rounded differences
-  const double radius = distance_below(difference, 0, origin);
-  const double out = down(radius - error * (1 + 8 * kU));
-  return std::isfinite(out) ? std::max(out, 0.0) : 0;
-}
-
-// ---- from below, by balls ----
-
-/// The squared distance of a point and a triangle in plain doubles (Ericson, Real-Time Collision
-/// Detection, 2005, section 5.1.5).
-double squared_to(const Corners& t, const Vec3& p) {
-  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
-  const Vec3 bp = p - t[1];
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
-  const Vec3 cp = p - t[2];
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return (bp - w * (t[2] - t[1])).squaredNorm();
-  }
-  const Vec3 n = ab.cross(ac);
-  const double height = n.dot(ap);
-  return height * height / n.squaredNorm();
-}
-
-/// The distance to the surface, negative outside, in plain doubles.
-double depth_in(const Solid& solid, const Vec3& p) {
-  double squared = kInf;
-  bool odd = false;
-  for (const Corners& t : solid.triangles) {
-    squared = std::min(squared, squared_to(t, p));
-    // The ray along the first axis. One that meets an edge is moved a little along y, and by far
-    // less along z: the middle of a box often has the diagonals of its faces before it.
-    std::array<double, 3> side{};
-    int left = 0, right = 0;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 u = t[i] - p, v = t[(i + 1) % 3] - p;
-      side[i] = u.y() * v.z() - u.z() * v.y();
-      const double moved = side[i] != 0 ? side[i] : u.z() != v.z() ? u.z() - v.z() : v.y() - u.y();
-      left += moved > 0;
-      right += moved < 0;
-    }
-    if (left != 3 && right != 3) continue;
-    const double height =
-        side[1] * (t[0].x() - p.x()) + side[2] * (t[1].x() - p.x()) + side[0] * (t[2].x() - p.x());
-    if (left == 3 ? height > 0 : height < 0) odd = !odd;
-  }
-  return (odd ? 1 : -1) * std::sqrt(squared);
-}
-
-/// A point deep inside both, by steps along the axes that become shorter.
-Vec3 deep_point(const Solid& a, const Solid& b, std::vector<Vec3> starts, double step) {
-  const double work = 3e7 / static_cast<double>(a.triangles.size() + b.triangles.size());
-  int left = static_cast<int>(std::clamp(work, 80.0, 1500.0));
-  const auto value = [&](const Vec3& p) {
-    --left;
-    const double of_a = depth_in(a, p), of_b = depth_in(b, p);
-    return of_a > 0 && of_b > 0 ? of_a + of_b : std::min({of_a, of_b, 0.0}) - 1e-300;
+/// The translations that a polytope holds for certain.
+struct Cover {
+  struct Side {
+    Vec3 normal;      // of length 1
+    double distance;  // the translation t is held if normal . t < distance for all sides
+    double error;     // of the difference of the two, relative to the magnitudes
+    Vec3 support;     // |normal . axis| for each axis of boxes
   };
-  Vec3 best = starts.front();
-  double most = -kInf;
-  for (const Vec3& p : starts) {
-    const double v = value(p);
-    if (v > most) most = v, best = p;
-    if (left <= 40) break;
+  std::vector<Side> sides;
+  double largest = 0;  // coordinate of a corner
+};
+
+// A component of a normal has 4 roundings, relative to the product of the two differences, which
+// are at most 2 `largest` each; to make its length 1 multiplies that by 1 / length. Products with a
+// translation and a corner, the corner's own rounding, sums and axes are 24 more, relative to 1. So
+// 40 covers both.
+Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
+  Cover out;
+  const Points& at = polytope.corners();
+  for (const Vec3& p : at) out.largest = std::max(out.largest, p.cwiseAbs().maxCoeff());
+  for (const Polytope::Face& face : polytope.faces()) {
+    const Vec3 &p = at[face.corners[0]], e = at[face.corners[1]] - p, f = at[face.corners[2]] - p;
+    const double thin = e.cwiseAbs().sum() * f.cwiseAbs().sum() / e.cross(f).norm();
+    Cover::Side side{face.normal, face.normal.dot(p), 40 * kU * (3 + thin), {}};
+    for (int k = 0; k < 3; ++k) side.support[k] = std::abs(face.normal.dot(axes[k]));
+    out.sides.push_back(side);
   }
-  for (const double least = 1e-4 * step; step > least && left > 0; step /= 2) {
-    for (bool better = true; better && left > 0;) {
-      better = false;
-      for (int k = 0; k < 6; ++k) {
-        const Vec3 p = best + (k % 2 == 0 ? step : -step) * Vec3::Unit(k / 2);
-        const double v = value(p);
-        if (v > most) most = v, best = p, better = true;
+  return out;
+}
+
+/// The part of the ray from the origin that the cover holds, in plain doubles.
+std::array<double, 2> along_ray(const Cover& cover, const Vec3& direction) {
+  double from = -kInf, to = kInf;
+  for (const Cover::Side& side : cover.sides) {
+    const double slope = side.normal.dot(direction);
+    if (slope > 1e-14) to = std::min(to, side.distance / slope);
+    if (slope < -1e-14) from = std::max(from, side.distance / slope);
+    if (std::abs(slope) <= 1e-14 && side.distance < 0) return {0, 0};
+  }
+  return {from, to};
+}
+
+/// How far the ray is held from the origin on.
+double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
+  std::vector<std::array<double, 2>> parts;
+  for (const Cover& cover : covers) parts.push_back(along_ray(cover, direction));
+  std::ranges::sort(parts);
+  double out = 0;
+  for (const auto& [from, to] : parts) {
+    if (from <= out * (1 + 1e-9)) out = std::max(out, to);
+  }
+  return out;
+}
+
+/// Three directions, perpendicular but for rounding: that of most of the area, and then of most of
+/// the rest.
+std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
+  std::vector<std::pair<double, Vec3>> normals;
+  for (const ClosedObject* solid : {&a, &b}) {
+    const std::size_t stride = solid->triangles().size() / 256 + 1;
+    for (std::size_t k = 0; k < solid->triangles().size(); k += stride) {
+      const Corners& t = solid->triangles()[k];
+      const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+      if (const double length = n.norm(); length > 0) normals.emplace_back(length, n / length);
+    }
+  }
+  const auto best = [&](const auto& allowed, Vec3 out) {
+    double most = 0;
+    for (const auto& [weight, n] : normals) {
+      if (!allowed(n)) continue;
+      double sum = 0;
+      for (const auto& [other, m] : normals) sum += std::abs(n.dot(m)) > 1 - 1e-9 ? other : 0;
+      if (sum > most) most = sum, out = n;
+    }
+    return out;
+  };
+  const Vec3 x = best([](const Vec3&) { return true; }, Vec3::UnitX());
+  const Vec3 y = best([&](const Vec3& n) { return std::abs(n.dot(x)) < 1e-9; }, x.unitOrthogonal());
+  return {x, y, x.cross(y)};
+}
+
+class Search {
+ public:
+  Search(const ClosedObject& a, const ClosedObject& b, std::vector<Cover> covers,
+         std::array<Vec3, 3> axes, Penetration& out)
+      : a_(a), b_(b), covers_(std::move(covers)), axes_(axes), out_(out) {
+    const double triangles = double(a.triangles().size() + b.triangles().size());
+    failures_ = triangles < 1000 ? 64 : 16;
+    room_ =
+        4 * kCoreInward * ((a.box().hi - a.box().lo).norm() + (b.box().hi - b.box().lo).norm()) +
+        64 * kU * (a.largest() + b.largest());
+  }
+
+  /// Makes the upper bound less, if the translation, and a little more, separates.
+  bool try_translation(const Vec3& t) {
+    if (failures_ == 0 || !t.allFinite()) return false;
+    const double length = t.norm();
+    const Vec3 longer = t * (1 + 64 * kU + room_ / length);
+    const double hi = longer.norm() * (1 + 8 * kU);
+    if (!(hi < out_.hi)) return false;
+    if (!separates(a_, b_, longer)) {
+      --failures_;
+      return false;
+    }
+    out_.hi = hi;
+    out_.translation = longer;
+    return true;
+  }
+
+  /// Tries the ends of what the covers hold along the normals of their faces; where that is not
+  /// far enough, something between it and the upper bound.
+  void try_rays() {
+    constexpr std::size_t kMostRays = 1000, kTried = 24;
+    constexpr double kWork = 2e6;  // sides of covers that are looked at
+    std::vector<std::pair<double, Vec3>> rays;
+    for (const Vec3& axis : axes_) {
+      for (const double sign : {1.0, -1.0}) rays.emplace_back(0, sign * axis);
+    }
+    std::vector<const Cover::Side*> sides;
+    for (const Cover& cover : covers_) {
+      for (const Cover::Side& side : cover.sides) sides.push_back(&side);
+    }
+    const auto most = static_cast<std::size_t>(kWork / static_cast<double>(sides.size() + 1));
+    std::ranges::sort(sides, {}, &Cover::Side::distance);
+    for (const Cover::Side* side : sides) {
+      const auto same = [&](const auto& ray) { return ray.second.dot(side->normal) > 1 - 1e-9; };
+      if (side->distance <= 0 || std::ranges::any_of(rays, same)) continue;
+      if (side->distance >= out_.hi || rays.size() >= std::min(kMostRays, most)) break;
+      rays.emplace_back(0, side->normal);
+    }
+    for (auto& [length, direction] : rays) length = held_along(covers_, direction);
+    std::ranges::sort(rays, {}, [](const auto& ray) { return ray.first; });
+    if (rays.size() > kTried) rays.resize(kTried);
+    for (const auto& [length, direction] : rays) {
+      double from = std::max(length, 1e-6 * out_.hi);
+      if (from >= 0.999 * out_.hi || try_translation(from * direction)) continue;
+      double to = out_.hi;
+      for (int step = 0; step < 5 && to > 1.02 * from; ++step) {
+        const double middle = 0.5 * (from + to);
+        (try_translation(middle * direction) ? to : from) = middle;
       }
     }
   }
-  return best;
-}
 
-double bound_by_balls(const Scene& scene, ObjectPair objects, const Vec3& p) {
-  for (const std::uint32_t object : {objects.a, objects.b}) {
-    if (inside(scene, object, p) != Inside::yes) return 0;
+  /// Divides the ball of translations below the upper bound until all of it that is nearer than
+  /// the lower bound is settled.
+  void search() {
+    constexpr double kWork = 2e6;  // sides of covers that are looked at
+    constexpr double kClose = 0.98;
+    std::priority_queue<Part, std::vector<Part>, std::greater<>> parts;
+    parts.push({0, Vec3::Zero(), Vec3::Constant(out_.hi * (1 + 1e-9))});
+    const double least = 1e-7 * out_.hi;
+    while (!parts.empty()) {
+      const Part part = parts.top();
+      // The axes are perpendicular but for rounding.
+      out_.lo = std::max(out_.lo, std::min(part.distance * (1 - 1e-12), out_.hi));
+      if (out_.lo >= kClose * out_.hi || work_ > kWork) return;
+      parts.pop();
+      const int axis = axis_to_divide(part);
+      if (axis < 0) continue;
+      if (part.half[axis] < least) return;
+      const Vec3 middle = point_at(part.middle);
+      if (middle.norm() < 0.97 * out_.hi && none_holds(middle) && try_translation(middle))
+        try_translation(middle.normalized() * held_along(covers_, middle.normalized()));
+      for (const double sign : {-1.0, 1.0}) {
+        Part child = part;
+        child.half[axis] /= 2;
+        child.middle[axis] += sign * child.half[axis];
+        child.distance = (child.middle.cwiseAbs() - child.half).cwiseMax(0).norm();
+        if (child.distance < out_.hi) parts.push(child);
+      }
+    }
+    out_.lo = out_.hi * (1 - 1e-11);  // all is settled
   }
-  return down(distance_below(scene, objects.a, p) + distance_below(scene, objects.b, p));
+
+ private:
+  struct Part {
+    double distance;    // of the origin
+    Vec3 middle, half;  // along the axes
+    bool operator>(const Part& other) const { return distance > other.distance; }
+  };
+
+  Vec3 point_at(const Vec3& p) const { return p[0] * axes_[0] + p[1] * axes_[1] + p[2] * axes_[2]; }
+
+  bool none_holds(const Vec3& t) {
+    return std::ranges::none_of(covers_, [&](const Cover& cover) {
+      return std::ranges::all_of(cover.sides, [&](const Cover::Side& side) {
+        ++work_;
+        return side.normal.dot(t) < side.distance;
+      });
+    });
+  }
+
+  /// The axis along which the part reaches out of the cover that holds most of it; -1 if that
+  /// holds all of it.
+  int axis_to_divide(const Part& part) {
+    const Vec3 middle = point_at(part.middle);
+    const double reach = middle.cwiseAbs().maxCoeff() + part.half.sum();
+    double least = kInf;
+    const Cover::Side* of_least = nullptr;
+    for (const Cover& cover : covers_) {
+      double most = -kInf;
+      const Cover::Side* at = nullptr;
+      for (const Cover::Side& side : cover.sides) {
+        ++work_;
+        const double above = side.normal.dot(middle) + side.support.dot(part.half) - side.distance +
+                             side.error * (reach + cover.largest);
+        if (above > most) most = above, at = &side;
+        if (most >= least) break;
+      }
+      if (most < 0) return -1;
+      if (most < least) least = most, of_least = at;
+    }
+    int axis = 0;
+    part.half.maxCoeff(&axis);
+    if (!of_least) return axis;
+    int best = 0;
+    of_least->support.cwiseProduct(part.half).maxCoeff(&best);
+    return part.half[best] > part.half[axis] / 4096 ? best : axis;
+  }
+
+  const ClosedObject &a_, &b_;
+  std::vector<Cover> covers_;
+  std::array<Vec3, 3> axes_;
+  Penetration& out_;
+  int failures_;     // that are left
+  double room_ = 0;  // by which cores, which are a little too small, and rounding may be off
+  double work_ = 0;
+};
+
+/// A translation across a plane: what the hulls of all corners need.
+void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& out) {
+  Polytope hull(a.corners(), b.corners(), 1e-14);
+  hull.expand(200, false);
+  const Vec3 direction = hull.direction().normalized();
+  double length = std::max(hull.overlap(), 0.0);
+  const double magnitude = a.largest() + b.largest() + length;
+  length += 1e-12 * length + 64 * kU * magnitude;
+  out.hi = kInf;
+  for (int k = 0; k < 60; ++k) {
+    out.translation = length * direction;
+    if (separates(a, b, out.translation)) {
+      out.hi = out.translation.stableNorm() * (1 + 8 * kU);
+      return;
+    }
+    length += std::ldexp(kU, k) * magnitude;
+  }
 }
 
 }  // namespace
 
-bool separates(const Scene& scene, ObjectPair objects, const Vec3& direction,
-               const Vec3& translation) {
+Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
+                        unsigned threads) {
+  // Work for each pair of objects. The larger ones get fewer cores, so that the time is about that
+  // of finding their pairs of triangles.
+  const bool small = a.triangles().size() + b.triangles().size() < 1000;
+  const std::size_t most_cores = small ? 48 : 8, most_pairs = small ? 256 : 32;
+  const int steps = small ? 200 : 60;
   const FloatingPointGuard guard;
-  return separates_points(corners_of(triangles_of(scene, objects.a)),
-                          corners_of(triangles_of(scene, objects.b)), direction, translation);
-}
-
-double distance_below(const Scene& scene, std::uint32_t object, const Vec3& point) {
-  const FloatingPointGuard guard;
-  const std::vector<Corners> triangles = triangles_of(scene, object);
-  double squared = kInf;
-  for (const Corners& t : triangles) squared = std::min(squared, squared_to(t, point));
-  // A little less can be proved of most triangles without exact arithmetic.
-  double limit = std::sqrt(squared) * (1 - 1e-9);
-  if (!(limit >= 0 && limit < kInf)) limit = 0;
-  const Corners at = {point, point, point};
-  for (const Corners& t : triangles) {
-    if (separation::farther_by_planes(at, t, limit)) continue;
-    limit = std::min(limit, std::max(down(closest_points(at, t).distance), 0.0));
-  }
-  return limit;
-}
-
-Penetration penetration(const Scene& scene, ObjectPair objects, std::span<const Vec3> starts) {
-  constexpr int kSteps = 200;
-  const FloatingPointGuard guard;
-  std::array<Solid, 2> solids;
-  for (const int side : {0, 1}) {
-    solids[side].triangles = triangles_of(scene, side == 0 ? objects.a : objects.b);
-    solids[side].points = corners_of(solids[side].triangles);
-  }
-  const auto& [a, b] = solids;
   Penetration out;
-  Polytope polytope(a, b);
-  const bool holds_origin = polytope.expand(kSteps);
-  bound_above(a, b, polytope.direction(), out);
-  if (holds_origin) out.lo = bound_by_polytope(scene, objects, a, b, polytope);
-  if (out.lo * 1.01 >= out.hi) return out;
-  const Vec3 d = polytope.direction();
-  std::vector<Vec3> points = {0.5 * (a.farthest(d) + b.farthest(-d))};
-  points.insert(points.end(), starts.begin(), starts.end());
+  bound_by_hulls(a, b, out);
+  if (!(out.hi < kInf)) return out;
+  Points seeds;
   for (const Vec3& p : starts) {
-    for (const double part : {-0.25, 0.25}) points.push_back(p + part * out.translation);
+    seeds.push_back(p);
+    for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5})
+      seeds.push_back(p + part * out.translation);
   }
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : starts) middle += p / static_cast<double>(starts.size());
-  points.push_back(middle);
-  const double step = std::isfinite(out.hi) ? 0.25 * out.hi : 1;
-  out.lo = std::max(out.lo, bound_by_balls(scene, objects, deep_point(a, b, points, step)));
+  std::array<std::vector<Points>, 2> cores;
+  for_each_shared(2, threads, [&](std::size_t side) {
+    const ClosedObject &own = side == 0 ? a : b, &other = side == 0 ? b : a;
+    const Vec3 grown = Vec3::Constant(out.hi), own_grown = Vec3::Constant(0.01 * out.hi);
+    cores[side] = cores_of(own,
+                           {(own.box().lo - own_grown).cwiseMax(other.box().lo - grown),
+                            (own.box().hi + own_grown).cwiseMin(other.box().hi + grown)},
+                           seeds, most_cores);
+  });
+  while (cores[0].size() * cores[1].size() > most_pairs)
+    cores[cores[0].size() < cores[1].size() ? 1 : 0].pop_back();
+  const std::array<Vec3, 3> axes = axes_of(a, b);
+  const std::size_t of_b = cores[1].size();
+  std::vector<Cover> covers(cores[0].size() * of_b);
+  for_each_shared(covers.size(), threads, [&](std::size_t k) {
+    for (const double flat : {1e-14, 1e-12, 1e-10, 1e-8}) {
+      Polytope difference(cores[0][k / of_b], cores[1][k % of_b], flat);
+      difference.expand(steps, true);
+      covers[k] = cover_of(difference, axes);
+      const auto certain = [](const Cover::Side& side) { return side.error < 1e-10; };
+      if (!covers[k].sides.empty() && std::ranges::all_of(covers[k].sides, certain)) break;
+    }
+  });
+  std::erase_if(covers, [&](const Cover& cover) {
+    return cover.sides.empty() || std::ranges::any_of(cover.sides, [&](const Cover::Side& side) {
+             return side.distance < -out.hi;
+           });
+  });
+  for (const Cover& cover : covers) {
+    double least = out.hi;
+    for (const Cover::Side& side : cover.sides) {
+      // After a translation by less than `least` nothing is above the plane.
+      least = std::min(least, side.distance - side.error * (cover.largest + out.hi));
+    }
+    out.lo = std::max(out.lo, least);
+  }
+  if (covers.empty() || out.lo * 1.001 >= out.hi) return out;
+  Search search(a, b, std::move(covers), axes, out);
+  search.try_rays();
+  search.search();
   return out;
 }
 

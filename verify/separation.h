@@ -36,35 +36,37 @@ inline bool farther(const BoundsTree::Bounds& a, const BoundsTree::Bounds& b, do
   return std::sqrt(squares) * (1 - 16 * kU) > limit;
 }
 
-/// True only if all points of the two triangles are farther apart than `limit` (>= 0, finite):
-/// there are two parallel planes, farther apart than the limit, with one triangle on either side.
+/// True only if all points of the two triangles, or convex hulls of other points, are farther apart
+/// than `limit` (>= 0, finite): there are two parallel planes, farther apart than the limit, with
+/// one of them on either side.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
 /// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any direction
 /// may be tried, since for each one the gap is bounded with all its roundings.
-inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                              double limit) {
+template <class Points, class Others>
+bool farther_by_planes(const Points& a, const Others& b, double limit) {
   constexpr int kSteps = 24;
   // The corners, relative to one of them. Each coordinate y is one rounded difference.
-  std::array<Vec3, 3> s, t;
-  for (int i = 0; i < 3; ++i) {
-    s[i] = a[i] - a[0];
-    t[i] = b[i] - a[0];
-  }
-  Vec3 near = (t[0] / 3 + t[1] / 3 + t[2] / 3) - (s[1] / 3 + s[2] / 3);
+  const auto y = [&](const Vec3& p) -> Vec3 { return p - a[0]; };
+  Vec3 near = Vec3::Zero();
+  for (const Vec3& p : b) near += y(p) / static_cast<double>(std::size(b));
+  for (const Vec3& p : a) near -= y(p) / static_cast<double>(std::size(a));
   for (int step = 0; step < kSteps; ++step) {
     const double largest = near.cwiseAbs().maxCoeff();
     if (!(largest > 0 && largest < std::numeric_limits<double>::infinity())) return false;
     // The exact direction is n, whose largest component is 1: its length is 1 to 1.8.
     const Vec3 n = near / largest;
     double s_most = -std::numeric_limits<double>::infinity(), t_least = -s_most, magnitude = 0;
-    int s_at = 0, t_at = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double of_s = n.dot(s[i]), of_t = n.dot(t[i]);
-      magnitude = std::max(
-          {magnitude, n.cwiseAbs().dot(s[i].cwiseAbs()), n.cwiseAbs().dot(t[i].cwiseAbs())});
-      if (of_s > s_most) s_most = of_s, s_at = i;
-      if (of_t < t_least) t_least = of_t, t_at = i;
+    Vec3 s_at = Vec3::Zero(), t_at = Vec3::Zero();
+    for (const Vec3& p : a) {
+      const Vec3 s = y(p);
+      magnitude = std::max(magnitude, n.cwiseAbs().dot(s.cwiseAbs()));
+      if (const double of_s = n.dot(s); of_s > s_most) s_most = of_s, s_at = s;
+    }
+    for (const Vec3& p : b) {
+      const Vec3 t = y(p);
+      magnitude = std::max(magnitude, n.cwiseAbs().dot(t.cwiseAbs()));
+      if (const double of_t = n.dot(t); of_t < t_least) t_least = of_t, t_at = t;
     }
     // Each of the three terms of n . y has the rounding of y and of the product, then two sums. So
     // either side is off by at most 4.01 u of `magnitude` and the loss to subnormal products. The
@@ -73,7 +75,7 @@ inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
     if (!std::isfinite(magnitude)) return false;
     if (gap > 0x1p-900 && gap / n.norm() * (1 - 16 * kU) > limit) return true;
-    const Vec3 step_to = (t[t_at] - s[s_at]) - near;
+    const Vec3 step_to = (t_at - s_at) - near;
     const double length = step_to.squaredNorm();
     if (!(length > 0)) return false;
     const double part = std::clamp(-near.dot(step_to) / length, 0.0, 1.0);

@@ -60,6 +60,14 @@ std::string verb_of(StageKind kind) {
       return "inside";
     case StageKind::verify:
       return "verify";
+    case StageKind::read:
+      return "read";
+    case StageKind::contacts:
+      return "kinds of contact";
+    case StageKind::touch:
+      return "touch";
+    case StageKind::depth:
+      return "depth";
   }
   return "";
 }
@@ -205,6 +213,8 @@ std::string reason_of(const Stage& stage) {
       return spelled("{no_verify}");
     case Reason::near_boxes:
       return counted(stage.n, "pair of objects", "pairs of objects") + "; boxes compared: " + m;
+    case Reason::limited:
+      return spelled("{limit}: the search stops at the last pair that is listed");
     case Reason::inside_not_asked:
       return spelled("{inside} no");
     case Reason::if_more_left:

@@ -35,6 +35,10 @@ enum class StageKind : std::uint8_t {
   closest,         // distances and closest points, exactly
   inside,          // whether objects lie inside others
   verify,          // accounting for every pair
+  read,            // the files
+  contacts,        // how triangles meet
+  touch,           // whether objects that meet overlap
+  depth,           // bounds of the penetration depth
 };
 
 /// The things that a stage counts.
@@ -95,6 +99,7 @@ enum class Reason : std::uint8_t {
   if_changed,     // if the round before changed something
   if_culled,      // if the round before culled at least one triangle in n
   if_candidates,  // if there are candidates
+  limited,        // --limit ended the search, so not all pairs are known
 };
 
 struct Stage {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "experiments/command/command.h"
 #include "experiments/method/asked.h"
@@ -30,7 +31,7 @@ constexpr const char* kExamples =
     "  farcull clash parts/\n"
     "  farcull clash parts/*.stl --clearance 0.5 --unit mm --csv clashes.csv\n"
     "  farcull clash robot.json --ignore 'link*:base,hand:cup' --fail-on clash,touch\n"
-    "  farcull clash a.obj b.obj --json - | jq '.pairs[0].depth'\n\n"
+    "  farcull clash a.obj b.obj --depth --json - | jq '.pairs[0].depth'\n\n"
     "Each pair of parts has a verdict, the most serious first:\n"
     "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
     "             proved that they touch only\n"
@@ -41,9 +42,9 @@ constexpr const char* kExamples =
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
     "All coordinates are taken as the files have them, so all parts have to be in one unit.\n"
-    "depth: bounds of the shortest way by which one part has to move so that closed parts no\n"
-    "longer overlap; the true one lies between. curve: length of the curve in which the\n"
-    "surfaces cross. docs/clash.md has the columns and the proofs.\n\n"
+    "depth (with --depth): bounds of the shortest way by which one part has to move so that\n"
+    "closed parts no longer overlap; the true one lies between. curve: length of the curve in\n"
+    "which the surfaces cross. docs/clash.md has the columns and the proofs.\n\n"
     "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
     "not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
@@ -80,6 +81,7 @@ class ClashCommand {
   std::vector<ClashVerdict> failing() const;
 
   SceneArguments scene_;
+  bool depth_ = false;
   Text clearance_, ignore_, ignore_file_, unit_, fail_on_;
   Outputs outputs_;
 };
@@ -92,6 +94,9 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
           Rows{
               {"--clearance", &clearance_, "D",
                "parts at this distance or less are near, in world\nunits; default 0"},
+              {"--depth", &depth_, "",
+               "how deep parts are in each other, as bounds; where parts\nhave many triangles this "
+               "takes longer than all else"},
               {"--ignore", &ignore_, "LIST",
                "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
                "listed\nlast where they meet"},
@@ -164,6 +169,7 @@ std::vector<ClashVerdict> ClashCommand::failing() const {
 
 int ClashCommand::run() const {
   ClashOptions options;
+  options.depth = depth_;
   if (clearance_) options.clearance = parse_clearance(*clearance_);
   const std::vector<ClashVerdict> failing = this->failing();
   check_scene(scene_.names);
@@ -174,6 +180,7 @@ int ClashCommand::run() const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
+  const Stopwatch reading;
   Scene scene = read_parts(files);
   for (Object& object : scene.objects) object.self = false;
   options.ignored = ignored_objects(scene, ignored_names(ignore_, ignore_file_));
@@ -182,7 +189,14 @@ int ClashCommand::run() const {
   require_asked(scene, options.ignored, "SCENE", "");
   scene.ignored.clear();
   if (outputs.page) require_clash_page(scene);
-  const ClashRecord record = clashes(scene, options, progress);
+  const double read_ms = reading.ms();
+  ClashRecord record = clashes(scene, options, progress);
+  record.trace.insert(record.trace.begin(), {.kind = StageKind::read,
+                                             .ran = true,
+                                             .ms = read_ms,
+                                             .out = scene.triangles.size(),
+                                             .unit = Unit::triangles});
+  record.ms += read_ms;
   terminal.clear();
   const std::string unit = unit_.value_or("");
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));

@@ -335,6 +335,9 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   Session session(options.device);
   const Record record = farcull::run(scene, all, session, progress);
   terminal.clear();
+  if (kind_ == Kind::verify && record.limited)
+    throw Error("--limit", "ended the search, so not all pairs are known",
+                "leave it out, or use farcull run");
   if (outputs.pairs) {
     write_output(*outputs.pairs,
                  [&](const TextSink& sink) { give_pairs_csv(scene, record, columns(), sink); });

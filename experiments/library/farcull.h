@@ -65,8 +65,8 @@ struct Options {
 /// Moves an object: each of its vertices (x, y, z) becomes the point whose first coordinate is
 /// ((r[0] * x + r[1] * y) + r[2] * z) + t[0]; the second one has r[3] to r[5] and t[1], the third
 /// one r[6] to r[8] and t[2]. Each multiplication and each addition rounds to the nearest double.
-/// The answer is exact for the points that come out. r is usually a rotation, but may hold any
-/// finite numbers.
+/// The answer is exact for the points that come out. r is usually a rotation; it may mirror, scale
+/// and shear. A matrix without an inverse, which flattens the object, is refused.
 struct Pose {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
   std::array<double, 3> t = {0, 0, 0};

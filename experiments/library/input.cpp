@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/scene/invertible.h"
 #include "core/scene/scene.h"
 #include "experiments/method/distances.h"
 
@@ -249,7 +250,7 @@ std::vector<std::uint32_t> objects_of_vertices(const Scene& scene, std::size_t v
   return out;
 }
 
-void require_finite(std::span<const Pose> poses, std::size_t objects) {
+void require_good(std::span<const Pose> poses, std::size_t objects) {
   if (poses.size() != objects)
     throw Error(
         "poses",
@@ -259,6 +260,11 @@ void require_finite(std::span<const Pose> poses, std::size_t objects) {
     if (!all_finite(poses[o].r) || !all_finite(poses[o].t))
       throw Error("poses", "that of object " + std::to_string(o) + " is not finite",
                   "give finite numbers");
+    if (!is_invertible(poses[o].r))
+      throw Error(
+          "poses",
+          "the matrix of object " + std::to_string(o) + " has no inverse, so it flattens it",
+          "give a rotation, or another matrix whose determinant is not 0");
   }
 }
 
@@ -307,7 +313,7 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
   } else if (!had_poses) {
     taken.unmoved = taken.scene.vertices;
   }
-  require_finite(input.poses, taken.scene.objects.size());
+  require_good(input.poses, taken.scene.objects.size());
   if (!same || !had_poses) taken.object_of = objects_of_vertices(taken.scene, taken.unmoved.size());
   move(input.poses, !alone || !had_poses, taken, change);
   return same;

@@ -43,6 +43,14 @@ class Objects {
     return facts.surface;
   }
   bool closed(std::uint32_t object) const { return surface(object) != Surface::open; }
+  /// Precondition: the object is closed.
+  const ClosedObject& solid(std::uint32_t object) const {
+    Facts& facts = facts_[object];
+    std::call_once(facts.solid_made, [&] {
+      facts.solid = std::make_unique<ClosedObject>(scene_, object, surface(object), parts(object));
+    });
+    return *facts.solid;
+  }
   const std::vector<Vec3>& parts(std::uint32_t object) const {
     Facts& facts = facts_[object];
     std::call_once(facts.parts_found,
@@ -80,9 +88,10 @@ class Objects {
 
  private:
   struct Facts {
-    std::once_flag surface_found, parts_found;
+    std::once_flag surface_found, parts_found, solid_made;
     Surface surface = Surface::open;
     std::vector<Vec3> parts;
+    std::unique_ptr<ClosedObject> solid;
   };
   static bool lies_within(const Box& inner, const Box& outer) {
     return (inner.lo.array() >= outer.lo.array()).all() &&
@@ -165,24 +174,37 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
   row.proved = overlap != Overlap::unknown;
 }
 
-void bound_depth(const Scene& scene, const Objects& objects, ClashRow& row) {
-  const auto [a, b] = row.objects;
+/// Whether the insides of the objects overlap for certain, so that there is a depth.
+bool has_depth(const Objects& objects, const ClashRow& row) {
   const bool deep =
       (row.verdict == ClashVerdict::clash && row.proved) || row.verdict == ClashVerdict::contained;
-  if (!deep || !objects.closed(a) || !objects.closed(b)) return;
+  return deep && objects.closed(row.objects.a) && objects.closed(row.objects.b);
+}
+
+void bound_depth(const Objects& objects, unsigned threads, ClashRow& row) {
   constexpr std::size_t kStarts = 16;
   std::vector<Vec3> starts = {row.witness[0]};
   if (!row.box.is_empty()) starts.push_back(0.5 * row.box.lo + 0.5 * row.box.hi);
   const std::size_t stride = row.segments.size() / kStarts + 1;
   for (std::size_t k = 0; k < row.segments.size(); k += stride)
     starts.push_back(0.5 * row.segments[k][0] + 0.5 * row.segments[k][1]);
-  row.depth = penetration(scene, row.objects, starts);
+  row.depth =
+      penetration(objects.solid(row.objects.a), objects.solid(row.objects.b), starts, threads);
+}
+
+/// Adds a stage that began when the watch did, and restarts the watch.
+void add_stage(ClashRecord& record, StageKind kind, Stopwatch& watch, std::uint64_t in,
+               std::uint64_t out) {
+  record.trace.push_back(
+      {.kind = kind, .ran = true, .ms = watch.ms(), .in = in, .out = out, .unit = Unit::pairs});
+  watch = Stopwatch();
 }
 
 /// Rows of objects that do not meet: those that may lie in one another, and those that are near.
 std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
                                  const ClashOptions& options, std::span<const ClashRow> meeting,
-                                 const Progress& progress) {
+                                 const Progress& progress, ClashRecord& record) {
+  Stopwatch watch;
   std::vector<Box> boxes = objects.boxes();
   for (Box& box : boxes) box = grow(box, half_of(options.clearance));
   std::vector<std::uint32_t> every(boxes.size());
@@ -209,10 +231,15 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
       row.witness = {point, point};
     }
   });
+  add_stage(record, StageKind::inside, watch, rows.size(),
+            rows.size() - static_cast<std::size_t>(
+                              std::ranges::count(rows, ClashVerdict::clear, &ClashRow::verdict)));
   if (options.clearance > 0) {
+    std::uint64_t near = 0;
     for (Distance& d :
          nearest_triangles(scene, pairs, options.clearance, options.threads, progress)) {
       ClashRow& row = *std::ranges::lower_bound(rows, d.objects, {}, &ClashRow::objects);
+      ++near;
       row.squared = d.closest.squared;
       row.distance = d.closest.distance;
       if (row.verdict != ClashVerdict::clear) continue;
@@ -220,6 +247,7 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
       row.witness = d.closest.points;
       for (const Vec3& p : d.closest.points) row.box.add(p);
     }
+    add_stage(record, StageKind::near, watch, pairs.size(), near);
   }
   std::erase_if(rows, [](const ClashRow& row) { return row.verdict == ClashVerdict::clear; });
   return rows;
@@ -264,24 +292,27 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
       full * (full - (full > 0)) / 2 -
       (out.ignored - static_cast<std::uint64_t>(std::ranges::count_if(options.ignored, has_empty)));
   const Objects objects(scene);
-  Meetings meetings;
+  std::vector<TrianglePair> found;
   if (full >= 2) {
     Session session("cpu", options.threads);
     RunOptions run_options{.device = "cpu", .verify = false};
     run_options.neighbours = false;
     Record record = run(scene, run_options, session, progress, {.answer_only = true});
     out.trace = std::move(record.trace);
-    meetings = meetings_of(scene, std::move(record.collisions.pairs));
+    found = std::move(record.collisions.pairs);
   }
-  out.triangle_pairs = meetings.pairs.size();
-  const std::vector<ClashRow>& rows = meetings.rows;
+  Stopwatch step;
   if (progress) progress("kinds of contact");
+  Meetings meetings = meetings_of(scene, std::move(found));
+  out.triangle_pairs = meetings.pairs.size();
   const unsigned threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   const std::vector<ContactShape> contacts = contact_shapes(scene, meetings.pairs, threads);
-  std::vector<ClashRow> apart = apart_rows(scene, objects, options, rows, progress);
+  add_stage(out, StageKind::contacts, step, out.triangle_pairs, meetings.rows.size());
+  std::vector<ClashRow> apart = apart_rows(scene, objects, options, meetings.rows, progress, out);
+  step = Stopwatch();
   if (progress) progress("touching or clashing");
-  for_each_shared(rows.size(), options.threads, [&](std::size_t k) {
+  for_each_shared(meetings.rows.size(), options.threads, [&](std::size_t k) {
     const std::size_t from = meetings.first[k], size = meetings.first[k + 1] - from;
     const auto pairs = std::span(meetings.pairs).subspan(from, size);
     ClashRow& row = meetings.rows[k];
@@ -289,13 +320,21 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
     if (row.verdict != ClashVerdict::clash) decide_touch(scene, objects, pairs, row);
     if (row.verdict != ClashVerdict::clash) row.curve = 0, row.segments.clear();
   });
+  const auto touching = static_cast<std::uint64_t>(
+      std::ranges::count(meetings.rows, ClashVerdict::touch, &ClashRow::verdict));
+  add_stage(out, StageKind::touch, step, meetings.rows.size(), touching);
   out.rows = std::move(meetings.rows);
   out.rows.insert(out.rows.end(), std::make_move_iterator(apart.begin()),
                   std::make_move_iterator(apart.end()));
-  if (options.penetration) {
-    if (progress) progress("bounds of penetration");
-    for_each_shared(out.rows.size(), options.threads,
-                    [&](std::size_t k) { bound_depth(scene, objects, out.rows[k]); });
+  if (options.depth) {
+    if (progress) progress("depths");
+    std::vector<ClashRow*> deep;
+    for (ClashRow& row : out.rows) {
+      if (has_depth(objects, row)) deep.push_back(&row);
+    }
+    for_each_shared(deep.size(), options.threads,
+                    [&](std::size_t k) { bound_depth(objects, options.threads, *deep[k]); });
+    add_stage(out, StageKind::depth, step, out.rows.size(), deep.size());
   }
   for (ClashRow& row : out.rows) {
     row.ignored = std::ranges::binary_search(options.ignored, row.objects);

@@ -37,8 +37,9 @@ struct ClashOptions {
   double clearance = 0;                  // world units, finite, >= 0
   std::vector<ObjectPair> ignored = {};  // as in_order() gives them: they are examined, but are
                                          // listed apart
-  bool penetration = true;               // bounds of the depth of clashes
-  unsigned threads = 0;                  // 0: as many as there are cores; changes no answer
+  bool depth = false;    // bounds of the depth of clashes; they take longer than all
+                         // else where parts have many triangles
+  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
 struct ClashRow {

@@ -107,6 +107,7 @@ struct Record {
   std::uint64_t decided = 0;  // candidates that exact predicates decided
   bool complete = true;       // false: the limit was reached, so candidates were left undecided, or
                               // colliding ones behind the last were left out
+  bool limited = false;       // the limit ended the search, so nothing accounts for the pairs
   std::vector<ContactShape> contacts;            // of collisions.pairs, if they are asked for;
   std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs. Without segments
                                                  // only the kinds are set

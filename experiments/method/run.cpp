@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/stopwatch.h"
+#include "core/boxes/join.h"
 #include "core/scene/pair_sort.h"
 #include "core/scene/scene.h"
 
@@ -90,9 +91,59 @@ class Deciding {
   double ms_ = 0;  // of all threads together
 };
 
+// Whether a run with a limit does not list its candidates, since they may be too many: more than
+// kMostListed pairs of triangles are in blocks of 16 that overlap, or a tree over all boxes finds
+// the candidates, so that their number is unknown.
+bool is_crowded(const std::vector<Stage>& plan) {
+  constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
+  return std::ranges::any_of(plan, [](const Stage& stage) {
+    if (!stage.ran) return false;
+    if (stage.kind == StageKind::blocks) return stage.n > kMostListed / 256;
+    return stage.reason == Reason::join_uneven || stage.reason == Reason::join_many_blocks;
+  });
+}
+
+// Searches in the order of pairs, and stops when so many collide as the limit says. Where hardly
+// any collide, as of points in one place, it stops after kMostSearched candidates.
+void search_first(const Scene& scene, const Session& session, const Progress& progress,
+                  const ExactQuestion& question, Record& record) {
+  constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;
+  constexpr std::size_t kStep = std::size_t{1} << 14;
+  const Stopwatch watch;
+  const RunOptions& options = record.options;
+  OrderedPairs ordered(scene, options.clearance, options.ignored, question.neighbours,
+                       session.cpu_threads());
+  std::uint64_t left = options.limit;
+  bool whole = true;
+  std::vector<TrianglePair> some;
+  while (left > 0 && whole && !ordered.at_end() &&
+         record.decided < kMostSearched + 16 * std::min(options.limit, kMostSearched)) {
+    if (progress) progress("pairs in order");
+    ordered.next(kStep, some);
+    if (some.empty()) continue;
+    FirstCollisions first = decide(scene, some, question, left);
+    left -= first.collisions.pairs.size() + first.collisions.neighbour_pairs.size();
+    record.decided += first.decided;
+    whole = first.complete;
+    record.collisions.append(first.collisions);
+  }
+  record.complete = whole && ordered.at_end();
+  record.limited = true;
+  record.found.count = record.decided;
+  record.found.device = {.gl = {}, .cpu = true, .note = "pairs in order: no view", .relies = {}};
+  record.ms.cull += watch.ms();
+  record.trace.push_back({.kind = StageKind::exact,
+                          .ran = true,
+                          .reason = Reason::limited,
+                          .ms = watch.ms(),
+                          .in = record.decided,
+                          .out = options.limit - left,
+                          .unit = Unit::pairs});
+}
+
 // Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
-                const ExactQuestion* question, const FrameChange* change, bool marks,
+                const ExactQuestion& question, bool filters, const FrameChange* change, bool marks,
                 Record& record) {
   const Stopwatch comparing;
   FrameMemory* const memory = session.frame_memory();
@@ -101,7 +152,14 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
   record.options.ignored = planned.options.ignored;
   record.plan = planned.stages();
-  record.found = find(scene, planned, session, progress, question, marks);
+  // A filter and a limit need the list of all candidates.
+  const bool limits = record.options.limit > 0, lists = filters || limits;
+  if (limits && !filters && !memory && is_crowded(record.plan)) {
+    record.trace = planned.trace;
+    record.ms.cull = planned.ms;
+    return search_first(scene, session, progress, question, record);
+  }
+  record.found = find(scene, planned, session, progress, lists ? nullptr : &question, marks);
   record.trace = planned.trace;
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   record.ms.setup = record.found.setup_ms;
@@ -111,6 +169,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
 // Decides the candidates, or takes the answers if they were decided as they were found.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
+  if (record.limited) return;  // decided in the search
   const RunOptions& options = record.options;
   Stage stage{.kind = StageKind::exact,
               .depends = !options.full && culls(options.method),
@@ -150,8 +209,10 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
 
 // If the options ask for it, accounts for every pair that was not left to the exact tests.
 void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
-  Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
-  if (record.options.verify) {
+  Stage stage{.kind = StageKind::verify,
+              .reason = record.limited ? Reason::limited : Reason::not_asked,
+              .unit = Unit::pairs};
+  if (record.options.verify && !record.limited) {
     if (progress) progress("accounting for every pair");
     const bool given = record.found.given;
     const std::vector<TrianglePair> colliding =
@@ -232,10 +293,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   const ExactQuestion question{.clearance = options.clearance,
                                .threads = session.cpu_threads(),
                                .neighbours = options.neighbours && use.decide_neighbours};
-  // A filter and a limit need the list of all candidates.
-  const bool lists = use.filter || options.limit > 0;
-  find_stage(scene, session, progress, lists ? nullptr : &question, use.change, !use.answer_only,
-             record);
+  find_stage(scene, session, progress, question, static_cast<bool>(use.filter), use.change,
+             !use.answer_only, record);
   Candidates& found = record.found;
   if (!use.answer_only) {
     record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;

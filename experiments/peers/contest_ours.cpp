@@ -131,7 +131,7 @@ Contestant far_at(const std::string& radius) {
 
 /// Whether the insides of two objects overlap, as `farcull clash` says it.
 bool clash_of(const Scene& scene) {
-  const ClashRecord record = clashes(scene, {.penetration = false, .threads = 1});
+  const ClashRecord record = clashes(scene, {.threads = 1});
   if (record.rows.empty()) return false;
   const ClashRow& row = record.rows.front();
   if (row.verdict == ClashVerdict::unknown || !row.proved)

@@ -379,12 +379,13 @@ struct KeptClash {
   ClashRecord record;
 };
 
-KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignore,
+KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignore, bool depth,
                    unsigned threads) {
   return answer_beside([&] {
     auto scene = std::make_shared<Scene>(*kept.scene);
     for (Object& object : scene->objects) object.self = false;
-    ClashOptions options{.clearance = clearance, .ignored = scene->ignored, .threads = threads};
+    ClashOptions options{
+        .clearance = clearance, .ignored = scene->ignored, .depth = depth, .threads = threads};
     for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
     options.ignored = in_order(std::move(options.ignored));
     require_asked(*scene, options.ignored, "ignore", "");

@@ -35,8 +35,7 @@ std::string kinds_text(const ClashRow& row) {
 
 std::string depth_text(const ClashRow& row) {
   if (!row.depth) return "";
-  const auto& [lo, hi, translation, direction] = *row.depth;
-  const std::string low = short_number(lo), high = short_number(hi);
+  const std::string low = short_number(row.depth->lo), high = short_number(row.depth->hi);
   return low == high ? high : low + " to " + high;
 }
 
@@ -68,7 +67,10 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
       all > kRowsShown
           ? fmt::format("and {} more (--json and --csv have all)\n", grouped(all - kRowsShown))
           : "";
-  return "\n" + out.text() + more;
+  const bool deep = record.count(ClashVerdict::clash) + record.count(ClashVerdict::contained) > 0;
+  const std::string hint =
+      deep && !record.options.depth ? "depths are not asked for (--depth)\n" : "";
+  return "\n" + out.text() + more + hint;
 }
 
 std::string counts_text(const ClashRecord& record) {
@@ -77,6 +79,24 @@ std::string counts_text(const ClashRecord& record) {
     out += fmt::format("{}{} {}", out.empty() ? "" : ", ", grouped(record.count(verdict)),
                        to_string(verdict));
   return out;
+}
+
+/// "412.0 ms = read 80.1 + pairs 31.0 + ...".
+std::string time_text(const ClashRecord& record) {
+  using enum StageKind;
+  std::vector<std::pair<std::string, double>> parts = {{"pairs", 0}};
+  for (const Stage& stage : record.trace) {
+    const bool own = stage.kind == read || stage.kind == contacts || stage.kind == touch ||
+                     stage.kind == depth || stage.kind == inside || stage.kind == near;
+    if (!own)
+      parts.front().second += stage.ms;
+    else
+      parts.emplace_back(farcull::name_of(stage), stage.ms);
+  }
+  std::string out;
+  for (const auto& [name, ms] : parts)
+    out += fmt::format("{}{} {:.1f}", out.empty() ? "" : " + ", name, ms);
+  return fmt::format("{:.1f} ms = {}", record.ms, out);
 }
 
 Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
@@ -106,8 +126,7 @@ Json row_json(const Scene& scene, const ClashRow& row) {
   if (const auto& depth = row.depth) {
     out["depth"] = {{"least", depth->lo},
                     {"most", depth->hi},
-                    {"translation_of_a", point_json(depth->translation)},
-                    {"direction", point_json(depth->direction)}};
+                    {"translation_of_a", point_json(depth->translation)}};
   }
   return out;
 }
@@ -149,7 +168,8 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
   }
   for (const std::uint32_t object : record.empty)
     out += "not examined: " + name_of(scene, object) + " has no triangles\n";
-  return out + rows_text(scene, record, table) + fmt::format("\ntime       {:.1f} ms\n", record.ms);
+  return out + rows_text(scene, record, table) +
+         fmt::format("\ntime       {}\n", time_text(record));
 }
 
 std::string clash_csv(const Scene& scene, const ClashRecord& record) {

@@ -215,7 +215,10 @@ std::vector<Row> folded(const std::vector<Stage>& stages) {
 }
 
 std::string accounting_lines(const Scene& scene, const Record& record) {
-  if (!record.verification) return "accounted  not at all (--no-verify)\n";
+  if (!record.verification) {
+    return record.limited ? "accounted  not at all: --limit ended the search\n"
+                          : "accounted  not at all (--no-verify)\n";
+  }
   const Accounting& v = *record.verification;
   std::string out = accounting_sum(v);
   if (v.false_negatives > 0 && record.missed) {
@@ -279,9 +282,10 @@ std::string contacts_line(const Record& record) {
 
 std::string limit_line(const Record& record) {
   if (record.options.limit == 0) return "";
-  return fmt::format("limit      {} at most; {} of {} decided{}\n",
-                     counted(record.options.limit, "pair", "pairs"), grouped(record.decided),
-                     counted(record.found.count, "candidate", "candidates"),
+  const std::string candidates = counted(record.found.count, "candidate", "candidates");
+  return fmt::format("limit      {} at most; {} decided{}\n",
+                     counted(record.options.limit, "pair", "pairs"),
+                     record.limited ? candidates : grouped(record.decided) + " of " + candidates,
                      record.complete ? "" : "; there may be more pairs behind the last one");
 }
 

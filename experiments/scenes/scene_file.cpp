@@ -18,6 +18,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/invertible.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
@@ -258,10 +259,10 @@ class SceneFile {
         require(i < 3 || x == (k == 3 ? 1 : 0), row, "must be [0, 0, 0, 1]", form);
       }
     }
-    for (const std::array<double, 4>& row : out) {
-      require(row[0] != 0 || row[1] != 0 || row[2] != 0, place,
-              "has a row of zeros, which leaves no mesh", form);
-    }
+    std::array<double, 9> linear{};
+    for (std::size_t k = 0; k < 9; ++k) linear[k] = out[k / 3][k % 3];
+    require(is_invertible(linear), place, "has no inverse, so it flattens the mesh",
+            "give a matrix whose determinant is not 0");
     return out;
   }
 

@@ -55,7 +55,7 @@ class Clash:
 
 
 def clash(
-    scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0
+    scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False
 ) -> Clash:
     """Which objects of a scene clash, touch, lie inside each other or are near, for every two of them.
 
@@ -65,13 +65,15 @@ def clash(
     clearance: objects at this distance or less are near. World units, finite, 0 or more.
     ignore: pairs of objects that may clash, as of :meth:`Scene.run`; they are listed apart.
     threads: up to 1024; 0: one for each core.
+    depth: also how deep objects are in each other, as bounds. Takes longer than all else where objects have many
+        triangles.
 
     Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
     """
     given = scene_of(scene)
     made = _farcull.clash(
         given, _arguments.number("clearance", clearance), _arguments.ignored(ignore, given),
-        _arguments.threads(threads),
+        _arguments.flag("depth", depth), _arguments.threads(threads),
     )
     return Clash(made, scene)
 

@@ -251,10 +251,14 @@ def add_equal_times(chapter, groups):
 
 
 def add_fastest(chapter, groups):
-    """Adds which methods are the fastest without an error."""
-    right = [min((e for e in group.entries if e.error == 0), key=lambda e: e.ms, default=None) for group in groups]
+    """Adds which methods are the fastest without an error, on the scenes that have valid times."""
+    timed = [group for group in groups if group.entries]
+    if not timed:
+        chapter.find("No time is valid, so no method is the fastest.")
+        return
+    right = [min((e for e in group.entries if e.error == 0), key=lambda e: e.ms, default=None) for group in timed]
     times = Counter(entry.name if entry else "no method" for entry in right).most_common()
-    chapter.find(f"Fastest without an error: {listed(f'{name} on {of_all(n, len(groups))} scenes' for name, n in times)}.")
+    chapter.find(f"Fastest without an error: {listed(f'{name} on {of_all(n, len(timed))} scenes' for name, n in times)}.")
 
 
 def fill(chapter, study):

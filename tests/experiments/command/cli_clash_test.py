@@ -45,11 +45,12 @@ bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 
 rows(r"""
 1 a folder | clash parts | ^examined   6 of 6 pairs of parts$ | ^verdicts   1 clash, 0 contained, 0 unknown, 1 touch, 0 near, 4 clear$
-  | ^clash +a +b +1 +.* crossing | ! ^touch
+  | ^clash +a +b +.* crossing | ! ^touch
+1 depths | clash parts --depth | ^clash +a +b +1 +.* crossing | ! not asked | ^time .* ms = .*pairs [0-9.]+ .*depth [0-9.]+$
 1 touching | clash parts --fail-on touch | ^touch +c +d
 0 fail on none | clash parts --fail-on none | ^clash
 0 fail on near | clash parts --fail-on near | ^clash
-1 near | clash parts --fail-on near --clearance 2 --unit mm | ^near +b +c .* 2 | depth .mm.
+1 near | clash parts --fail-on near --clearance 2 --unit mm | ^near +b +c .* 2 | depth .mm. | ^depths are not asked for .--depth.$
 1 near is not clean where it fails | clash parts/b.obj parts/c.obj --fail-on near --clearance 2 | ^examined   1 of 1 pair of parts$ | ! clean
 $ ln -s ../parts cad/more
 bad a link to a folder | cad/more: is neither a file nor a folder, or a link to a folder | clash cad
@@ -67,6 +68,6 @@ list.txt << # allowed; a:b
 1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]
 1 columns fit letters of two bytes | clash cad --fail-on clash,contained,unknown,touch | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
 1 a part without triangles | clash parts/a.obj empty.off parts/c.obj | ^examined   1 of 3 pairs of parts$ | ^not examined: empty.off has no triangles$ | ! clean
-1 JSON | clash parts --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
+1 JSON | clash parts --depth --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["least"] <= 1 <= d["most"] < 1.0001, d'
 """)

@@ -137,8 +137,9 @@ TEST(LibraryPoses, RefuseWhatIsBadAndGoOn) {
     input.poses = poses;
     return refusal([&] { collider.find(input); })[1];
   };
-  Pose infinite, huge;
+  Pose infinite, huge, flat_pose;
   infinite.r[4] = HUGE_VAL;
+  flat_pose.r = {1, 0, 0, 0, 1, 0, 1, 1, 0};
   huge.t[1] = huge.r[4] = std::numeric_limits<double>::max();
   for (const bool alone : {true, false}) {
     EXPECT_EQ(collider.find(flat.input()).pairs, expected);
@@ -148,6 +149,9 @@ TEST(LibraryPoses, RefuseWhatIsBadAndGoOn) {
               "are given without triangles, and there are none of an earlier call");
     EXPECT_EQ(collider.find(flat.input()).pairs, expected);
     EXPECT_EQ(reason({Pose(), infinite}, alone, flat), "that of object 1 is not finite");
+    EXPECT_EQ(collider.find(flat.input()).pairs, expected);
+    EXPECT_EQ(reason({flat_pose, Pose()}, alone, flat),
+              "the matrix of object 0 has no inverse, so it flattens it");
     EXPECT_EQ(collider.find(flat.input()).pairs, expected);
     EXPECT_TRUE(has_text(reason({huge, Pose()}, alone, flat), "beyond the largest double"));
   }

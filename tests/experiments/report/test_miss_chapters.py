@@ -189,6 +189,15 @@ def test_void_rounds_are_left_out_and_counted():
     assert [series(of, "error-time", "Boxes").x_high[0] for of in (clean, loud)] == [6, 99]
 
 
+def test_no_method_is_the_fastest_where_all_times_are_void():
+    # Times of s are void. Those of u are valid, but no method is right there.
+    rows = [row("s", "exact", counts(0), None)]  # as a study stores it
+    rows[0][2]["rounds"] = [{"ms": [8], "load": 1, "void": True}] * 3
+    assert "No time is valid, so no method is the fastest." in findings(chapter_of("error-time", rows))
+    wrong = rows + [row("u", "cullide", counts(3), 2, resolution=64)]
+    assert "Fastest without an error: no method on 1 of 1 scenes." in findings(chapter_of("error-time", wrong))
+
+
 # FAR takes 4 ms: the CULLIDE of 3 ms counts, that of 5 ms does not, though it misses less.
 @pytest.mark.parametrize("far_ms, last_ms, best, said", [
     (4, 5, ["CULLIDE, one round at 128 px", "3", "40", "7 of 20"], "in 1 of 1 cases of scene and resolution of FAR."),

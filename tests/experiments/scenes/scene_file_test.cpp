@@ -88,6 +88,10 @@ TEST_F(SceneFileTest, LeavesEveryBitAloneWithoutATransform) {
 TEST_F(SceneFileTest, ScalesByNumberByAxisAndByMirror) {
   EXPECT_EQ(with(R"("scale": -2)").vertices[0], Vec3(-2, -4, -6));
   EXPECT_EQ(with(R"("scale": [1, -1, 0.5])").vertices[0], Vec3(1, -2, 1.5));
+  // Mirrored, sheared and tiny.
+  EXPECT_EQ(with(R"("matrix": [[1, 1, 0, 0], [0, -1, 0, 0], [0, 0, 1e-300, 0], [0, 0, 0, 1]])")
+                .vertices[0],
+            Vec3(3, -2, 3e-300));
 }
 
 TEST_F(SceneFileTest, RotatesAboutAxesOfAnyLength) {
@@ -202,6 +206,14 @@ TEST_F(SceneFileTest, RefusesWrongValuesWithTheirPlace) {
   expect_refused_key(R"("scale": 0)", "scale is 0");
   expect_refused_key(R"("scale": [1, -0.0, 1])", "scale is 0");
   expect_refused_key(R"("scale": "2")", "scale must be a number or an array");
+  const auto matrix = [](const std::string& rows) {
+    return R"("matrix": [)" + rows + ", [0, 0, 0, 1]]";
+  };
+  // Of rank 0, 1 and 2, the last two but for rounding.
+  for (const char* rows : {"[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 3]",
+                           "[0.1, 0.2, 0.3, 0], [0.3, 0.6, 0.9, 0], [0.7, 1.4, 2.1, 0]",
+                           "[0.1, 0.2, 0.3, 0], [0.4, 0.5, 0.6, 0], [0.7, 0.8, 0.9, 0]"})
+    expect_refused_key(matrix(rows), "matrix has no inverse");
   expect_refused_key(R"("scale": [1, 2])", "scale must be an array of 3");
   expect_refused_key(R"("scale": [1, 2, null])", "scale[2] is of type null");
   expect_refused_key(R"("rotate": 0.7)", "rotate must be a JSON object");

@@ -1,0 +1,312 @@
+// A core grows around a seed: triangles are taken in the order of their distance from it, and each
+// that meets the core cuts it, along its own plane or across the shortest way to it (Deits and
+// Tedrake, Computing Large Convex Regions of Obstacle-Free Space through Semidefinite Programming,
+// 2015, cut so around ellipsoids). Of a solid with few flat faces the cores are its largest boxes,
+// wedges and the like.
+#include "verify/convex_core.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "verify/overlap.h"
+
+namespace farcull {
+namespace {
+
+using Corners = ClosedObject::Corners;
+using separation::kU;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostCuts = 40;  // of a core
+
+/// The point of a triangle that is nearest to p, in plain doubles (Ericson, Real-Time Collision
+/// Detection, 2005, section 5.1.5).
+Vec3 nearest_on(const Corners& t, const Vec3& p) {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return t[0];
+  const Vec3 bp = p - t[1];
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return t[1];
+  const Vec3 cp = p - t[2];
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return t[2];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t[0] + d1 / (d1 - d3) * ab;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t[0] + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
+  return t[0] + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
+/// The points p with normal . (p - seed) <= reach. The normal has length 1.
+struct HalfSpace {
+  Vec3 normal;
+  double reach;
+};
+
+/// True only if all points are beyond: normal . (p - seed) > most. A product of differences has 5
+/// roundings, relative to the magnitudes, and `most` likewise; so 16 u covers both.
+bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
+  double least = kInf, magnitude = size;
+  for (const Vec3& v : t) {
+    const Vec3 w = v - seed;
+    least = std::min(least, normal.dot(w));
+    magnitude = std::max(magnitude, w.cwiseAbs().maxCoeff());
+  }
+  return least - most > 16 * kU * normal.cwiseAbs().sum() * magnitude + 0x1p-1000;
+}
+
+/// The proof at the top of the header, of the hull of the points. `near`: all triangles that may
+/// meet the hull. normals: of planes that may divide, tried first; then that of the triangle.
+template <class Near>
+bool is_core(const ClosedObject& solid, const Near& near, const Vec3& seed,
+             std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
+  double size = 0;
+  for (const Vec3& p : points) size = std::max(size, (p - seed).cwiseAbs().maxCoeff());
+  const auto most_along = [&](const Vec3& normal) {
+    double most = -kInf;
+    for (const Vec3& p : points) most = std::max(most, normal.dot(p - seed));
+    return most;
+  };
+  std::vector<double> most;
+  for (const HalfSpace& plane : planes) most.push_back(most_along(plane.normal));
+  for (const Corners& t : near) {
+    bool apart = false;
+    for (std::size_t k = 0; k < planes.size() && !apart; ++k)
+      apart = beyond(t, seed, planes[k].normal, most[k], size);
+    if (apart) continue;
+    Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    if (normal.dot(t[0] - seed) < 0) normal = -normal;
+    if (normal.allFinite() && beyond(t, seed, normal, most_along(normal), size)) continue;
+    if (planes.empty() || !separation::farther_by_planes(points, t, 0)) return false;
+  }
+  return solid.has(points.front());
+}
+
+/// Whether a triangle has points in all of the half spaces.
+bool meets(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes) {
+  std::vector<Vec3> polygon = {t[0] - seed, t[1] - seed, t[2] - seed}, next;
+  for (const auto& [normal, reach] : planes) {
+    next.clear();
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+      const double of_p = normal.dot(p) - reach, of_q = normal.dot(q) - reach;
+      if (of_p < 0) next.push_back(p);
+      if ((of_p < 0) != (of_q < 0)) next.push_back(p + of_p / (of_p - of_q) * (q - p));
+    }
+    std::swap(polygon, next);
+    if (polygon.empty()) return false;
+  }
+  return true;
+}
+
+/// The corners of the common part of the half spaces, relative to the seed.
+std::vector<Vec3> corners_of(std::span<const HalfSpace> planes, double size) {
+  std::vector<Vec3> out;
+  const std::size_t count = planes.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const Vec3 along = planes[i].normal.cross(planes[j].normal);
+      if (along.norm() < 1e-5) continue;
+      for (std::size_t k = j + 1; k < count; ++k) {
+        const double det = along.dot(planes[k].normal);
+        if (std::abs(det) < 1e-5) continue;
+        const Vec3 p =
+            (planes[i].reach * planes[j].normal.cross(planes[k].normal) +
+             planes[j].reach * planes[k].normal.cross(planes[i].normal) + planes[k].reach * along) /
+            det;
+        const double slack = 1e-12 * size;
+        const auto outside = [&](const HalfSpace& h) { return h.normal.dot(p) > h.reach + slack; };
+        const auto same = [&](const Vec3& q) { return (p - q).cwiseAbs().maxCoeff() < slack; };
+        if (std::ranges::none_of(planes, outside) && std::ranges::none_of(out, same))
+          out.push_back(p);
+      }
+    }
+  }
+  return out;
+}
+
+struct Grown {
+  Vec3 seed;
+  std::vector<HalfSpace> planes;
+  std::vector<Vec3> points;
+  bool has(const Vec3& p) const {
+    return std::ranges::all_of(
+        planes, [&](const HalfSpace& h) { return h.normal.dot(p - seed) <= h.reach; });
+  }
+};
+
+/// The core around a seed. Planes are pulled towards the seed by a part of their distance, so that
+/// one plane keeps off many triangles of a curved surface. near: all triangles that meet the
+/// region, the nearest to the seed first.
+std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>& near,
+                          const Box& region, const Vec3& seed, double pull) {
+  const double size = (region.hi - region.lo).norm();
+  const double inward = kCoreInward * size + 256 * kU * solid.largest();
+  Grown out{.seed = seed, .planes = {}, .points = {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    out.planes.push_back({Vec3::Unit(axis), region.hi[axis] - seed[axis] - inward});
+    out.planes.push_back({-Vec3::Unit(axis), seed[axis] - region.lo[axis] - inward});
+  }
+  for (const Corners& t : near) {
+    const auto divides = [&](const HalfSpace& h) {
+      return std::ranges::all_of(
+          t, [&](const Vec3& v) { return h.normal.dot(v - seed) >= h.reach + 0.25 * inward; });
+    };
+    if (std::ranges::any_of(out.planes, divides) || !meets(t, seed, out.planes)) continue;
+    Vec3 normal = nearest_on(t, seed) - seed;
+    double reach = normal.norm();
+    normal /= reach;
+    const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    const double height = across.dot(t[0] - seed);
+    if (std::abs(height) > 0.5 * reach)
+      normal = height < 0 ? Vec3(-across) : across, reach = std::abs(height);
+    reach = (1 - pull) * reach - inward;
+    if (!(reach > 0) || out.planes.size() >= kMostCuts) return std::nullopt;
+    out.planes.push_back({normal, reach});
+  }
+  for (const Vec3& p : corners_of(out.planes, size)) {
+    out.points.push_back(seed + p);
+    if (!((out.points.back() - region.lo).minCoeff() >= 0 &&
+          (region.hi - out.points.back()).minCoeff() >= 0))
+      return std::nullopt;
+  }
+  if (out.points.size() < 4 || !is_core(solid, near, seed, out.planes, out.points))
+    return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
+                           std::span<const Vec3> pieces)
+    : scene_(scene), object_(object), surface_(surface), pieces_(pieces.begin(), pieces.end()) {
+  const Object& o = scene.objects[object];
+  std::vector<std::array<double, 3>> places;
+  for (std::uint32_t k = 0; k < o.triangle_count; ++k) {
+    triangles_.push_back(scene.corners(o.first_triangle + k));
+    for (const Vec3& p : triangles_.back()) places.push_back({p.x(), p.y(), p.z()}), box_.add(p);
+  }
+  std::ranges::sort(places);
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  for (const auto& p : places) corners_.emplace_back(p[0], p[1], p[2]);
+  largest_ = std::max(box_.lo.cwiseAbs().maxCoeff(), box_.hi.cwiseAbs().maxCoeff());
+  add_node(0, o.triangle_count);
+  find_convex();
+}
+
+std::uint32_t ClosedObject::add_node(std::uint32_t first, std::uint32_t count) {
+  constexpr std::uint32_t kLeaf = 4;
+  const auto at = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({separation::empty_bounds(), first, count, 0});
+  const auto of = std::span(triangles_).subspan(first, count);
+  for (const Corners& t : of) separation::include(nodes_[at].box, separation::bounds_of(t));
+  if (count <= kLeaf) return at;
+  const separation::Bounds& box = nodes_[at].box;
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
+  }
+  std::ranges::nth_element(of, of.begin() + count / 2, {},
+                           [&](const Corners& t) { return t[0][axis] + t[1][axis] + t[2][axis]; });
+  nodes_[at].count = 0;
+  add_node(first, count / 2);
+  const std::uint32_t second = add_node(first + count / 2, count - count / 2);
+  nodes_[at].second = second;
+  return at;
+}
+
+bool ClosedObject::has(const Vec3& point) const {
+  return inside(scene_, object_, point, surface_) == Inside::yes;
+}
+
+bool ClosedObject::has_not(const Vec3& point) const {
+  if ((point.array() < box_.lo.array()).any() || (point.array() > box_.hi.array()).any())
+    return true;
+  return overlap_at(scene_, object_, point, surface_) == Overlap::no;
+}
+
+void ClosedObject::find_convex() {
+  constexpr double kMostTests = 3e7;
+  if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : corners_) middle += p / double(corners_.size());
+  // A thin object needs more room for rounding.
+  for (const double inward : {1e-12, 1e-9, 1e-6}) {
+    convex_.clear();
+    for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
+    if (is_core(*this, triangles_, middle, {}, convex_)) return;
+  }
+  convex_.clear();
+}
+
+std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,
+                                        std::span<const Vec3> seeds, std::size_t most) {
+  if (!solid.convex().empty()) return {solid.convex()};
+  constexpr std::array kPulls = {0.0, 0.05, 0.15, 0.3};
+  constexpr double kWork = 1e6;  // triangles that are looked at
+  std::vector<Corners> near;
+  std::vector<std::uint32_t> stack = {0};
+  const auto meets_region = [&](const separation::Bounds& box) {
+    for (int k = 0; k < 3; ++k) {
+      if (box.lo[k] > region.hi[k] || box.hi[k] < region.lo[k]) return false;
+    }
+    return true;
+  };
+  while (!stack.empty()) {
+    const std::uint32_t at = stack.back();
+    const ClosedObject::Node& node = solid.nodes()[at];
+    stack.pop_back();
+    if (!meets_region(node.box)) continue;
+    for (std::uint32_t k = 0; k < node.count; ++k) {
+      const Corners& t = solid.triangles()[node.first + k];
+      if (meets_region(separation::bounds_of(t))) near.push_back(t);
+    }
+    if (node.count == 0) stack.push_back(at + 1), stack.push_back(node.second);
+  }
+  std::vector<Vec3> tried(seeds.begin(), seeds.end());
+  // Close to the middle of a triangle, on either side, by a small part of its height.
+  const std::size_t stride = near.size() / 96 + 1;
+  for (std::size_t k = 0; k < near.size(); k += stride) {
+    const Corners& t = near[k];
+    const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double longest =
+        std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+    for (const double part : {-2e-3, 2e-3})
+      tried.push_back((t[0] + t[1] + t[2]) / 3 + part / longest * across);
+  }
+  std::vector<Grown> grown;
+  double work = kWork;
+  std::vector<std::pair<double, std::uint32_t>> order(near.size());
+  std::vector<Corners> sorted(near.size());
+  for (const Vec3& seed : tried) {
+    if (grown.size() >= most || work < 0) break;
+    if (!((seed - region.lo).minCoeff() > 0 && (region.hi - seed).minCoeff() > 0)) continue;
+    if (std::ranges::any_of(grown, [&](const Grown& g) { return g.has(seed); })) continue;
+    work -= 0.05 * double(solid.triangles().size());
+    if (!solid.has(seed)) continue;
+    for (std::uint32_t k = 0; k < near.size(); ++k)
+      order[k] = {(nearest_on(near[k], seed) - seed).squaredNorm(), k};
+    std::ranges::sort(order);
+    for (std::size_t k = 0; k < near.size(); ++k) sorted[k] = near[order[k].second];
+    for (const double pull : kPulls) {
+      work -= double(near.size());
+      std::optional<Grown> one = grow(solid, sorted, region, seed, pull);
+      if (!one) continue;
+      grown.push_back(std::move(*one));
+      break;
+    }
+  }
+  std::vector<std::vector<Vec3>> out;
+  for (Grown& one : grown) out.push_back(std::move(one.points));
+  return out;
+}
+
+}  // namespace farcull
