@@ -13,7 +13,7 @@ from pathlib import Path
 MAY_INCLUDE = {row.split(':')[0].strip(): row.split(':')[1].split() for row in '''
 core/base:;  core/scene: core/base;  core/boxes: core/scene;  core/view: core/boxes;  core/canvas: core/view;
 core/cull: core/canvas;  core/sweep: core/boxes;  core/pairs: core/view;  core/proximity: core/boxes;
-core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/pairs core/proximity core/voronoi;
+core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/pairs core/proximity;
 offsets: core/native;  verify/certificate: core/scene;  verify: core/canvas verify/certificate;  experiments/system: core/base;
 experiments/scenes/mesh: experiments/system core/gl;  experiments/scenes/cloth: experiments/scenes/mesh;
 experiments/scenes/builtin: experiments/scenes/mesh experiments/scenes/cloth;  experiments/scenes: experiments/scenes/builtin;

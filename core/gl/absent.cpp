@@ -7,7 +7,6 @@
 #include "core/gl/pairs/pairs.h"
 #include "core/gl/picture/picture.h"
 #include "core/gl/probe/probe.h"
-#include "core/gl/voronoi/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -38,10 +37,6 @@ std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgra
 }
 
 std::unique_ptr<PairBackend> gl_pair_backend(const GlContext&, std::size_t) { refuse(); }
-
-std::unique_ptr<VoronoiDevice> gl_voronoi_device(const GlContext&, const GlVoronoiOptions&) {
-  refuse();
-}
 
 std::vector<ProbeResult> run_probes(const GlContext&, const ProbeOptions&,
                                     const std::function<void(const std::string&)>&) {
