@@ -20,6 +20,8 @@ struct Free {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
   void operator()(cairo_t* context) const { cairo_destroy(context); }
   void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+  void operator()(PangoContext* context) const { g_object_unref(context); }
+  void operator()(PangoFont* font) const { g_object_unref(font); }
   void operator()(PangoLayout* layout) const { g_object_unref(layout); }
   void operator()(PangoFontDescription* font) const { pango_font_description_free(font); }
   void operator()(char* text) const { g_free(text); }
@@ -27,47 +29,30 @@ struct Free {
 template <class T>
 using Owned = std::unique_ptr<T, Free>;
 
-// A text in a style, without hinting, so that letters keep their shapes at every size and place.
-class Lettering {
- public:
-  // room: px; a longer text ends with an ellipsis.
-  Lettering(const std::string& text, const TextStyle& style, double room, cairo_t* context)
-      : layout_(pango_cairo_create_layout(context)) {
-    constexpr double kCapital = 1493.0 / 2048;  // height of a capital of DejaVu over the em
-    const Owned<PangoFontDescription> font(pango_font_description_new());
-    pango_font_description_set_family(font.get(), "DejaVu Sans");
-    pango_font_description_set_weight(font.get(),
-                                      style.bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
-    pango_font_description_set_absolute_size(font.get(), style.height / kCapital * PANGO_SCALE);
-    const Owned<cairo_font_options_t> options(cairo_font_options_create());
-    cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
-    cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
-    cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
-    PangoContext* const of_layout = pango_layout_get_context(layout_.get());
-    pango_cairo_context_set_font_options(of_layout, options.get());
-    pango_cairo_context_set_resolution(of_layout, 72);
-    pango_context_set_round_glyph_positions(of_layout, FALSE);
-    pango_layout_set_font_description(layout_.get(), font.get());
-    pango_layout_set_single_paragraph_mode(layout_.get(), TRUE);
-    const Owned<char> valid(g_utf8_make_valid(text.c_str(), -1));
-    pango_layout_set_text(layout_.get(), valid.get(), -1);
-    pango_layout_set_ellipsize(layout_.get(), PANGO_ELLIPSIZE_END);
-    pango_layout_set_width(layout_.get(), static_cast<int>(std::max(0.0, room) * PANGO_SCALE));
-  }
-
-  // The ink in px, relative to the left end of the baseline, with a pixel more on each side.
-  PangoRectangle ink() const {
-    PangoRectangle ink;
-    pango_layout_line_get_extents(line(), &ink, nullptr);
-    pango_extents_to_pixels(&ink, nullptr);
-    return {ink.x - 1, ink.y - 1, ink.width + 2, ink.height + 2};
-  }
-  PangoLayoutLine* line() const { return pango_layout_get_line_readonly(layout_.get(), 0); }
-  PangoLayout* layout() const { return layout_.get(); }
-
- private:
-  Owned<PangoLayout> layout_;
-};
+// The text in the style, without hinting, so that letters keep their shapes at every size and
+// place. A text that is wider than `room` px ends with an ellipsis.
+Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
+  constexpr double kCapital = 1493.0 / 2048;  // height of a capital of DejaVu over the em
+  const Owned<PangoContext> context(
+      pango_font_map_create_context(pango_cairo_font_map_get_default()));
+  const Owned<cairo_font_options_t> options(cairo_font_options_create());
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  pango_cairo_context_set_font_options(context.get(), options.get());
+  pango_context_set_round_glyph_positions(context.get(), FALSE);
+  const Owned<PangoFontDescription> font(
+      pango_font_description_from_string(style.bold ? "DejaVu Sans Bold" : "DejaVu Sans"));
+  pango_font_description_set_absolute_size(font.get(), style.height / kCapital * PANGO_SCALE);
+  Owned<PangoLayout> out(pango_layout_new(context.get()));
+  pango_layout_set_font_description(out.get(), font.get());
+  pango_layout_set_single_paragraph_mode(out.get(), TRUE);
+  pango_layout_set_ellipsize(out.get(), PANGO_ELLIPSIZE_END);
+  pango_layout_set_width(out.get(), static_cast<int>(std::max(0.0, room) * PANGO_SCALE));
+  const Owned<char> valid(g_utf8_make_valid(text.c_str(), -1));
+  pango_layout_set_text(out.get(), valid.get(), -1);
+  return out;
+}
 
 constexpr Rgba kPaper = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
                kFrame = {205, 208, 213};
@@ -132,21 +117,22 @@ Owned<cairo_surface_t> surface_of(cairo_format_t format, int width, int height) 
 
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room) {
-  const Owned<cairo_surface_t> nothing = surface_of(CAIRO_FORMAT_A8, 1, 1);
-  const Owned<cairo_t> measure(cairo_create(nothing.get()));
-  const Lettering letters(text, style, room, measure.get());
-  const PangoRectangle ink = letters.ink();
+  const Owned<PangoLayout> layout = laid_out(text, style, room);
+  PangoLayoutLine* const line = pango_layout_get_line_readonly(layout.get(), 0);
+  PangoRectangle ink;  // in px from the left end of the baseline
+  pango_layout_line_get_extents(line, &ink, nullptr);
+  pango_extents_to_pixels(&ink, nullptr);
   const double column = std::floor(x), row = std::floor(baseline);
-  const Owned<cairo_surface_t> mask = surface_of(CAIRO_FORMAT_A8, ink.width + 1, ink.height + 1);
+  const Owned<cairo_surface_t> mask = surface_of(CAIRO_FORMAT_A8, ink.width + 2, ink.height + 2);
   const Owned<cairo_t> context(cairo_create(mask.get()));
   cairo_move_to(context.get(), x - column - ink.x, baseline - row - ink.y);
-  pango_cairo_show_layout_line(context.get(), letters.line());
+  pango_cairo_show_layout_line(context.get(), line);
   cairo_surface_flush(mask.get());
   const unsigned char* const covered = cairo_image_surface_get_data(mask.get());
   const int stride = cairo_image_surface_get_stride(mask.get());
   const int left = static_cast<int>(column) + ink.x, top = static_cast<int>(row) + ink.y;
-  for (int py = std::max(0, -top); py <= ink.height && top + py < image.height; ++py) {
-    for (int px = std::max(0, -left); px <= ink.width && left + px < image.width; ++px) {
+  for (int py = std::max(0, -top); py < ink.height + 2 && top + py < image.height; ++py) {
+    for (int px = std::max(0, -left); px < ink.width + 2 && left + px < image.width; ++px) {
       if (const int part = covered[py * stride + px]; part > 0)
         blend(image.at(left + px, top + py), style.colour, part / 255.0);
     }
@@ -154,18 +140,12 @@ void draw_text(Image& image, double x, double baseline, const std::string& text,
 }
 
 std::string lettering_version() {
-  const Owned<cairo_surface_t> nothing = surface_of(CAIRO_FORMAT_A8, 1, 1);
-  const Owned<cairo_t> context(cairo_create(nothing.get()));
-  const Lettering letters("H", {}, 100, context.get());
-  PangoContext* const of_layout = pango_layout_get_context(letters.layout());
-  PangoFont* const font =
-      pango_context_load_font(of_layout, pango_layout_get_font_description(letters.layout()));
-  const Owned<PangoFontDescription> used(pango_font_describe(font));
-  std::string out =
-      fmt::format("{}, pango {}, cairo {}", pango_font_description_get_family(used.get()),
-                  pango_version_string(), cairo_version_string());
-  g_object_unref(font);
-  return out;
+  const Owned<PangoLayout> layout = laid_out("", {}, 0);
+  const Owned<PangoFont> font(pango_context_load_font(
+      pango_layout_get_context(layout.get()), pango_layout_get_font_description(layout.get())));
+  const Owned<PangoFontDescription> used(pango_font_describe(font.get()));
+  return fmt::format("{}, pango {}, cairo {}", pango_font_description_get_family(used.get()),
+                     pango_version_string(), cairo_version_string());
 }
 
 void lay_over(Image& below, const Image& above, double opacity) {

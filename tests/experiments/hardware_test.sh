@@ -95,12 +95,12 @@ holds interrupted "$work/said" 'the same command goes on'
 (($(calls doctor) == 0)) || fail "interrupted: the probes ran again"
 
 # It goes on: what is done is not measured again. A part fails, another one has no result.
-FAKE_FAIL=dragon-bunny FAKE_REFUSE=funnel measure
+FAKE_FAIL=dragon-bunny FAKE_REFUSE=spheres measure
 expect "goes on" 1
 (($(calls 'bench field:100000 --peers') == 0)) || fail "goes on: a part that was done ran again"
 (($(calls 'bench field:300000 --peers') == 1)) || fail "goes on: the part that was interrupted did not run"
 holds "goes on" "$work/said" 'FAILED: reliability-dragon-bunny'
-holds "goes on" "$work/said" 'bench-funnel-[0-9]+ .*: status 2: farcull: no'
+holds "goes on" "$work/said" 'bench-spheres-[0-9]+ .*: status 2: farcull: no'
 holds "goes on" "$page" '[1-9] failed: .*reliability-dragon-bunny'
 holds "goes on" "$page" '^# A Device \(R\) 1.0$'
 holds "goes on" "$page" 'suite \(the test suite\): left out'
@@ -116,11 +116,11 @@ holds archive "$work/list" '^out/logs/doctor.txt$'
 # Once more: only what had no result, and what failed is still said.
 measure
 expect "once more" 1
-(($(calls funnel) > 0)) || fail "once more: what had no result did not run"
+(($(calls spheres) > 0)) || fail "once more: what had no result did not run"
 (($(calls dragon-bunny) == 0)) || fail "once more: what failed ran again"
-funnels=$(calls .)
+refused=$(calls .)
 measure
-(($(calls .) < funnels)) || fail "a last time: $(wc -l <"$CALLS") calls"
+(($(calls .) < refused)) || fail "a last time: $(wc -l <"$CALLS") calls"
 
 # shellcheck disable=SC2016 # the dollars are those of the script
 # Twins: the script without its memory, and one that takes every status for a good one.
