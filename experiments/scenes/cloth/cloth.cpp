@@ -76,10 +76,7 @@ const Scene& Cloth::scene() const { return state_->scene; }
 const ClothReport& Cloth::report() const { return state_->report; }
 
 ClothState Cloth::state() const {
-  return {.report = state_->report,
-          .positions = state_->x,
-          .velocities = state_->velocity,
-          .was_stiff = state_->solver.was_stiff()};
+  return {.report = state_->report, .positions = state_->x, .velocities = state_->velocity};
 }
 
 void Cloth::restore(const ClothState& state) {
@@ -89,7 +86,6 @@ void Cloth::restore(const ClothState& state) {
   s.move_to(state.positions);
   s.velocity = state.velocities;
   s.report = state.report;
-  s.solver.set_was_stiff(state.was_stiff);
   s.measure();
 }
 

@@ -234,10 +234,6 @@ class Solver {
   /// by interior points, then by Newton's method from their result.
   Minimum minimize(const Step& step);
 
-  /// Whether the last step needed interior points: the only state between steps.
-  bool was_stiff() const { return was_stiff_; }
-  void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
-
   /// Largest residual of a converged step, N: the setting plus the effect of rounding positions.
   double tolerance(const Eigen::VectorXd& x) const;
 
@@ -258,7 +254,7 @@ class Solver {
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
   std::vector<Slot> spring_slots_;  // per spring: of the block of its two ends
-  bool was_stiff_ = false;
+  bool was_stiff_ = false;          // the last step needed interior points
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;  // of that pattern
 };
 
@@ -285,11 +281,10 @@ struct ClothReport {
   double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
 
-/// Everything that later steps depend on, and the report of the last step.
+/// The state between two steps, and the report of the last one.
 struct ClothState {
   ClothReport report = {};
   Eigen::VectorXd positions, velocities;  // m and m/s, three numbers for each vertex of the cloth
-  bool was_stiff = false;                 // the last step needed interior points
 };
 
 class Cloth {
@@ -312,8 +307,6 @@ class Cloth {
   /// The energies now. frame, residual, iterations and so on are those of the last step.
   const ClothReport& report() const;
 
-  /// After restore(state()) of a cloth with the same settings, later steps give the same bits as
-  /// that cloth's.
   ClothState state() const;
   /// Recomputes the energies of the report. Velocities that are not finite make the next step fail
   /// as described for step(). Throws std::logic_error if there are not three positions and

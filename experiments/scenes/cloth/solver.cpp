@@ -175,7 +175,7 @@ constexpr int kTrials = 60;  // at most, along one direction; a double allows no
 // These change the time of a step, not its result.
 constexpr int kPatience = 40;      // Newton's iterations before interior points take over
 constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's is short
-constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff()
+constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff_
 constexpr double kStart = 1;       // initial complementarity, over weight * length
 constexpr double kEnd = 2;         // final one, over crimp: from there Newton's method is quick
 

@@ -100,7 +100,9 @@ TEST(Lettering, CutsWhatDoesNotFit) {
   EXPECT_NE(drawn(name, 200), drawn(name));
   const std::vector<Rgba> cut = drawn(name, 200);
   for (std::size_t i = 0; i < cut.size(); ++i) {
-    if (i % 300 > 206) EXPECT_EQ(cut[i].r, 255) << "ink right of the room";
+    if (i % 300 > 206) {
+      EXPECT_EQ(cut[i].r, 255) << "ink right of the room";
+    }
   }
   EXPECT_EQ(drawn("abc", 0), drawn("\xe2\x80\xa6", 0));
 }
