@@ -307,7 +307,8 @@ def main(case, folder):
         svg = io.StringIO()
         figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
         for_readers = f"<title>{html.escape(title)}</title>\n<desc>{html.escape(text)}</desc>"
-        out = re.sub(r"(<svg [^>]*>)", lambda m: m.group(1) + "\n " + for_readers, svg.getvalue(), count=1)
+        out = svg.getvalue().replace(" \n", " ")  # a path in one line
+        out = re.sub(r"(<svg [^>]*>)", lambda m: m.group(1) + "\n " + for_readers, out, count=1)
         Path(folder, f"paper-{name}.svg").write_text(out.replace("'DejaVu Sans'", "'DejaVu Sans', Helvetica, Arial, sans-serif"))
 
 
