@@ -54,7 +54,7 @@ Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, dou
   return out;
 }
 
-constexpr Rgba kPaper = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
+constexpr Rgba kSheet = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
                kFrame = {205, 208, 213};
 
 void fill(Image& image, int x0, int y0, int x1, int y1, const Rgba& colour) {
@@ -166,7 +166,7 @@ void draw_ring(Image& image, double x, double y, double radius, double line, con
       const double off = std::abs(std::hypot(px + 0.5 - x, py + 0.5 - y) - radius);
       const double around = std::clamp(halo - off + 0.5, 0.0, 1.0);
       const double on = std::clamp(0.5 * line - off + 0.5, 0.0, 1.0);
-      if (around > 0) blend(image.at(px, py), kPaper, 0.8 * around);
+      if (around > 0) blend(image.at(px, py), kSheet, 0.8 * around);
       if (on > 0) blend(image.at(px, py), colour, on);
     }
   }
@@ -191,7 +191,7 @@ Image compose(const std::string& title, const std::string& subtitle,
   const int legend_top = top + height + line / 2;
   const int total_height = legend_top + static_cast<int>(entries) * line + 2 * line;
 
-  Image sheet(total_width, total_height, kPaper);
+  Image sheet(total_width, total_height, kSheet);
   const double room = total_width - 2.0 * margin;
   draw_text(sheet, margin, margin + big.height, title, big, room);
   draw_text(sheet, margin, margin + big.height + line, subtitle, plain, room);
