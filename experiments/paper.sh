@@ -1,20 +1,18 @@
 #!/usr/bin/env bash
 # Draws the figures of the paper (docs/figures/paper-*.svg), and makes the paper, which is
 # docs/reliability.md with docs/budget.md, a PDF: build/paper.pdf.
-#   bash experiments/paper.sh [--figures FARCULL_FIGURES] [--out FILE.pdf]
+#   bash experiments/paper.sh [--out FILE.pdf]
 #   bash experiments/paper.sh --short [--out FILE.pdf]    docs/paper.md, two pages, as build/paper-short.pdf
-#     --figures  the program that draws them; without it, it is built in build/
-#     --out      the PDF; the figures are then drawn beside it and docs/ stays as it is
-# It needs pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --figures it
-# installs them, as experiments/setup.sh does. Where one is missing the figures are drawn, what is
-# missing is named, and the status is 77.
+#     --out      the PDF; the figures are then drawn beside it, docs/ stays as it is, and nothing is installed
+# It needs matplotlib, pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --out
+# it installs them, as experiments/setup.sh does. Where one is missing the figures are drawn, what is missing is
+# named, and the status is 77.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-figures='' out='' short=''
+out='' short=''
 while (($#)); do
   case $1 in
-    --figures) figures=$(realpath "$2") ;;
     --short) short=yes && shift && continue ;;
     --out) out=$(realpath -m "$2") ;;
     *)
@@ -35,14 +33,12 @@ if [[ $short ]]; then
   echo "paper: ${out:-$root/build/paper-short.pdf}"
   exit 0
 fi
-if [[ -z $figures ]]; then
+if [[ -z $out ]]; then
   # shellcheck source-path=SCRIPTDIR source=setup.sh
   source "$root/experiments/setup.sh"
   cd "$root"
   farcull_packages+=(pandoc texlive-latex-base texlive-latex-recommended lmodern librsvg2-bin)
   farcull_setup
-  farcull_build farcull_figures
-  figures=$root/build/farcull_figures
 fi
 
 folder=$root/docs/figures
@@ -50,7 +46,7 @@ if [[ -n $out ]]; then
   folder=$(dirname "$out")/figures
   mkdir -p "$folder"
 fi
-"$figures" "$root/tests/cases/published-far-loses-this-pair.obj" "$folder"
+/usr/bin/python3 "$root/experiments/paper_figures.py" "$root/tests/cases/published-far-loses-this-pair.obj" "$folder"
 for tool in pandoc pdflatex rsvg-convert; do
   if ! command -v "$tool" >/dev/null; then
     echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended lmodern librsvg2-bin)"

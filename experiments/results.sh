@@ -12,8 +12,8 @@
 #   bash experiments/results.sh profile [SCENE...]   profile.md: the stages of boxes beside the least that the machine must
 #                                                    do, and beside the fastest library, with one and two threads. Minutes.
 # OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
-# the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit; frames of
-# the cloth that were simulated are files in build/cloth/states, from which a new commit accounts anew.
+# the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
+# then simulated again from its start.
 # Exit status: 0; 1 if a method that promises missed a pair or lost a neighbour, or a distance was not exact; 2 if the measurements
 # did not complete.
 set -euo pipefail
@@ -45,7 +45,6 @@ case $study in
   all) bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out" ;;
   cloth)
     out=build/cloth/$commit
-    export FARCULL_CLOTH=${FARCULL_CLOTH:-$farcull_root/build/cloth/states}
     ;;
   proximity) out=build/proximity/$commit ;;
 esac

@@ -30,7 +30,7 @@ farcull_packages=(
   # compressed meshes
   zlib1g-dev
   # results, pictures, figures
-  libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core
+  libsqlitecpp-dev libsqlite3-dev libpango1.0-dev libcairo2-dev fonts-dejavu-core
   # the report of what was measured
   python3-matplotlib python3-pandas
   # pages of pictures; the build works without

@@ -13,14 +13,14 @@ from pathlib import Path
 MAY_INCLUDE = {row.split(':')[0].strip(): row.split(':')[1].split() for row in '''
 core/base:;  core/scene: core/base;  core/boxes: core/scene;  core/view: core/boxes;  core/canvas: core/view;
 core/cull: core/canvas;  core/sweep: core/boxes;  core/proximity: core/boxes;
-core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/proximity core/voronoi;
+core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sweep core/proximity;
 offsets: core/native;  verify/certificate: core/scene;  verify: core/canvas verify/certificate;  experiments/system: core/base;
 experiments/scenes/mesh: experiments/system core/gl;  experiments/scenes/cloth: experiments/scenes/mesh;
 experiments/scenes/builtin: experiments/scenes/mesh experiments/scenes/cloth;  experiments/scenes: experiments/scenes/builtin;
 experiments/method: core/gl core/proximity offsets verify;  experiments/library: experiments/method;
 experiments/record: experiments/method experiments/system;  experiments/tiles: experiments/scenes experiments/record;
 experiments/generators: experiments/scenes;  experiments/suite: experiments/generators verify;
-experiments/peers: experiments/suite experiments/library;  experiments/measure: experiments/record experiments/peers;
+experiments/peers: experiments/suite experiments/library;  experiments/measure: experiments/record experiments/peers core/voronoi;
 experiments/lemma: experiments/generators experiments/record;  experiments/studies: experiments/measure experiments/lemma;
 experiments/picture: experiments/measure;
 experiments/command: experiments/studies experiments/picture experiments/library experiments/tiles;
@@ -34,7 +34,7 @@ NO_CHECK = 'verify/all_pairs.cpp'
 LIBRARIES = [('EGL/OpenGL', r'^(epoxy|EGL|GL|GLES[0-9]*|KHR)/', 'core/gl tests/faults/*'),
              ('CGAL', '^CGAL/', 'verify experiments/peers/cgal* experiments/peers/contest_cgal* tests'),
              ('GMP/MPFR', r'^(gmp|gmpxx|mpfr)\.h$', 'verify verify/certificate tests'),
-             ('zlib', r'^zlib\.h$', 'experiments/scenes/mesh tests')]
+             ('zlib', r'^zlib\.h$', 'experiments/scenes/mesh experiments/picture/sheet* tests')]
 # Who may include headers under the GPL (docs/LICENSE): with CGAL, the SPDX line of the installed header says whether it is one.
 GPL_USERS = ('experiments/peers/', 'tests/')
 INSTALLED = Path('/usr/include')

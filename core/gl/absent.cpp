@@ -6,7 +6,6 @@
 #include "core/gl/canvas/canvas.h"
 #include "core/gl/picture/picture.h"
 #include "core/gl/probe/probe.h"
-#include "core/gl/voronoi/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -36,9 +35,6 @@ std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgra
   refuse();
 }
 
-std::unique_ptr<VoronoiDevice> gl_voronoi_device(const GlContext&, const GlVoronoiOptions&) {
-  refuse();
-}
 
 std::vector<ProbeResult> run_probes(const GlContext&, const ProbeOptions&,
                                     const std::function<void(const std::string&)>&) {

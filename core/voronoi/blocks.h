@@ -28,15 +28,10 @@ struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
 
-  bool is_cell() const { return fits(1); }
-  // True if no side is longer than `side`.
-  bool fits(int side) const {
-    return to[0] - from[0] <= side && to[1] - from[1] <= side && to[2] - from[2] <= side;
+  bool is_cell() const {
+    return to[0] - from[0] <= 1 && to[1] - from[1] <= 1 && to[2] - from[2] <= 1;
   }
 };
-
-// Sides of the bricks that a device is given: so many slices are in memory at a time.
-inline constexpr int kBrick = 8;
 
 struct Level {
   std::vector<Block> blocks;
@@ -51,15 +46,6 @@ struct Level {
   }
 };
 
-// Half the diagonal of a block whose sides are `shorter` less, rounded up.
-inline float half_diagonal(const Block& block, int shorter) {
-  float square = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto side = static_cast<float>(block.to[k] - block.from[k] - shorter);
-    square += side * side;
-  }
-  return 0.5f * std::sqrt(square) * (1 + 0x1p-20f);
-}
 inline GridPoint centre_of(const Block& block) {
   GridPoint out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -148,17 +134,6 @@ inline void require(const VoronoiOptions& options) {
     throw Error("widening", "is not in 0 to 1", "leave it at 1, which the proof asks for");
 }
 
-/// Distances of cells and triangles that a device computes for a slice.
-inline std::uint64_t distances_in(int slice, const VoronoiBricks& bricks) {
-  std::uint64_t out = 0;
-  for (const VoronoiBrick& brick : bricks.bricks) {
-    if (slice < brick.from[2] || slice >= brick.to[2]) continue;
-    out += static_cast<std::uint64_t>(brick.to[0] - brick.from[0]) *
-           static_cast<std::uint64_t>(brick.to[1] - brick.from[1]) * brick.count;
-  }
-  return out;
-}
-
 /// Sorts the pairs and removes repeats.
 inline void sort_each_once(std::vector<ObjectPair>& pairs) {
   std::sort(pairs.begin(), pairs.end());
@@ -169,14 +144,15 @@ inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Walks down the blocks of `whole`, which has all triangles, level by level: calls form.look() for
-/// each block that matters, then form.add() with what each chunk of the level found, in order.
-/// Form::Found: what a chunk finds.
+/// Walks down the blocks of the grid level by level: calls form.look() for each block that matters,
+/// then form.add() with what each chunk of the level found, in order. Form::Found: what a chunk
+/// finds.
 template <class Form>
-void descend(Form& form, const Block& whole, std::size_t triangles, const VoronoiOptions& options,
-             const Progress& progress, VoronoiCounts& counts) {
+void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
+             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
+  counts.cells = grid.cells;
   Level level;
-  level.blocks.push_back(whole);
+  level.blocks.push_back({{0, 0, 0}, grid.cells, 0, triangles});
   for (std::uint32_t t = 0; t < triangles; ++t) level.triangles.push_back(t);
   while (!level.blocks.empty()) {
     if (progress) progress("voronoi: " + std::to_string(level.blocks.size()) + " blocks");
@@ -198,24 +174,6 @@ void descend(Form& form, const Block& whole, std::size_t triangles, const Vorono
       form.add(found[k]);
       level.append(below[k]);
     }
-  }
-}
-
-/// descend() for the whole grid.
-template <class Form>
-void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
-             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
-  counts.cells = grid.cells;
-  descend(form, Block{{0, 0, 0}, grid.cells, 0, triangles}, triangles, options, progress, counts);
-}
-
-/// Calls slab(whole block, first slice, slice after the last one) for the slabs of the grid, kBrick
-/// slices each, in order.
-template <class Slab>
-void for_slabs(const VoronoiGrid& grid, std::size_t triangles, const Slab& slab) {
-  for (int z = 0; z < grid.cells[2]; z += kBrick) {
-    const int end = std::min(z + kBrick, grid.cells[2]);
-    slab(Block{{0, 0, z}, {grid.cells[0], grid.cells[1], end}, 0, triangles}, z, end);
   }
 }
 

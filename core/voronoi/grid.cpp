@@ -78,12 +78,4 @@ std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& 
   return out;
 }
 
-void require_voronoi_list(std::size_t listed) {
-  if (listed <= kVoronoiMostListed) return;
-  throw Error("resolution",
-              "a slice has " + std::to_string(listed) +
-                  " triangles or more that may be nearest to its cells, too many to list",
-              "take more cells, or objects that differ less in size");
-}
-
 }  // namespace farcull

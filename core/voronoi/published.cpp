@@ -249,47 +249,6 @@ class Published {
   std::vector<ObjectPair> pairs_;  // of the levels above
 };
 
-// Divides a slab into bricks: each has the triangles of the objects that a device may find among
-// the nearest two of a cell. From the centre of a block to that of a cell a distance changes by at
-// most half the diagonal between the outer centres, and the device's distances err by at most
-// voronoi_bounds::error().
-class Candidates {
- public:
-  using Found = VoronoiBricks;
-  Candidates(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid)
-      : triangles_(triangles),
-        error_(voronoi_error(grid.longest())),
-        of_device_(voronoi_bounds::error(grid.longest())) {}
-
-  Found nothing() const { return {}; }
-  void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
-            Found& found, Level& below) const {
-    distances.compute(centre_of(block), ids, triangles_, error_);
-    const float slack = 2 * (half_diagonal(block, 1) + of_device_);
-    const float limit = distances.least_upper<2>()[1].first + slack;
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (distances.of()[i].lower <= limit) kept.push_back(ids[i]);
-    }
-    if (!block.fits(kBrick)) return add_parts(block, kept, below);
-    found.bricks.push_back({block.from, block.to, found.triangles.size(), kept.size()});
-    found.triangles.insert(found.triangles.end(), kept.begin(), kept.end());
-  }
-  void add(const Found& found) {
-    for (VoronoiBrick brick : found.bricks) {
-      brick.first += all_.triangles.size();
-      all_.bricks.push_back(brick);
-    }
-    all_.triangles.insert(all_.triangles.end(), found.triangles.begin(), found.triangles.end());
-  }
-  const VoronoiBricks& bricks() const { return all_; }
-
- private:
-  const std::vector<GridTriangle>& triangles_;
-  float error_, of_device_;
-  VoronoiBricks all_;
-};
-
 }  // namespace
 }  // namespace voronoi
 
@@ -302,35 +261,6 @@ VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& o
   VoronoiNeighbours out;
   voronoi::descend(form, grid, triangles.size(), options, progress, out.counts);
   out.objects = form.take();
-  return out;
-}
-
-VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                     VoronoiDevice& device, const Progress& progress) {
-  voronoi::require(options);
-  const VoronoiGrid grid = voronoi_grid(scene, options.resolution);
-  const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, options.threads);
-  VoronoiNeighbours out;
-  out.counts.cells = grid.cells;
-  if (triangles.empty()) return out;
-  device.start(triangles, grid);
-  voronoi::for_slabs(grid, triangles.size(), [&](const voronoi::Block& slab, int from, int to) {
-    voronoi::Candidates candidates(triangles, grid);
-    voronoi::descend(candidates, slab, triangles.size(), options, {}, out.counts);
-    for (int slice = from; slice < to; ++slice) {
-      if (progress) {
-        progress("voronoi: slice " + std::to_string(slice + 1) + " of " +
-                 std::to_string(grid.cells[2]));
-      }
-      out.counts.distances += voronoi::distances_in(slice, candidates.bricks());
-      for (const auto& [a, b] : device.nearest_two(slice, candidates.bricks())) {
-        if (b == VoronoiDevice::kNone) continue;
-        const ObjectPair pair = voronoi::pair_of(a, b);
-        if (out.objects.empty() || out.objects.back() != pair) out.objects.push_back(pair);
-      }
-      voronoi::sort_each_once(out.objects);
-    }
-  });
   return out;
 }
 

@@ -19,13 +19,11 @@ class Reliable {
  public:
   struct Found {
     std::vector<float> upper;  // of each object, as upper_
-    Level last;                // blocks that are not divided further
+    Level cells;
   };
-  // smallest: sides of the blocks that are not divided further.
   Reliable(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid, std::size_t objects,
-           double widening, int smallest)
+           double widening)
       : triangles_(triangles),
-        smallest_(smallest),
         error_(voronoi_error(grid.longest())),
         widening_(static_cast<float>(widening)),
         upper_(objects, kInfinite) {}
@@ -40,12 +38,12 @@ class Reliable {
     for (const Kept& kept : filtered(distances, ids, half_of(block)))
       passed.push_back(kept.triangle);
     if (passed.empty()) return;
-    if (block.fits(smallest_)) {
-      Block alone = block;
-      alone.first = found.last.triangles.size();
-      alone.count = passed.size();
-      found.last.blocks.push_back(alone);
-      found.last.triangles.insert(found.last.triangles.end(), passed.begin(), passed.end());
+    if (block.is_cell()) {
+      Block cell = block;
+      cell.first = found.cells.triangles.size();
+      cell.count = passed.size();
+      found.cells.blocks.push_back(cell);
+      found.cells.triangles.insert(found.cells.triangles.end(), passed.begin(), passed.end());
     } else {
       add_parts(block, passed, below);
     }
@@ -53,19 +51,19 @@ class Reliable {
 
   void add(const Found& found) {
     for (std::size_t i = 0; i < upper_.size(); ++i) upper_[i] = std::min(upper_[i], found.upper[i]);
-    last_.append(found.last);
+    cells_.append(found.cells);
   }
 
   // The pairs of the cells that are left, now that all upper bounds are known.
   std::vector<TrianglePair> pairs(const VoronoiOptions& options, VoronoiCounts& counts) const {
-    const std::size_t lists = chunks_for(last_.blocks.size(), 16, options.threads);
+    const std::size_t lists = chunks_for(cells_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
-    for (std::size_t first = 0; first < last_.blocks.size();) {
+    for (std::size_t first = 0; first < cells_.blocks.size();) {
       // Takes cells until they may add some millions of pairs, and at least one cell.
       std::size_t next = first;
       std::uint64_t added = 0;
-      while (next < last_.blocks.size() && (next == first || added < kPairsHeld)) {
-        const std::uint64_t count = last_.blocks[next++].count;
+      while (next < cells_.blocks.size() && (next == first || added < kPairsHeld)) {
+        const std::uint64_t count = cells_.blocks[next++].count;
         added += count * count / 2;
       }
       const std::size_t chunks = std::min(lists, next - first);
@@ -77,64 +75,12 @@ class Reliable {
       if (pool.held() > options.most_pairs + 2 * kPairsHeld) refuse(options);
       first = next;
     }
-    counts.blocks += last_.blocks.size();
-    counts.distances += last_.triangles.size();
+    counts.blocks += cells_.blocks.size();
+    counts.distances += cells_.triangles.size();
     return pool.take(options.threads);
   }
 
   const std::vector<float>& upper() const { return upper_; }
-
-  // ---- cells of which a device computes the distances ----
-
-  // Moves out the blocks that are left, so that they take no memory while the device works.
-  VoronoiBricks take_bricks() {
-    VoronoiBricks out;
-    for (const Block& block : last_.blocks)
-      out.bricks.push_back({block.from, block.to, block.first, block.count});
-    out.triangles = std::move(last_.triangles);
-    last_ = {};
-    return out;
-  }
-
-  // Half the diagonal of a cell.
-  float half_of_cell() const { return half_of({{0, 0, 0}, {1, 1, 1}, 0, 0}); }
-
-  // As note_upper() below, for all cells of a slice.
-  void note_upper(const std::vector<VoronoiNear>& slice) {
-    for_cells(slice, [&](std::span<const VoronoiNear> cell) {
-      const auto object_of = [&](const VoronoiNear& near) {
-        return triangles_[near.triangle].object;
-      };
-      const auto nearer = [](const VoronoiNear& a, const VoronoiNear& b) {
-        return a.upper < b.upper;
-      };
-      const std::uint32_t nearest = object_of(*std::min_element(cell.begin(), cell.end(), nearer));
-      std::array<float, 2> least = {kInfinite, kInfinite};  // of that object, and of all others
-      for (const VoronoiNear& near : cell) {
-        float& of = least[object_of(near) == nearest ? 0 : 1];
-        of = std::min(of, near.upper);
-      }
-      for (const VoronoiNear& near : cell) {
-        const std::uint32_t object = object_of(near);
-        const float other = least[object == nearest ? 1 : 0];
-        upper_[object] = std::min(upper_[object], near.upper + other);
-      }
-    });
-  }
-
-  // Adds the pairs of all cells of a slice, now that all upper bounds are known.
-  void add_pairs(const std::vector<VoronoiNear>& slice, PairPool& pool,
-                 const VoronoiOptions& options) const {
-    const float half = half_of_cell();
-    std::vector<Kept> kept;
-    for_cells(slice, [&](std::span<const VoronoiNear> cell) {
-      kept.clear();
-      for (const VoronoiNear& near : cell)
-        kept.push_back({near.triangle, triangles_[near.triangle].object, near.lower});
-      add_pairs(kept, half, 0, pool, options);
-      if (pool.held() > options.most_pairs + 2 * kPairsHeld) refuse(options);
-    });
-  }
 
  private:
   struct Kept {
@@ -142,8 +88,14 @@ class Reliable {
     float lower;
   };
 
+  // Half the diagonal of the block, rounded up.
   float half_of(const Block& block) const {
-    const float half = half_diagonal(block, 0);
+    float square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto side = static_cast<float>(block.to[k] - block.from[k]);
+      square += side * side;
+    }
+    const float half = 0.5f * std::sqrt(square) * (1 + 0x1p-20f);
     return block.is_cell() ? half * widening_ : half;
   }
 
@@ -185,15 +137,6 @@ class Reliable {
     return out;
   }
 
-  // Calls work(the triangles of a cell) for each cell of a slice.
-  template <class Work>
-  static void for_cells(const std::vector<VoronoiNear>& slice, const Work& work) {
-    for (std::size_t begin = 0, end = 0; begin < slice.size(); begin = end) {
-      while (end < slice.size() && slice[end].cell == slice[begin].cell) ++end;
-      work(std::span(slice).subspan(begin, end - begin));
-    }
-  }
-
   [[noreturn]] static void refuse(const VoronoiOptions& options) {
     throw Error("resolution",
                 std::to_string(options.resolution) +
@@ -203,15 +146,11 @@ class Reliable {
 
   void add_pairs(std::size_t cell, Distances& distances, std::size_t list, PairPool& pool,
                  const VoronoiOptions& options) const {
-    const Block& block = last_.blocks[cell];
+    const Block& block = cells_.blocks[cell];
     const float half = half_of(block);
-    const auto ids = std::span(last_.triangles).subspan(block.first, block.count);
+    const auto ids = std::span(cells_.triangles).subspan(block.first, block.count);
     distances.compute(centre_of(block), ids, triangles_, error_);
-    add_pairs(filtered(distances, ids, half), half, list, pool, options);
-  }
-
-  void add_pairs(const std::vector<Kept>& kept, float half, std::size_t list, PairPool& pool,
-                 const VoronoiOptions& options) const {
+    const std::vector<Kept> kept = filtered(distances, ids, half);
     std::uint64_t added = 0;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       if (added > options.most_pairs) refuse(options);
@@ -228,74 +167,33 @@ class Reliable {
   }
 
   const std::vector<GridTriangle>& triangles_;
-  int smallest_;
   float error_, widening_;
   // Upper bounds of the distance of each object from the nearest other one, in units of the grid,
   // from the levels that are done.
   std::vector<float> upper_;
-  Level last_;
+  Level cells_;
 };
-
-ReliableNeighbours finished(std::vector<TrianglePair> pairs,
-                            const std::vector<GridTriangle>& triangles, const Reliable& form,
-                            const VoronoiGrid& grid, const VoronoiCounts& counts) {
-  ReliableNeighbours out;
-  out.counts = counts;
-  out.triangles = std::move(pairs);
-  for (const TrianglePair& pair : out.triangles) {
-    const ObjectPair objects = pair_of(triangles[pair.a].object, triangles[pair.b].object);
-    if (out.objects.empty() || out.objects.back() != objects) out.objects.push_back(objects);
-  }
-  sort_each_once(out.objects);
-  for (const float upper : form.upper())
-    out.upper.push_back(grid.world(static_cast<double>(upper)));
-  return out;
-}
 
 }  // namespace
 }  // namespace voronoi
 
-ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                       const Progress& progress) {
+VoronoiNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
+                                      const Progress& progress) {
   voronoi::require(options);
   const VoronoiGrid grid = voronoi_grid(scene, options.resolution);
   const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, options.threads);
-  voronoi::Reliable form(triangles, grid, scene.objects.size(), options.widening, 1);
-  VoronoiCounts counts;
-  voronoi::descend(form, grid, triangles.size(), options, progress, counts);
-  std::vector<TrianglePair> pairs = form.pairs(options, counts);
-  return voronoi::finished(std::move(pairs), triangles, form, grid, counts);
-}
-
-// Goes over the grid twice: for the upper bounds, and then with them for the pairs.
-ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                       VoronoiDevice& device, const Progress& progress) {
-  voronoi::require(options);
-  const VoronoiGrid grid = voronoi_grid(scene, options.resolution);
-  const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, options.threads);
-  voronoi::Reliable form(triangles, grid, scene.objects.size(), options.widening, voronoi::kBrick);
-  VoronoiCounts counts;
-  counts.cells = grid.cells;
-  if (triangles.empty()) return voronoi::finished({}, triangles, form, grid, counts);
-  device.start(triangles, grid);
-  PairPool pool(1, voronoi::kPairsHeld);
-  const auto over_grid = [&](const std::string& what, const auto& use) {
-    voronoi::for_slabs(grid, triangles.size(), [&](const voronoi::Block& slab, int from, int to) {
-      voronoi::descend(form, slab, triangles.size(), options, {}, counts);
-      const VoronoiBricks bricks = form.take_bricks();
-      for (int slice = from; slice < to; ++slice) {
-        if (progress) {
-          progress("voronoi: " + what + ", slice " + std::to_string(slice + 1) + " of " +
-                   std::to_string(grid.cells[2]));
-        }
-        counts.distances += voronoi::distances_in(slice, bricks);
-        use(device.near(slice, bricks, 2 * form.half_of_cell()));
-      }
-    });
-  };
-  over_grid("bounds", [&](const auto& slice) { form.note_upper(slice); });
-  over_grid("pairs", [&](const auto& slice) { form.add_pairs(slice, pool, options); });
-  return voronoi::finished(pool.take(options.threads), triangles, form, grid, counts);
+  voronoi::Reliable form(triangles, grid, scene.objects.size(), options.widening);
+  VoronoiNeighbours out;
+  voronoi::descend(form, grid, triangles.size(), options, progress, out.counts);
+  out.triangles = form.pairs(options, out.counts);
+  for (const TrianglePair& pair : out.triangles) {
+    const ObjectPair objects = voronoi::pair_of(triangles[pair.a].object, triangles[pair.b].object);
+    if (out.objects.empty() || out.objects.back() != objects) out.objects.push_back(objects);
+  }
+  voronoi::sort_each_once(out.objects);
+  for (const float upper : form.upper())
+    out.upper.push_back(grid.world(static_cast<double>(upper)));
+  return out;
 }
 
 }  // namespace farcull

@@ -14,22 +14,14 @@
 //
 // Both walk down a tree of blocks of cells, where the published form fills slice after slice. A
 // block is left out if no cell in it can add to the answer.
-//
-// Both can also be computed slice by slice, on a device that rasterizes distances, as OpenGL does
-// (core/gl/voronoi/voronoi.h). The CPU divides each slab of slices into
-// bricks, blocks of cells with the triangles that may matter there; the device computes the
-// distances of the cells of each brick from these triangles.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "core/base/glsl_shim.h"
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
 
@@ -171,21 +163,6 @@ inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle
   return {length, std::max(lower, 0.0f), length + error};
 }
 
-}  // namespace farcull
-
-// The kernel of devices compiled as C++, with bounds of its own.
-namespace farcull::voronoi_bounds {
-
-using namespace farcull::glsl;
-#include "core/voronoi/voronoi_bounds.glsl"
-
-/// 48 v N, with N cells along the longest side.
-inline float error(int longest) { return 0x1.8p-18f * static_cast<float>(longest); }
-
-}  // namespace farcull::voronoi_bounds
-
-namespace farcull {
-
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   /// Half diagonals of a cell by which the reliable form widens it, 0 to 1. The proof asks for 1;
@@ -202,11 +179,21 @@ struct VoronoiCounts {
   std::uint64_t distances = 0;  // of a point and a triangle
 };
 
-/// Pairs of objects, sorted, each once: some cell has these two as its nearest objects. Among
-/// equally near objects (as floats) the first counts. Objects without triangles have no neighbours.
+/// What a form of the diagram leaves. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
+  /// Pairs of objects, sorted, each once. The published form: some cell has these two as its
+  /// nearest objects; among equally near objects (as floats) the first counts. The reliable form:
+  /// the objects of `triangles`.
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
+
+  // Of the reliable form; the published one leaves these empty.
+  /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
+  /// A and one of another object, that are d apart is among these. Sorted, each once.
+  std::vector<TrianglePair> triangles;
+  /// For each object an upper bound of d, in world units, rounded up; infinite where it has no
+  /// triangle or no other object has one.
+  std::vector<double> upper;
 };
 
 /// The published form. Preconditions: the scene satisfies validate(). Throws Error for options that
@@ -214,81 +201,9 @@ struct VoronoiNeighbours {
 VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
                                      const Progress& progress = {});
 
-/// The answer of the reliable form.
-struct ReliableNeighbours {
-  /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
-  /// A and one of another object, that are d apart is among these. Sorted, each once.
-  std::vector<TrianglePair> triangles;
-  std::vector<ObjectPair> objects;  // that these belong to; sorted, each once
-  /// For each object an upper bound of d, in world units, rounded up; infinite where it has no
-  /// triangle or no other object has one.
-  std::vector<double> upper;
-  VoronoiCounts counts;
-};
-
 /// The reliable form. Preconditions and errors as above. Throws Error where it would keep more
 /// pairs than most_pairs and some millions: a cell then contains too much of the scene.
-ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                       const Progress& progress = {});
-
-/// Cells from.. to - 1 along each axis, and numbers of triangles, ascending, in a list.
-struct VoronoiBrick {
-  std::array<int, 3> from, to;
-  std::size_t first = 0, count = 0;
-};
-struct VoronoiBricks {
-  std::vector<VoronoiBrick> bricks;
-  std::vector<std::uint32_t> triangles;
-
-  std::span<const std::uint32_t> of(const VoronoiBrick& brick) const {
-    return std::span(triangles).subspan(brick.first, brick.count);
-  }
-};
-
-/// A triangle that is nearest to some point of a cell, as far as the device can say.
-struct VoronoiNear {
-  std::uint32_t cell = 0;  // x + cells[0] y, of the slice
-  std::uint32_t triangle = 0;
-  float lower = 0, upper = 0;  // bounds of its distance from the centre of the cell
-};
-
-class VoronoiDevice {
- public:
-  static constexpr std::uint32_t kNone = 0xffffffff;
-
-  virtual ~VoronoiDevice() = default;
-  VoronoiDevice() = default;
-  VoronoiDevice(const VoronoiDevice&) = delete;
-  VoronoiDevice& operator=(const VoronoiDevice&) = delete;
-
-  /// Sets the triangles and the grid of all that follows. Both have to outlive it. Throws Error
-  /// where the device has no room for a slice.
-  virtual void start(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid) = 0;
-
-  /// For each cell of the slice in a brick the two objects that are nearest to its centre among the
-  /// triangles of the brick, by computed distances; among objects as near, the lower number first.
-  /// kNone where there are fewer, and for cells of no brick. Bricks that do not meet the slice are
-  /// left out; no two bricks share a cell. A distance errs by at most voronoi_bounds::error().
-  virtual std::vector<std::array<std::uint32_t, 2>> nearest_two(int slice,
-                                                                const VoronoiBricks& bricks) = 0;
-
-  /// For each cell of the slice in a brick all triangles of the brick that satisfy
-  /// lower <= the least upper bound of the brick's triangles + reach. Sorted by cell, then by
-  /// triangle. The bounds hold (docs/voronoi.md, lemma V13). Throws as require_voronoi_list().
-  virtual std::vector<VoronoiNear> near(int slice, const VoronoiBricks& bricks, float reach) = 0;
-};
-
-/// The most entries (16 bytes each) that near() may list for one slice. require_voronoi_list()
-/// throws Error if `listed` is more.
-constexpr std::size_t kVoronoiMostListed = std::size_t{1} << 24;
-void require_voronoi_list(std::size_t listed);
-
-/// The two forms above, with the distances of all cells computed by the device. The answers
-/// of the reliable form are as above; which other pairs it keeps may differ. Errors: as above, and
-/// those of the device.
-VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                     VoronoiDevice& device, const Progress& progress = {});
-ReliableNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
-                                       VoronoiDevice& device, const Progress& progress = {});
+VoronoiNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
+                                      const Progress& progress = {});
 
 }  // namespace farcull

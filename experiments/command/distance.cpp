@@ -131,7 +131,7 @@ class Frames {
   DistanceAccounting sum_;
 };
 
-// Options that need --voronoi.
+// --voronoi, and the option that needs it.
 class DiagramArguments {
  public:
   Rows rows() {
@@ -141,26 +141,23 @@ class DiagramArguments {
              "distances: published or reliable (docs/voronoi.md)"},
             {"--resolution", &resolution_, "N",
              "with --voronoi: cells of the diagram along the\n"
-             "longest side of the scene; default 64"},
-            {"--device", &device_, "DEVICE",
-             "with --voronoi: native (alias cpu) or a GL device:\n"
-             "gl, software, hardware or a number that farcull doctor\n"
-             "lists; default native"}};
+             "longest side of the scene; default 64"}};
   }
-  // Whether --voronoi was given. Throws Error if another of these was given without it.
+  // Whether --voronoi was given. Throws Error if --resolution was given without it.
   bool asked() const {
     if (diagram_) return true;
-    refuse_given({{"--resolution", resolution_.has_value()}, {"--device", device_.has_value()}},
-                 "has no meaning without --voronoi",
+    refuse_given({{"--resolution", resolution_.has_value()}}, "has no meaning without --voronoi",
                  "add --voronoi published or reliable, or leave it out");
     return false;
   }
   // threads: 0 for one per core. Throws Error naming the option that is bad.
-  DiagramOptions parse(unsigned threads) const {
-    DiagramOptions out{.threads = threads, .device = device_of(device_)};
+  NeighbourOptions parse(unsigned threads) const {
+    NeighbourOptions out{.method = NeighbourMethod::voronoi,
+                         .threads = threads,
+                         .most_pairs = VoronoiOptions{}.most_pairs};
     const bool reliable = word_of("--voronoi", diagram_, {"published", "reliable"}, "no choice",
                                   "give published or reliable") == 1;
-    if (reliable) out.form = DiagramForm::reliable;
+    if (reliable) out.method = NeighbourMethod::voronoi_reliable;
     if (resolution_) {
       out.resolution =
           number_of<int>("--resolution", *resolution_, "no number of cells", 1, kVoronoiLargest,
@@ -170,12 +167,12 @@ class DiagramArguments {
   }
 
  private:
-  Text diagram_, resolution_, device_;
+  Text diagram_, resolution_;
 };
 
 // Writes the record of the scene to the outputs. Returns the exit status; 1: the reliable form lost
 // a nearest object.
-int run_diagram(const SceneArguments& arguments, const DiagramOptions& options,
+int run_diagram(const SceneArguments& arguments, const NeighbourOptions& options,
                 const Outputs& outputs) {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
@@ -191,7 +188,7 @@ int run_diagram(const SceneArguments& arguments, const DiagramOptions& options,
     write_json(diagram_json(scene, record, seed_of(arguments.names)), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", diagram_table(scene, record));
   const DiagramTotals totals = totals_of(record);
-  if (options.form == DiagramForm::published || totals.lost == 0) return kExitDone;
+  if (options.method == NeighbourMethod::voronoi || totals.lost == 0) return kExitDone;
   complain_broken("the reliable diagram lost " +
                   counted(totals.lost, "nearest object", "nearest objects"));
   return kExitBroken;
@@ -312,7 +309,7 @@ int DistanceCommand::run() const {
                   {"--verify", verify_},
                   {"--frames", frames_.has_value()}},
                  "has no meaning with --voronoi", "leave one of the two out");
-    const DiagramOptions options = diagram_.parse(threads());
+    const NeighbourOptions options = diagram_.parse(threads());
     check_scene(scene_.names);
     return run_diagram(scene_, options, checked(outputs_, scene_files(scene_.names)));
   }

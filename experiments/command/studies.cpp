@@ -167,8 +167,6 @@ int StudiesCommand::run() {
                 fmt::format("give 1 to {}", kMostSeed));
   }
   request.folder = out_;
-  // Keeps states in files: a step of a fine cloth takes seconds, and several cloths take turns.
-  if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   // The study "libraries" makes its suite there.
   ::setenv("FARCULL_MADE_SUITE", (out_ + "/suite").c_str(), 1);
   if (suite_) check_files(*suite_, read_suite(*suite_));

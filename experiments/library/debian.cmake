@@ -9,7 +9,7 @@ file(WRITE ${doc}/copyright "${text}On Debian, the texts of the licenses are in 
 
 The files hold compiled code of these Debian packages, too; /usr/share/doc/PACKAGE/copyright has the license of each:
 libcgal-dev, libeigen3-dev, libboost-dev, libhwy-dev, libcli11-dev, nlohmann-json3-dev, libfmt-dev, libsqlitecpp-dev,
-pybind11-dev, libfcl-dev, libbullet-dev, libjs-three, fonts-dejavu-core.
+pybind11-dev, libfcl-dev, libbullet-dev, libjs-three.
 ")
 file(REMOVE ${doc}/LICENSE)
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -16,11 +15,8 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/gl/voronoi/voronoi.h"
 #include "core/proximity/near_pairs.h"
 #include "core/voronoi/voronoi.h"
-#include "experiments/method/options.h"
-#include "experiments/method/session.h"
 #include "experiments/record/output.h"
 #include "experiments/system/text_table.h"
 #include "verify/closest.h"
@@ -105,7 +101,7 @@ NeighbourSets sets_of_trees(const Scene& scene, const NeighbourOptions& options,
 NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& options,
                               const Progress& progress) {
   try {
-    return diagram_sets(scene, options, nullptr, progress);
+    return diagram_sets(scene, options, progress);
   } catch (const Error& error) {
     // Options that are out of range remain an Error.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
@@ -199,30 +195,22 @@ NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options
 }
 
 NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
-                           VoronoiDevice* device, const Progress& progress) {
+                           const Progress& progress) {
   if (!has_cells(options.method)) throw std::logic_error("diagram_sets: no diagram");
   const VoronoiOptions voronoi{.resolution = options.resolution,
                                .widening = options.widening,
                                .threads = options.threads,
                                .most_pairs = options.most_pairs};
-  NeighbourSets out;
-  if (options.method == NeighbourMethod::voronoi) {
-    VoronoiNeighbours found = device != nullptr
-                                  ? voronoi_neighbours(scene, voronoi, *device, progress)
-                                  : voronoi_neighbours(scene, voronoi, progress);
-    out.objects = std::move(found.objects);
-    out.work = found.counts;
-    for (const auto& [a, b] : out.objects)
-      out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
-  } else {
-    ReliableNeighbours found = device != nullptr
-                                   ? reliable_neighbours(scene, voronoi, *device, progress)
-                                   : reliable_neighbours(scene, voronoi, progress);
-    out.has_pairs = true;
-    out.objects = std::move(found.objects);
-    out.pairs = std::move(found.triangles);
-    out.work = found.counts;
-  }
+  const bool reliable = options.method == NeighbourMethod::voronoi_reliable;
+  VoronoiNeighbours found =
+      (reliable ? reliable_neighbours : voronoi_neighbours)(scene, voronoi, progress);
+  NeighbourSets out{.objects = std::move(found.objects),
+                    .has_pairs = reliable,
+                    .pairs = std::move(found.triangles),
+                    .work = found.counts};
+  if (reliable) return out;
+  for (const auto& [a, b] : out.objects)
+    out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
   return out;
 }
 
@@ -328,57 +316,21 @@ std::string objects_table(const Scene& scene, const DiagramRecord& record) {
   return out;
 }
 
-Json device_json(const DiagramRecord& record) {
-  if (!record.gl) return {{"kind", "cpu"}};
-  Json out = {{"kind", record.gl->kind}};
-  out.update(gl_json(*record.gl));
-  out.update(Json{{"reason", "--device " + record.options.device}, {"probes", record.probes}});
-  return out;
+const char* form_of(const DiagramRecord& record) {
+  return record.options.method == NeighbourMethod::voronoi_reliable ? "reliable" : "published";
 }
-
-// Runs the diagram, on a GL device if one is wanted.
-class Asked {
- public:
-  Asked(const DiagramOptions& options, DiagramRecord& record)
-      : options_{.method = options.form == DiagramForm::reliable ? NeighbourMethod::voronoi_reliable
-                                                                 : NeighbourMethod::voronoi,
-                 .resolution = options.resolution,
-                 .widening = options.widening,
-                 .threads = options.threads,
-                 .most_pairs = VoronoiOptions{}.most_pairs} {
-    if (options.device.empty() || is_cpu(options.device)) return;
-    session_.emplace(options.device, options.threads);
-    const GlContext& context = session_->context();
-    const DeviceVerdict& verdict = session_->verdict();
-    record.gl = context.info();
-    record.probes = to_string(verdict);
-    if (!verdict.holds)
-      throw Error("--device " + options.device, record.probes, "use --device cpu");
-    device_ = gl_voronoi_device(context);
-  }
-
-  NeighbourSets sets(const Scene& scene, const Progress& progress) const {
-    return diagram_sets(scene, options_, device_.get(), progress);
-  }
-
- private:
-  NeighbourOptions options_;
-  std::optional<Session> session_;  // its context outlives the device
-  std::unique_ptr<VoronoiDevice> device_;
-};
 
 }  // namespace
 
-DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& options,
+DiagramRecord potential_neighbours(const Scene& scene, const NeighbourOptions& options,
                                    const Progress& progress) {
   const FloatingPointGuard guard;
   DiagramRecord out{.options = options,
                     .scene_hash = scene_hash(scene),
                     .degenerate_triangles = degenerate_triangles(scene),
                     .objects = std::vector<PotentialNeighbours>(scene.objects.size())};
-  const Asked diagram(options, out);
   const Stopwatch diagram_watch;
-  const NeighbourSets sets = diagram.sets(scene, progress);
+  const NeighbourSets sets = diagram_sets(scene, options, progress);
   const std::vector<SetSize> sizes = set_sizes(scene, sets);
   out.diagram_ms = diagram_watch.ms();
   out.work = sets.work;
@@ -402,7 +354,6 @@ DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& opt
     of.nearest = std::move(truth[object].objects);
   }
   out.exact_ms = exact_watch.ms();
-  require_proved("arithmetic");  // a driver's code ran in this thread too
   return out;
 }
 
@@ -417,10 +368,6 @@ DiagramTotals totals_of(const DiagramRecord& record) {
     out.potential_triangles += of.triangles;
   }
   return out;
-}
-
-const char* to_string(DiagramForm form) {
-  return form == DiagramForm::reliable ? "reliable" : "published";
 }
 
 Json diagram_json(const Scene& scene, const DiagramRecord& record,
@@ -440,10 +387,9 @@ Json diagram_json(const Scene& scene, const DiagramRecord& record,
   totals["object_pairs"] = record.object_pairs;
   totals["triangle_pairs"] = record.triangle_pairs;
   return {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
-          {"diagram", to_string(record.options.form)},
+          {"diagram", form_of(record)},
           {"resolution", record.options.resolution},
           {"cells", record.work.cells},
-          {"device", device_json(record)},
           {"objects", objects},
           {"totals", totals},
           {"counts", {{"blocks", record.work.blocks}, {"distances", record.work.distances}}},
@@ -472,11 +418,8 @@ std::string diagram_table(const Scene& scene, const DiagramRecord& record) {
   std::string out =
       fmt::format("{}: {}, {}\n", scene.name, counted(scene.objects.size(), "object", "objects"),
                   counted(scene.triangles.size(), "triangle", "triangles"));
-  out += fmt::format("diagram    {}, {} x {} x {} cells\n", to_string(record.options.form),
-                     cells[0], cells[1], cells[2]);
-  out += "device     " + (record.gl ? record.gl->renderer : "cpu") + "\n";
-  if (record.gl) out += "probes     " + record.probes + "\n";
-  out += "\n";
+  out += fmt::format("diagram    {}, {} x {} x {} cells\n\n", form_of(record), cells[0], cells[1],
+                     cells[2]);
   out += objects_table(scene, record) + "\n";
   out += fmt::format("left       {} and {}\n",
                      counted(record.object_pairs, "pair of objects", "pairs of objects"),

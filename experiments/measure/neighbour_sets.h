@@ -12,7 +12,6 @@
 
 #include "core/base/fields.h"
 #include "core/base/stage.h"
-#include "core/gl/base/context.h"
 #include "core/scene/scene.h"
 #include "core/voronoi/voronoi.h"
 
@@ -28,8 +27,6 @@ struct NearestObjects {
 /// nearest, and exact arithmetic decides (verify/closest.h). Precondition: the scene satisfies
 /// validate().
 std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress = {});
-
-class VoronoiDevice;
 
 /// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
 /// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
@@ -68,10 +65,10 @@ NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options
                              const Progress& progress = {});
 
 /// The same for a diagram, but throws Error also if there are no sets, as voronoi_neighbours() and
-/// reliable_neighbours() do. device: where its cells are computed; null: on the cores of the CPU.
+/// reliable_neighbours() do.
 /// Precondition: has_cells(options.method).
 NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
-                           VoronoiDevice* device, const Progress& progress = {});
+                           const Progress& progress = {});
 
 /// The set of one object: how many other objects, and triangles of other objects.
 struct SetSize {
@@ -113,20 +110,6 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
 // Compares the potential neighbours of each object by a discrete Voronoi diagram (docs/voronoi.md)
 // with its nearest objects by exact arithmetic: how many the diagram leaves, and how many it loses.
 
-/// published: the diagram leaves the two nearest objects of each cell. reliable: it leaves all
-/// objects that may be nearest.
-enum class DiagramForm { published, reliable };
-
-struct DiagramOptions {
-  DiagramForm form = DiagramForm::published;
-  int resolution = 64;   // cells along the longest side of the scene's box; 1 to kVoronoiLargest
-  unsigned threads = 0;  // of the CPU; 0: as many as there are cores; changes no answer
-  double widening = 1;   // as in VoronoiOptions; below 1 the reliable form may lose objects
-  /// The device that computes the cells. "", "native" or "cpu": on the cores of the CPU; else a GL
-  /// device as Session takes it.
-  std::string device = {};
-};
-
 /// The sets of one object.
 struct PotentialNeighbours {
   std::vector<std::uint32_t> nearest;  // its nearest objects; empty if no other object has
@@ -141,9 +124,7 @@ struct PotentialNeighbours {
 };
 
 struct DiagramRecord {
-  DiagramOptions options;
-  std::optional<GlInfo> gl = {};  // the device that answered; empty: the CPU
-  std::string probes = {};        // what the probes of that device showed
+  NeighbourOptions options;
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
   std::vector<PotentialNeighbours> objects;  // one for each object of the scene
@@ -153,10 +134,9 @@ struct DiagramRecord {
   double diagram_ms = 0, exact_ms = 0;
 };
 
-/// Throws Error as voronoi_neighbours() and reliable_neighbours() do, and if a GL device does not
-/// answer, fails, or does not pass the probes (docs/reliability.md). Precondition: the scene
-/// satisfies validate().
-DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& options,
+/// Throws Error as voronoi_neighbours() and reliable_neighbours() do. Preconditions: the scene
+/// satisfies validate(); has_cells(options.method).
+DiagramRecord potential_neighbours(const Scene& scene, const NeighbourOptions& options,
                                    const Progress& progress = {});
 
 /// Sums over all objects.
@@ -169,8 +149,6 @@ struct DiagramTotals {
   FARCULL_FIELDS(objects, nearest, lost, objects_lost, potential_objects, potential_triangles)
 };
 DiagramTotals totals_of(const DiagramRecord& record);
-
-const char* to_string(DiagramForm form);
 
 /// The record for programs, for spreadsheets (a row for each object) and for people (of many
 /// objects the first ones). seed: what the scene was drawn with, where it is random.

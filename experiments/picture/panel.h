@@ -57,9 +57,8 @@ FrameRange frames_of(const PictureArguments& arguments);
 
 // Images with text: lettering, panels side by side with titles above and legends below, and PNG.
 //
-// The font is DejaVu Sans, drawn by FreeType without hinting. It is part of the program (Debian's
-// fonts-dejavu-core at build time), so that a picture does not depend on the fonts of the machine
-// that draws it.
+// The font is DejaVu Sans, drawn by pango and cairo without hinting; where the system lacks it,
+// fontconfig chooses another one, and lettering_version() names that.
 
 struct TextStyle {
   double height = 14;  // px of a capital letter
@@ -67,20 +66,13 @@ struct TextStyle {
   Rgba colour = {30, 30, 34, 255};
 };
 
-/// The advance of the text in px: where a letter after the last one would begin. Throws Error if
-/// FreeType refuses the font.
-double text_width(const std::string& text, const TextStyle& style);
-
 /// Draws the text with the left end of its baseline at (x, baseline), in px from the left and the
-/// top. Clips it to the image. UTF-8; a letter that the font lacks and an invalid byte are drawn as
-/// '?'. Throws as text_width().
+/// top. Clips it to the image. UTF-8; an invalid byte is drawn as U+FFFD. A text that is wider than
+/// `room` px is cut, with "…" at its end.
 void draw_text(Image& image, double x, double baseline, const std::string& text,
-               const TextStyle& style);
+               const TextStyle& style, double room);
 
-/// The text, or as much of it as fits into `width` px, with "…" at its end.
-std::string text_that_fits(const std::string& text, const TextStyle& style, double width);
-
-/// The versions that determine the pixels of a text: "DejaVu Sans 2.37, FreeType 2.12.1".
+/// What determines the pixels of a text: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
 std::string lettering_version();
 
 struct LegendEntry {
@@ -116,17 +108,12 @@ Image compose(const std::string& title, const std::string& subtitle,
 /// Keyword (1 to 79 printable ASCII characters) and text, in UTF-8; in the order of the file.
 using PngTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// The bytes of a PNG with 8 bits a channel: RGB if every pixel is opaque, else RGBA; texts as
-/// tEXt, or as iTXt if not ASCII. The same image and texts give the same bytes with the same
-/// libpng. Throws Error if libpng fails. Precondition: the image has a pixel.
+/// The bytes of a PNG with 8 bits a channel, RGB; texts as tEXt, or as iTXt if not ASCII. The same
+/// image and texts give the same bytes with the same cairo. Throws Error if cairo fails.
+/// Preconditions: the image has a pixel, and all are opaque.
 std::string to_png(const Image& image, const PngTexts& texts);
 
-// Files of Debian that are part of the program: the font of pictures, and three.js, a library for
-// WebGL in browsers (libjs-three).
-
-/// DejaVu Sans, regular or bold.
-std::string_view font_file(bool bold);
-
+/// three.js, a library for WebGL in browsers (Debian's libjs-three), which is part of the program.
 /// All three are empty if the program was built without three.js.
 struct ThreeJs {
   std::string_view library;   // three.min.js

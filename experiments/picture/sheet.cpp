@@ -1,164 +1,60 @@
-// Paints rectangles, rings and lettering into one image. Letters are outlines of the font, scaled
-// to the height of a capital, at subpixel positions: each is rendered as coverage and blended.
-#include "experiments/picture/panel.h"
-
+// Paints rectangles, rings and lettering into one image. Pango lays text out and cairo renders it
+// as coverage, which is blended in the colour of the style. Cairo also writes the PNG.
 #include <fmt/format.h>
-#include <ft2build.h>
-#include FT_FREETYPE_H
-#include FT_OUTLINE_H
-#include FT_SFNT_NAMES_H
-#include FT_TRUETYPE_IDS_H
-#include <png.h>
+#include <pango/pangocairo.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csetjmp>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <stdexcept>
-#include <vector>
 
 #include "core/base/error.h"
-
-// FARCULL_EMBED(NAME, PATH): the bytes of the file from farcull_NAME to farcull_NAME_end. The
-// assembler includes them: as arrays they would take the compiler minutes.
-#define FARCULL_EMBED(name, path)          \
-  asm(".pushsection .rodata\n"             \
-      "farcull_" #name ": .incbin \"" path \
-      "\"\n"                               \
-      "farcull_" #name                     \
-      "_end:\n"                            \
-      ".popsection\n");                    \
-  extern "C" const char farcull_##name[], farcull_##name##_end[];
-
-FARCULL_EMBED(font_regular, FARCULL_FONT_REGULAR)
-FARCULL_EMBED(font_bold, FARCULL_FONT_BOLD)
-#if FARCULL_WITH_THREE
-FARCULL_EMBED(three, FARCULL_THREE)
-FARCULL_EMBED(three_controls, FARCULL_THREE_CONTROLS)
-FARCULL_EMBED(three_licence, FARCULL_THREE_LICENCE)
-#endif
+#include "experiments/picture/panel.h"
 
 namespace farcull {
-
-std::string_view font_file(bool bold) {
-  return bold ? std::string_view(farcull_font_bold, farcull_font_bold_end)
-              : std::string_view(farcull_font_regular, farcull_font_regular_end);
-}
-
-ThreeJs three_js() {
-#if FARCULL_WITH_THREE
-  return {.library = {farcull_three, farcull_three_end},
-          .controls = {farcull_three_controls, farcull_three_controls_end},
-          .licence = {farcull_three_licence, farcull_three_licence_end}};
-#else
-  return {};
-#endif
-}
-
 namespace {
 
-constexpr double kUnits = 64;  // units of FreeType's coordinates per px
-constexpr const char* kEllipsis = "\xe2\x80\xa6";
+struct Free {
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+  void operator()(PangoContext* context) const { g_object_unref(context); }
+  void operator()(PangoFont* font) const { g_object_unref(font); }
+  void operator()(PangoLayout* layout) const { g_object_unref(layout); }
+  void operator()(PangoFontDescription* font) const { pango_font_description_free(font); }
+  void operator()(char* text) const { g_free(text); }
+};
+template <class T>
+using Owned = std::unique_ptr<T, Free>;
 
-void require(FT_Error error, const char* what) {
-  if (error == 0) return;
-  throw Error("the font of pictures", fmt::format("FreeType {}: error {}", what, error),
-              "build farcull again with libfreetype-dev and fonts-dejavu-core of this system");
-}
-
-// The characters of a UTF-8 text; '?' for each byte that is not UTF-8.
-std::vector<std::uint32_t> characters_of(const std::string& text) {
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t more = byte < 0x80       ? 0
-                             : byte >> 5 == 6  ? 1
-                             : byte >> 4 == 14 ? 2
-                             : byte >> 3 == 30 ? 3
-                                               : 4;
-    std::uint32_t code = more == 0 ? byte : byte & (0x3fu >> more);
-    bool good = more < 4 && i + more < text.size();
-    for (std::size_t k = 1; good && k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      good = next >> 6 == 2;
-      code = code << 6 | (next & 0x3fu);
-    }
-    out.push_back(good ? code : '?');
-    i += good ? more + 1 : 1;
-  }
+// The text in the style, without hinting, so that letters keep their shapes at every size and
+// place. A text that is wider than `room` px ends with an ellipsis.
+Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
+  constexpr double kCapital = 1493.0 / 2048;  // height of a capital of DejaVu over the em
+  const Owned<PangoContext> context(
+      pango_font_map_create_context(pango_cairo_font_map_get_default()));
+  const Owned<cairo_font_options_t> options(cairo_font_options_create());
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  pango_cairo_context_set_font_options(context.get(), options.get());
+  pango_context_set_round_glyph_positions(context.get(), FALSE);
+  const Owned<PangoFontDescription> font(
+      pango_font_description_from_string(style.bold ? "DejaVu Sans Bold" : "DejaVu Sans"));
+  pango_font_description_set_absolute_size(font.get(), style.height / kCapital * PANGO_SCALE);
+  Owned<PangoLayout> out(pango_layout_new(context.get()));
+  pango_layout_set_font_description(out.get(), font.get());
+  pango_layout_set_single_paragraph_mode(out.get(), TRUE);
+  pango_layout_set_ellipsize(out.get(), PANGO_ELLIPSIZE_END);
+  pango_layout_set_width(out.get(), static_cast<int>(std::max(0.0, room) * PANGO_SCALE));
+  const Owned<char> valid(g_utf8_make_valid(text.c_str(), -1));
+  pango_layout_set_text(out.get(), valid.get(), -1);
   return out;
 }
 
-// The font at one size.
-class Font {
- public:
-  Font(bool bold, double capital) {
-    FT_Library library = nullptr;
-    require(FT_Init_FreeType(&library), "does not start");
-    library_.reset(library);
-    const std::string_view file = font_file(bold);
-    FT_Face face = nullptr;
-    require(FT_New_Memory_Face(library, reinterpret_cast<const FT_Byte*>(file.data()),
-                               static_cast<FT_Long>(file.size()), 0, &face),
-            "cannot read the font");
-    face_.reset(face);
-    // FreeType's size is the height of the em square; the letter H gives the part of a capital.
-    require(FT_Load_Char(face, 'H', FT_LOAD_NO_SCALE), "has no letter H");
-    const double part = static_cast<double>(face->glyph->metrics.height) / face->units_per_EM;
-    require(FT_Set_Char_Size(face, 0, std::lround(capital / part * kUnits), 72, 72),
-            "cannot scale the font");
-  }
-
-  // Calls at(glyph slot, px from the left of the text) for each letter, with its outline loaded,
-  // and returns the width of the text.
-  template <class At>
-  double walk(const std::string& text, const At& at) const {
-    double left = 0;
-    FT_UInt before = 0;
-    for (const std::uint32_t code : characters_of(text)) {
-      FT_UInt glyph = FT_Get_Char_Index(face_.get(), code);
-      if (glyph == 0) glyph = FT_Get_Char_Index(face_.get(), '?');
-      FT_Vector kern = {};
-      if (before != 0 &&
-          FT_Get_Kerning(face_.get(), before, glyph, FT_KERNING_UNFITTED, &kern) == 0)
-        left += static_cast<double>(kern.x) / kUnits;
-      require(FT_Load_Glyph(face_.get(), glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP),
-              "cannot load a letter");
-      // Reads the advance before rendering, which rounds the glyph's other one to whole pixels.
-      const double advance = static_cast<double>(face_->glyph->linearHoriAdvance) / 65536;
-      at(face_->glyph, left);
-      left += advance;
-      before = glyph;
-    }
-    return left;
-  }
-
-  std::string version() const {
-    std::string number;
-    FT_SfntName name = {};
-    for (FT_UInt i = 0; i < FT_Get_Sfnt_Name_Count(face_.get()); ++i) {
-      if (FT_Get_Sfnt_Name(face_.get(), i, &name) == 0 &&
-          name.name_id == TT_NAME_ID_VERSION_STRING && name.platform_id == TT_PLATFORM_MACINTOSH)
-        number.assign(reinterpret_cast<const char*>(name.string), name.string_len);
-    }
-    FT_Int major = 0, minor = 0, patch = 0;
-    FT_Library_Version(library_.get(), &major, &minor, &patch);
-    return fmt::format("{} {}, FreeType {}.{}.{}", face_->family_name,
-                       number.substr(number.rfind(' ') + 1), major, minor, patch);
-  }
-
- private:
-  struct Done {
-    void operator()(FT_Library library) const { FT_Done_FreeType(library); }
-    void operator()(FT_Face face) const { FT_Done_Face(face); }
-  };
-  std::unique_ptr<FT_LibraryRec_, Done> library_;
-  std::unique_ptr<FT_FaceRec_, Done> face_;
-};
-
-constexpr Rgba kPaper = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
+constexpr Rgba kSheet = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
                kFrame = {205, 208, 213};
 
 void fill(Image& image, int x0, int y0, int x1, int y1, const Rgba& colour) {
@@ -191,104 +87,66 @@ void draw_sign(Image& sheet, const LegendEntry& entry, int left, int top, int si
   }
 }
 
-// ---- PNG, by libpng ----
-
-// libpng reports an error by a call that must not return. Jumping out of its frames is safe, but
-// jumping over ours would skip destructors, so C++ objects are outside the function with setjmp.
-struct Failure {
-  char text[200] = "";
-};
-
-extern "C" void png_failed(png_structp png, png_const_charp message) {
-  auto* failure = static_cast<Failure*>(png_get_error_ptr(png));
-  std::strncpy(failure->text, message, sizeof failure->text - 1);
-  png_longjmp(png, 1);
-}
-extern "C" void png_warned(png_structp, png_const_charp) {}
-
-extern "C" void append(png_structp png, png_bytep data, std::size_t length) {
-  static_cast<std::string*>(png_get_io_ptr(png))
-      ->append(reinterpret_cast<const char*>(data), length);
-}
-extern "C" void flush(png_structp) {}
-
-bool ascii(const std::string& text) {
-  return std::all_of(text.begin(), text.end(),
-                     [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+void put(std::string& out, std::uint32_t number) {
+  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-struct Written {
-  std::string bytes;
-  std::vector<png_text> texts;
-  std::vector<png_bytep> rows;
-  std::vector<png_byte> channels;
-  Failure failure;
-};
+// A chunk of PNG with a text, which cairo does not write: iTXt has two flags, a language and a
+// translated keyword before the text, all empty here.
+std::string chunk_of(const std::string& key, const std::string& text) {
+  const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
+  const std::string body =
+      (ascii ? "tEXt" : "iTXt") + key + std::string(ascii ? 1 : 5, '\0') + text;
+  std::string out;
+  put(out, static_cast<std::uint32_t>(body.size() - 4));
+  out += body;
+  put(out, static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(body.data()),
+                                            static_cast<uInt>(body.size()))));
+  return out;
+}
 
-// Returns false if libpng has failed.
-bool write(const Image& image, bool opaque, Written& out) {
-  png_structp png =
-      png_create_write_struct(PNG_LIBPNG_VER_STRING, &out.failure, png_failed, png_warned);
-  if (png == nullptr) return false;
-  png_infop info = png_create_info_struct(png);
-  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
-    png_destroy_write_struct(&png, &info);
-    return false;
-  }
-  png_set_write_fn(png, &out.bytes, append, flush);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), 8,
-               opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_text(png, info, out.texts.data(), static_cast<int>(out.texts.size()));
-  png_write_info(png, info);
-  png_write_image(png, out.rows.data());
-  png_write_end(png, nullptr);
-  png_destroy_write_struct(&png, &info);
-  return true;
+Owned<cairo_surface_t> surface_of(cairo_format_t format, int width, int height) {
+  Owned<cairo_surface_t> out(cairo_image_surface_create(format, width, height));
+  if (const cairo_status_t status = cairo_surface_status(out.get()); status != CAIRO_STATUS_SUCCESS)
+    throw Error("--size", fmt::format("cairo makes no image: {}", cairo_status_to_string(status)),
+                "give another size");
+  return out;
 }
 
 }  // namespace
 
-double text_width(const std::string& text, const TextStyle& style) {
-  return Font(style.bold, style.height).walk(text, [](FT_GlyphSlot, double) {});
-}
-
 void draw_text(Image& image, double x, double baseline, const std::string& text,
-               const TextStyle& style) {
-  const Font font(style.bold, style.height);
-  font.walk(text, [&](FT_GlyphSlot slot, double left) {
-    const double column = std::floor(x + left), row = std::floor(baseline);
-    FT_Outline_Translate(&slot->outline, std::lround((x + left - column) * kUnits),
-                         -std::lround((baseline - row) * kUnits));
-    require(FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL), "cannot draw a letter");
-    const FT_Bitmap& bitmap = slot->bitmap;
-    for (unsigned y = 0; y < bitmap.rows; ++y) {
-      const int to_y = static_cast<int>(row) - slot->bitmap_top + static_cast<int>(y);
-      if (to_y < 0 || to_y >= image.height) continue;
-      for (unsigned i = 0; i < bitmap.width; ++i) {
-        const int to_x = static_cast<int>(column) + slot->bitmap_left + static_cast<int>(i);
-        if (to_x < 0 || to_x >= image.width) continue;
-        const int covered = bitmap.buffer[static_cast<std::size_t>(y) * bitmap.pitch + i];
-        if (covered > 0) blend(image.at(to_x, to_y), style.colour, covered / 255.0);
-      }
+               const TextStyle& style, double room) {
+  const Owned<PangoLayout> layout = laid_out(text, style, room);
+  PangoLayoutLine* const line = pango_layout_get_line_readonly(layout.get(), 0);
+  PangoRectangle ink;  // in px from the left end of the baseline
+  pango_layout_line_get_extents(line, &ink, nullptr);
+  pango_extents_to_pixels(&ink, nullptr);
+  const double column = std::floor(x), row = std::floor(baseline);
+  const Owned<cairo_surface_t> mask = surface_of(CAIRO_FORMAT_A8, ink.width + 2, ink.height + 2);
+  const Owned<cairo_t> context(cairo_create(mask.get()));
+  cairo_move_to(context.get(), x - column - ink.x, baseline - row - ink.y);
+  pango_cairo_show_layout_line(context.get(), line);
+  cairo_surface_flush(mask.get());
+  const unsigned char* const covered = cairo_image_surface_get_data(mask.get());
+  const int stride = cairo_image_surface_get_stride(mask.get());
+  const int left = static_cast<int>(column) + ink.x, top = static_cast<int>(row) + ink.y;
+  for (int py = std::max(0, -top); py < ink.height + 2 && top + py < image.height; ++py) {
+    for (int px = std::max(0, -left); px < ink.width + 2 && left + px < image.width; ++px) {
+      if (const int part = covered[py * stride + px]; part > 0)
+        blend(image.at(left + px, top + py), style.colour, part / 255.0);
     }
-  });
-}
-
-std::string text_that_fits(const std::string& text, const TextStyle& style, double width) {
-  if (text_width(text, style) <= width) return text;
-  std::string cut = text;
-  while (!cut.empty() && text_width(cut + kEllipsis, style) > width) {
-    // Removes all bytes of a UTF-8 letter together.
-    while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80)
-      cut.pop_back();
-    cut.pop_back();
   }
-  return cut + kEllipsis;
 }
 
-std::string lettering_version() { return Font(false, 14).version(); }
+std::string lettering_version() {
+  const Owned<PangoLayout> layout = laid_out("", {}, 0);
+  const Owned<PangoFont> font(pango_context_load_font(
+      pango_layout_get_context(layout.get()), pango_layout_get_font_description(layout.get())));
+  const Owned<PangoFontDescription> used(pango_font_describe(font.get()));
+  return fmt::format("{}, pango {}, cairo {}", pango_font_description_get_family(used.get()),
+                     pango_version_string(), cairo_version_string());
+}
 
 void lay_over(Image& below, const Image& above, double opacity) {
   for (std::size_t i = 0; i < below.pixels.size(); ++i) {
@@ -308,7 +166,7 @@ void draw_ring(Image& image, double x, double y, double radius, double line, con
       const double off = std::abs(std::hypot(px + 0.5 - x, py + 0.5 - y) - radius);
       const double around = std::clamp(halo - off + 0.5, 0.0, 1.0);
       const double on = std::clamp(0.5 * line - off + 0.5, 0.0, 1.0);
-      if (around > 0) blend(image.at(px, py), kPaper, 0.8 * around);
+      if (around > 0) blend(image.at(px, py), kSheet, 0.8 * around);
       if (on > 0) blend(image.at(px, py), colour, on);
     }
   }
@@ -333,61 +191,57 @@ Image compose(const std::string& title, const std::string& subtitle,
   const int legend_top = top + height + line / 2;
   const int total_height = legend_top + static_cast<int>(entries) * line + 2 * line;
 
-  Image sheet(total_width, total_height, kPaper);
+  Image sheet(total_width, total_height, kSheet);
   const double room = total_width - 2.0 * margin;
-  draw_text(sheet, margin, margin + big.height, text_that_fits(title, big, room), big);
-  draw_text(sheet, margin, margin + big.height + line, text_that_fits(subtitle, plain, room),
-            plain);
+  draw_text(sheet, margin, margin + big.height, title, big, room);
+  draw_text(sheet, margin, margin + big.height + line, subtitle, plain, room);
   for (int i = 0; i < count; ++i) {
     SheetPanel& panel = panels[static_cast<std::size_t>(i)];
     panel.left = margin + i * (width + margin);
     panel.top = top;
     TextStyle headline = strong;
     headline.colour = panel.headline_colour;
-    draw_text(sheet, panel.left, heading + letter, text_that_fits(panel.title, strong, width),
-              strong);
-    draw_text(sheet, panel.left, heading + line + letter,
-              text_that_fits(panel.headline, headline, width), headline);
+    draw_text(sheet, panel.left, heading + letter, panel.title, strong, width);
+    draw_text(sheet, panel.left, heading + line + letter, panel.headline, headline, width);
     put(sheet, panel.image, panel.left, panel.top);
     int y = legend_top;
     for (const LegendEntry& entry : panel.legend) {
       const int size = static_cast<int>(std::lround(1.1 * letter));
       draw_sign(sheet, entry, panel.left, y + (line - size) / 2, size);
       const double x = panel.left + 1.9 * letter;
-      draw_text(sheet, x, y + 0.5 * (line + letter),
-                text_that_fits(entry.text, plain, width - 1.9 * letter), plain);
+      draw_text(sheet, x, y + 0.5 * (line + letter), entry.text, plain, width - 1.9 * letter);
       y += line;
     }
   }
-  draw_text(sheet, margin, total_height - 0.75 * margin, text_that_fits(small_print, small, room),
-            small);
+  draw_text(sheet, margin, total_height - 0.75 * margin, small_print, small, room);
   return sheet;
 }
 
 std::string to_png(const Image& image, const PngTexts& texts) {
-  if (image.width < 1 || image.height < 1) throw std::logic_error("to_png: an image of no pixels");
-  const bool opaque = std::all_of(image.pixels.begin(), image.pixels.end(),
-                                  [](const Rgba& pixel) { return pixel.a == 255; });
-  Written out;
-  for (const auto& [key, text] : texts) {
-    png_text entry = {};
-    entry.compression = ascii(text) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
-    entry.key = const_cast<char*>(key.c_str());
-    entry.text = const_cast<char*>(text.c_str());
-    out.texts.push_back(entry);
+  const Owned<cairo_surface_t> surface = surface_of(CAIRO_FORMAT_RGB24, image.width, image.height);
+  unsigned char* const data = cairo_image_surface_get_data(surface.get());
+  const int stride = cairo_image_surface_get_stride(surface.get());
+  for (int y = 0; y < image.height; ++y) {
+    auto* const row =
+        reinterpret_cast<std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
+    for (int x = 0; x < image.width; ++x) {
+      const Rgba& pixel = image.at(x, y);
+      row[x] = std::uint32_t{pixel.r} << 16 | std::uint32_t{pixel.g} << 8 | pixel.b;
+    }
   }
-  const std::size_t size = opaque ? 3 : 4;
-  out.channels.reserve(image.pixels.size() * size);
-  for (const Rgba& pixel : image.pixels) {
-    out.channels.insert(out.channels.end(), {pixel.r, pixel.g, pixel.b});
-    if (!opaque) out.channels.push_back(pixel.a);
-  }
-  for (int y = 0; y < image.height; ++y)
-    out.rows.push_back(out.channels.data() + static_cast<std::size_t>(y) * image.width * size);
-  if (!write(image, opaque, out))
-    throw Error("PNG", out.failure.text[0] ? out.failure.text : "libpng has no memory",
-                "give another size, or report the command line");
-  return std::move(out.bytes);
+  cairo_surface_mark_dirty(surface.get());
+  std::string out;
+  const auto append = [](void* to, const unsigned char* bytes, unsigned length) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), length);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), append, &out);
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw Error("PNG", cairo_status_to_string(status), "give another size, or report the command");
+  std::string chunks;
+  for (const auto& [key, text] : texts) chunks += chunk_of(key, text);
+  constexpr std::size_t kHeader = 8 + 25;  // the signature and the chunk IHDR
+  return out.insert(kHeader, chunks);
 }
 
 }  // namespace farcull

@@ -1,9 +1,7 @@
 // The study "accuracy" counts what every method misses at each number of pixels and with each form
 // of CULLIDE; "error-time" shows misses against time, and adds libraries. "stability" asks which
 // methods still find all collisions in extreme scenes. "cloth" runs every frame of a falling cloth,
-// at four stiffnesses, with every pair of triangles accounted for. The simulation of a fine and
-// stiff cloth takes hours, so its states are kept (scenes/cloth/cloth.h), and the stiffnesses take
-// turns.
+// at four stiffnesses, with every pair of triangles accounted for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -304,22 +302,19 @@ PointResult measure_stability(const Point& point, Lab& lab) {
   return out;
 }
 
-constexpr long kTurn = 20;   // frames of one stiffness before the next stiffness
 constexpr long kOfFar = 10;  // far looks at every tenth frame
 
 std::vector<Point> cloth_grid(const GridChoice& choice) {
   const int triangles = choice.quick ? 200 : 20000;
   const long frames = choice.quick ? 12 : 500;
   std::vector<Point> out;
-  for (long begin = 0; begin < frames; begin += kTurn) {
-    for (const int k : {2, 8, 4, 6}) {
-      const std::string name = fmt::format("cloth:{}:1e{}", triangles, k);
-      for (long frame = begin; frame < std::min(frames, begin + kTurn); ++frame) {
-        const MotionFrame scene{name, frame, frames};
-        out.emplace_back(plain_point(scene, boxes));
-        if (frame % kOfFar == 0)
-          out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
-      }
+  for (const int k : {2, 8, 4, 6}) {
+    const std::string name = fmt::format("cloth:{}:1e{}", triangles, k);
+    for (long frame = 0; frame < frames; ++frame) {
+      const MotionFrame scene{name, frame, frames};
+      out.emplace_back(plain_point(scene, boxes));
+      if (frame % kOfFar == 0)
+        out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
     }
   }
   return out;

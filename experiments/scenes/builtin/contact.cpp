@@ -1,5 +1,5 @@
-// Scenes for benchmarks with objects in contact: a rope, a heap of spheres, and the list, which
-// includes those of contact_cloth.cpp and contact_parts.cpp.
+// Scenes for benchmarks with objects in contact: a crumpled sheet, a rope, a heap of spheres, and
+// the list, which includes those of contact_parts.cpp and funnel.cpp.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,119 @@ namespace farcull {
 using namespace shapes;
 
 namespace {
+
+// ---- the sheet ----
+
+// Control points of a uniform cubic B-spline over the unit square. Point i * side + j, with i and j
+// from 0 to side - 1, belongs to the parameter ((i - 1) / spans, (j - 1) / spans).
+struct Lattice {
+  explicit Lattice(std::uint32_t spans) : spans(spans), side(spans + 3), points(side * side) {}
+  std::uint32_t spans;
+  std::uint32_t side;
+  std::vector<Vec3> points;
+};
+
+struct Weights {
+  std::uint32_t first;
+  std::array<double, 4> w;
+};
+
+Weights weights_at(double u, std::uint32_t spans) {
+  const double scaled = u * spans;
+  const auto first = std::min(static_cast<std::uint32_t>(scaled), spans - 1);
+  const double t = scaled - first;
+  const double s = 1 - t;
+  return {first,
+          {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+           t * t * t / 6}};
+}
+
+Vec3 value(const Lattice& lattice, const Weights& u, const Weights& v) {
+  Vec3 sum = Vec3::Zero();
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Vec3* const row = &lattice.points[(u.first + i) * lattice.side + v.first];
+    sum += u.w[i] * (v.w[0] * row[0] + v.w[1] * row[1] + v.w[2] * row[2] + v.w[3] * row[3]);
+  }
+  return sum;
+}
+
+// Moves two points so that their distance is in [least, most].
+void keep_distance(Vec3& a, Vec3& b, double least, double most) {
+  const Vec3 d = b - a;
+  const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  if ((length >= least && length <= most) || length == 0) return;
+  const Vec3 step = 0.5 * (1 - std::clamp(length, least, most) / length) * d;
+  a += step;
+  b -= step;
+}
+
+// Position based dynamics (Müller et al. 2007): moves neighbours in the lattice to their distance
+// in the flat sheet, and limits bends by the distance of every second point.
+void relax(Lattice& sheet, int rounds) {
+  constexpr double kBend = 1.5;  // least distance of every second point, over that of neighbours
+  const double h = 1.0 / sheet.spans;
+  const double across = h * std::sqrt(2.0);
+  const std::uint32_t n = sheet.side;
+  const auto point = [&](std::uint32_t i, std::uint32_t j) -> Vec3& {
+    return sheet.points[i * n + j];
+  };
+  for (int round = 0; round < rounds; ++round) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; j < n; ++j) {
+        Vec3& here = point(i, j);
+        if (i + 2 < n) keep_distance(here, point(i + 2, j), kBend * h, 2 * h);
+        if (j + 2 < n) keep_distance(here, point(i, j + 2), kBend * h, 2 * h);
+        if (i + 1 < n && j + 1 < n) {
+          keep_distance(here, point(i + 1, j + 1), 0.8 * across, 1.2 * across);
+          keep_distance(point(i + 1, j), point(i, j + 1), 0.8 * across, 1.2 * across);
+        }
+        if (i + 1 < n) keep_distance(here, point(i + 1, j), h, h);
+        if (j + 1 < n) keep_distance(here, point(i, j + 1), h, h);
+      }
+    }
+  }
+}
+
+// A random smooth map of the unit square into a ball, relaxed until it hardly stretches.
+Lattice crumple(Random& random) {
+  constexpr std::uint32_t kFolds = 10;  // spans of the random map, which give the size of folds
+  constexpr std::uint32_t kSpans = 84;  // spans of the sheet that is relaxed
+  constexpr double kReach = 0.26;       // radius of the ball; the side of the sheet is 1
+  Lattice coarse(kFolds);
+  for (Vec3& p : coarse.points) p = kReach * random.in_ball();
+  Lattice sheet(kSpans);
+  for (std::uint32_t i = 0; i < sheet.side; ++i) {
+    const Weights u = weights_at(static_cast<double>(i) / (sheet.side - 1), kFolds);
+    for (std::uint32_t j = 0; j < sheet.side; ++j) {
+      const Weights v = weights_at(static_cast<double>(j) / (sheet.side - 1), kFolds);
+      sheet.points[i * sheet.side + j] = value(coarse, u, v);
+    }
+  }
+  relax(sheet, 60);
+  return sheet;
+}
+
+}  // namespace
+
+BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  const Lattice sheet = crumple(random);
+  const auto cells =
+      static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(parameters.size) / 2)));
+  std::vector<Weights> at;
+  for (std::uint32_t i = 0; i <= cells; ++i)
+    at.push_back(weights_at(static_cast<double>(i) / cells, sheet.spans));
+  const Mesh mesh = surface(cells, cells, false, [&](std::uint32_t i, std::uint32_t j) {
+    return value(sheet, at[i], at[j]);
+  });
+  SceneBuilder builder("crumpled", "crumpled");
+  builder.add(mesh, "sheet", Split::kNone, {}, true);
+  return {builder.finish(), {}};
+}
+
+namespace {
+
+// ---- the rope ----
 
 // A rope of three strands, wound in turns around a ring. The unit of length is the radius of a
 // strand. The strands are one closed tube: after the ring a strand continues as the next one.

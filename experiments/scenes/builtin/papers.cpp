@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -339,48 +338,16 @@ FrameNotes notes_of(const ClothReport& report) {
           .warning = report.warning};
 }
 
-// A simulation, and the folder that keeps its states if there is one.
-class Simulated {
- public:
-  explicit Simulated(const ClothSettings& settings) : settings_(settings), cloth_(settings) {}
-
-  const Scene& scene() const { return cloth_.scene(); }
-  const ClothReport& report() const { return cloth_.report(); }
-
-  // Goes to `frame`, from the last known frame before it: the current one, a kept one, or the
-  // first.
-  void go_to(long frame) {
-    if (frame == report().frame) return;
-    const std::string folder = cloth_folder();
-    if (!folder.empty() && !kept_) kept_.emplace(folder, settings_);
-    const long at = report().frame <= frame ? report().frame : -1;
-    const long last = kept_ ? kept_->last(frame) : 0;
-    if (last > at && last > 0) {
-      cloth_.restore(kept_->read(last));
-    } else if (at < 0) {
-      cloth_ = Cloth(settings_);
-    }
-    while (report().frame < frame) {
-      cloth_.step();
-      if (kept_) kept_->write(cloth_.state());
-    }
-  }
-
- private:
-  ClothSettings settings_;
-  Cloth cloth_;
-  std::optional<KeptCloth> kept_;
-};
-
 // size: triangles of the cloth, as close as a square grid allows; second: stiffness, N/m.
 BuiltScene make_cloth(const SceneParameters& parameters) {
   ClothSettings settings;
   settings.triangles = parameters.size;
   settings.stiffness = parameters.second;
-  const auto now = std::make_shared<Simulated>(settings);
+  const auto now = std::make_shared<Cloth>(settings);
   BuiltScene built{now->scene(), {}};
-  built.motion = [now](const Instant& wanted, Scene& out, FrameNotes& notes) {
-    now->go_to(wanted.frame);
+  built.motion = [now, settings](const Instant& wanted, Scene& out, FrameNotes& notes) {
+    if (wanted.frame < now->report().frame) *now = Cloth(settings);
+    while (now->report().frame < wanted.frame) now->step();
     out.vertices = now->scene().vertices;
     notes = notes_of(now->report());
   };
@@ -407,9 +374,7 @@ std::vector<BuiltinScene> paper_scenes() {
             16, 11'136, "waves run through the stack while the others tilt",
             {"sheets", 4, 10'000, 16}),
       entry("cloth", 0, make_cloth, "a cloth above a sphere, against itself as well (FAR)", 2,
-            25'120,
-            "it falls on the sphere and folds over itself; a frame is a time step "
-            "(FARCULL_CLOTH=DIR keeps them)",
+            25'120, "it falls on the sphere and folds over itself; a frame is a time step",
             {"triangles of the cloth", 8, 200'000, 20'000}, {"stiffness in N/m", 1e2, 1e8, 1e4},
             kCostly),
   };

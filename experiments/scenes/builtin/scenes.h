@@ -56,7 +56,7 @@ struct FrameNotes {
 /// Moves the scene to an instant. The scene is the built one or the result of an earlier call. If
 /// the topology stays, only Scene::vertices is written, in place. The result depends on the time of
 /// a path, or the frame of a simulation, and not on earlier calls; an earlier frame of a simulation
-/// is computed from the start or a kept state. Throws Error if the scene cannot be computed.
+/// is computed from the start. Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {

@@ -9,13 +9,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
+#include <Eigen/SparseCholesky>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -51,8 +49,7 @@ struct ClothSettings {
 
 }  // namespace farcull
 
-// Minimizes a step of the cloth: by Newton's method, and by interior points if that gets slow. The
-// matrix of both is factored by dense fronts.
+// Minimizes a step of the cloth.
 namespace farcull::cloth {
 
 // The cloth as springs, hinges and masses, and the convex function whose minimum is a time step.
@@ -153,49 +150,6 @@ Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& 
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 
-/// A grid of side x side vertices, cut in half again and again by lines two vertices wide. So two
-/// vertices at most two rows and two columns apart are on one side of a line, or one is on it.
-struct Dissection {
-  struct Part {
-    std::uint32_t begin = 0;  // its places are begin to end - 1
-    std::uint32_t end = 0;
-    std::uint32_t parent = 0;  // index of the part that cuts it off; the last part: its own index
-  };
-  std::vector<std::uint32_t> places;  // per vertex, row by row
-  std::vector<Part> parts;            // in order of places; a parent follows the parts it cuts off
-};
-Dissection dissect(std::uint32_t side);
-
-class Factor {
- public:
-  /// The pattern of `matrix`: the lower triangle of a symmetric matrix of 3 x 3 blocks (of which
-  /// the diagonal ones are lower triangles), compressed, in the order of places. It couples only
-  /// vertices that are at most two rows and two columns apart.
-  Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& matrix);
-
-  /// False iff the matrix is not positive definite in double. Precondition: it has the pattern.
-  bool factorize(const Eigen::SparseMatrix<double>& matrix);
-  /// x is in the order of places. Precondition: the last factorize() returned true.
-  void solve_in_place(Eigen::VectorXd& x) const;
-
- private:
-  struct Front {
-    std::uint32_t begin = 0;  // places that are eliminated here
-    std::uint32_t end = 0;
-    std::uint32_t parent = 0;
-    std::vector<std::uint32_t> rows;   // later places that these are coupled to, ascending
-    std::vector<std::uint32_t> above;  // per row: its index in the parent: begin ... end, then rows
-    Eigen::MatrixXd panel;             // columns begin ... end of the factor: own rows, then `rows`
-    Eigen::MatrixXd update;            // added to the parent's matrix after that; lower triangle
-  };
-  void assemble(const Eigen::SparseMatrix<double>& matrix, Front& front);
-  static void extend(const Front& child, Front& parent);
-
-  std::vector<Front> fronts_;
-  std::vector<std::vector<std::uint32_t>> children_;
-  std::vector<std::uint32_t> index_;  // scratch, per place: its index in the front at hand
-};
-
 /// A point of the cone t >= |d|, or of its dual, which is the same cone.
 struct ConePoint {
   double t = 0;
@@ -280,17 +234,11 @@ class Solver {
   /// by interior points, then by Newton's method from their result.
   Minimum minimize(const Step& step);
 
-  /// Whether the last step needed interior points: the only state between steps.
-  bool was_stiff() const { return was_stiff_; }
-  void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
-
   /// Largest residual of a converged step, N: the setting plus the effect of rounding positions.
   double tolerance(const Eigen::VectorXd& x) const;
 
-  /// The Hessian at x: the lower triangle, in the order of places().
+  /// The Hessian at x: the lower triangle.
   const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
-  /// Per vertex: its place in the matrix, in blocks of 3.
-  const std::vector<std::uint32_t>& places() const { return dissection_.places; }
 
  private:
   using Slot = std::array<int, 3>;  // per column of a block: where its first value is stored
@@ -302,13 +250,12 @@ class Solver {
   void interior(const Step& step, Minimum& best);
 
   const Model& model_;
-  Dissection dissection_;
   Eigen::SparseMatrix<double> matrix_;
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
   std::vector<Slot> spring_slots_;  // per spring: of the block of its two ends
-  bool was_stiff_ = false;
-  Factor factor_;
+  bool was_stiff_ = false;          // the last step needed interior points
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;  // of that pattern
 };
 
 }  // namespace farcull::cloth
@@ -334,11 +281,10 @@ struct ClothReport {
   double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
 
-/// Everything that later steps depend on, and the report of the last step.
+/// The state between two steps, and the report of the last one.
 struct ClothState {
   ClothReport report = {};
   Eigen::VectorXd positions, velocities;  // m and m/s, three numbers for each vertex of the cloth
-  bool was_stiff = false;                 // the last step needed interior points
 };
 
 class Cloth {
@@ -361,8 +307,6 @@ class Cloth {
   /// The energies now. frame, residual, iterations and so on are those of the last step.
   const ClothReport& report() const;
 
-  /// After restore(state()) of a cloth with the same settings, later steps give the same bits as
-  /// that cloth's.
   ClothState state() const;
   /// Recomputes the energies of the report. Velocities that are not finite make the next step fail
   /// as described for step(). Throws std::logic_error if there are not three positions and
@@ -372,35 +316,6 @@ class Cloth {
  private:
   struct State;
   std::unique_ptr<State> state_;
-};
-
-/// The folder named by the environment variable FARCULL_CLOTH; empty if that is not set.
-std::string cloth_folder();
-
-/// The states of one cloth, one file per frame: doubles as they are in memory, under a heading that
-/// names the settings and the arithmetic, with a checksum. A file appears whole or not at all.
-class KeptCloth {
- public:
-  /// Creates `folder` and in it the folder of these settings. Throws Error if that fails.
-  KeptCloth(const std::string& folder, const ClothSettings& settings);
-
-  /// The file of a frame.
-  std::string path(long frame) const;
-
-  /// The largest frame from 1 to `frame` that has a file; 0 if none has (frame 0 is not kept).
-  long last(long frame) const;
-
-  /// The state in the file of a frame, bit for bit as write() got it. Throws Error naming the file
-  /// and the remedy if it cannot be read, is truncated or damaged, or is of another frame, other
-  /// settings or other arithmetic.
-  ClothState read(long frame) const;
-
-  /// Throws Error naming the file if the system refuses it.
-  void write(const ClothState& state) const;
-
- private:
-  std::string folder_;
-  std::string heading_;  // of each file: settings and arithmetic
 };
 
 }  // namespace farcull

@@ -2,7 +2,6 @@
 // or by interior points: Nesterov and Todd's scaling of each cone, and steps that stay inside.
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,170 +9,6 @@
 #include "experiments/scenes/cloth/cloth.h"
 
 namespace farcull::cloth {
-
-// Factorization: numbers the grid by nested dissection, then factors part by part with dense
-// matrices of Eigen.
-
-namespace {
-
-constexpr std::uint32_t kSmallest = 5;  // a part of at most this many rows and columns stays whole
-
-struct Dissector {
-  std::uint32_t side;
-  std::uint32_t next = 0;
-  Dissection result;
-
-  std::uint32_t number(std::uint32_t i0, std::uint32_t i1, std::uint32_t j0, std::uint32_t j1) {
-    const std::uint32_t begin = next;
-    for (std::uint32_t j = j0; j < j1; ++j) {
-      for (std::uint32_t i = i0; i < i1; ++i) result.places[j * side + i] = next++;
-    }
-    const auto part = static_cast<std::uint32_t>(result.parts.size());
-    result.parts.push_back({begin, next, part});
-    return part;
-  }
-
-  // Numbers the vertices in columns i0 to i1 - 1 and rows j0 to j1 - 1; returns the last part.
-  std::uint32_t cut(std::uint32_t i0, std::uint32_t i1, std::uint32_t j0, std::uint32_t j1) {
-    const std::uint32_t width = i1 - i0;
-    const std::uint32_t height = j1 - j0;
-    if (width <= kSmallest && height <= kSmallest) return number(i0, i1, j0, j1);
-    std::uint32_t one = 0;
-    std::uint32_t other = 0;
-    std::uint32_t line = 0;
-    if (width >= height) {
-      const std::uint32_t middle = i0 + width / 2 - 1;
-      one = cut(i0, middle, j0, j1);
-      other = cut(middle + 2, i1, j0, j1);
-      line = number(middle, middle + 2, j0, j1);
-    } else {
-      const std::uint32_t middle = j0 + height / 2 - 1;
-      one = cut(i0, i1, j0, middle);
-      other = cut(i0, i1, middle + 2, j1);
-      line = number(i0, i1, middle, middle + 2);
-    }
-    result.parts[one].parent = line;
-    result.parts[other].parent = line;
-    return line;
-  }
-};
-
-}  // namespace
-
-Dissection dissect(std::uint32_t side) {
-  Dissector dissector{side, 0, {}};
-  dissector.result.places.resize(static_cast<std::size_t>(side) * side);
-  dissector.cut(0, side, 0, side);
-  return dissector.result;
-}
-
-Factor::Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& matrix)
-    : fronts_(dissection.parts.size()),
-      children_(dissection.parts.size()),
-      index_(dissection.places.size()) {
-  for (std::uint32_t f = 0; f < fronts_.size(); ++f) {
-    Front& front = fronts_[f];
-    const Dissection::Part& part = dissection.parts[f];
-    front.begin = part.begin;
-    front.end = part.end;
-    front.parent = part.parent;
-    if (front.parent != f) children_[front.parent].push_back(f);
-    for (std::uint32_t place = front.begin; place < front.end; ++place) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, 3 * place); it; ++it) {
-        const auto row = static_cast<std::uint32_t>(it.row() / 3);
-        if (row >= front.end) front.rows.push_back(row);
-      }
-    }
-    for (const std::uint32_t child : children_[f]) {
-      for (const std::uint32_t row : fronts_[child].rows) {
-        if (row >= front.end) front.rows.push_back(row);
-      }
-    }
-    std::sort(front.rows.begin(), front.rows.end());
-    front.rows.erase(std::unique(front.rows.begin(), front.rows.end()), front.rows.end());
-    const std::uint32_t own = front.end - front.begin;
-    for (const std::uint32_t child : children_[f]) {
-      for (const std::uint32_t row : fronts_[child].rows) {
-        const auto at = std::lower_bound(front.rows.begin(), front.rows.end(), row);
-        fronts_[child].above.push_back(
-            row < front.end ? row - front.begin
-                            : own + static_cast<std::uint32_t>(at - front.rows.begin()));
-      }
-    }
-    const auto rest = static_cast<Eigen::Index>(3 * front.rows.size());
-    front.panel.resize(3 * own + rest, 3 * own);
-    front.update.resize(rest, rest);
-  }
-}
-
-void Factor::assemble(const Eigen::SparseMatrix<double>& matrix, Front& front) {
-  const std::uint32_t own = front.end - front.begin;
-  for (std::uint32_t place = front.begin; place < front.end; ++place)
-    index_[place] = place - front.begin;
-  for (std::uint32_t r = 0; r < front.rows.size(); ++r) index_[front.rows[r]] = own + r;
-  front.panel.setZero();
-  front.update.setZero();
-  for (Eigen::Index c = 0; c < front.panel.cols(); ++c) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, 3 * front.begin + c); it; ++it)
-      front.panel(3 * index_[it.row() / 3] + it.row() % 3, c) = it.value();
-  }
-}
-
-void Factor::extend(const Front& child, Front& parent) {
-  const std::uint32_t own = parent.end - parent.begin;
-  for (std::uint32_t c = 0; c < child.above.size(); ++c) {
-    for (std::uint32_t r = c; r < child.above.size(); ++r) {
-      const auto block = child.update.block<3, 3>(3 * r, 3 * c);
-      const std::uint32_t row = child.above[r];
-      const std::uint32_t column = child.above[c];
-      if (column < own) {
-        parent.panel.block<3, 3>(3 * row, 3 * column) += block;
-      } else {
-        parent.update.block<3, 3>(3 * (row - own), 3 * (column - own)) += block;
-      }
-    }
-  }
-}
-
-bool Factor::factorize(const Eigen::SparseMatrix<double>& matrix) {
-  for (std::uint32_t f = 0; f < fronts_.size(); ++f) {
-    Front& front = fronts_[f];
-    assemble(matrix, front);
-    for (const std::uint32_t child : children_[f]) extend(fronts_[child], front);
-    const Eigen::Index own = front.panel.cols();
-    Eigen::Ref<Eigen::MatrixXd> pivots = front.panel.topRows(own);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> llt(pivots);
-    if (llt.info() != Eigen::Success) return false;
-    if (front.rows.empty()) continue;
-    auto below = front.panel.bottomRows(front.update.rows());
-    pivots.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-    front.update.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-  }
-  return true;
-}
-
-void Factor::solve_in_place(Eigen::VectorXd& x) const {
-  Eigen::VectorXd rest;
-  for (const Front& front : fronts_) {
-    const Eigen::Index own = front.panel.cols();
-    auto mine = x.segment(3 * front.begin, own);
-    front.panel.topRows(own).triangularView<Eigen::Lower>().solveInPlace(mine);
-    rest.noalias() = front.panel.bottomRows(front.update.rows()) * mine;
-    for (std::size_t r = 0; r < front.rows.size(); ++r)
-      x.segment<3>(3 * front.rows[r]) -= rest.segment<3>(3 * r);
-  }
-  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    const Eigen::Index own = front->panel.cols();
-    auto mine = x.segment(3 * front->begin, own);
-    rest.resize(front->update.rows());
-    for (std::size_t r = 0; r < front->rows.size(); ++r)
-      rest.segment<3>(3 * r) = x.segment<3>(3 * front->rows[r]);
-    mine.noalias() -= front->panel.bottomRows(front->update.rows()).transpose() * rest;
-    front->panel.topRows(own).triangularView<Eigen::Lower>().transpose().solveInPlace(mine);
-  }
-}
-
-// ---- the solver ----
 
 namespace {
 
@@ -340,16 +175,16 @@ constexpr int kTrials = 60;  // at most, along one direction; a double allows no
 // These change the time of a step, not its result.
 constexpr int kPatience = 40;      // Newton's iterations before interior points take over
 constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's is short
-constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff()
+constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff_
 constexpr double kStart = 1;       // initial complementarity, over weight * length
 constexpr double kEnd = 2;         // final one, over crimp: from there Newton's method is quick
 
 // The lower triangle of the matrix, with the values that do not depend on x.
-Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::uint32_t>& places) {
+Eigen::SparseMatrix<double> pattern(const Model& model) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
-    const auto row = static_cast<int>(3 * std::max(places[a], places[b]));
-    const auto column = static_cast<int>(3 * std::min(places[a], places[b]));
+    const auto row = static_cast<int>(3 * std::max(a, b));
+    const auto column = static_cast<int>(3 * std::min(a, b));
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         if (row + r >= column + c) entries.emplace_back(row + r, column + c, block(r, c));
@@ -377,11 +212,8 @@ double largest_force(const Eigen::VectorXd& gradient) {
 
 }  // namespace
 
-Solver::Solver(const Model& model)
-    : model_(model),
-      dissection_(dissect(model.cells + 1)),
-      matrix_(pattern(model, dissection_.places)),
-      factor_(dissection_, matrix_) {
+Solver::Solver(const Model& model) : model_(model), matrix_(pattern(model)) {
+  factor_.analyzePattern(matrix_);
   constant_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) vertex_slots_.push_back(slot(v, v));
   for (const Spring& spring : model.springs)
@@ -389,8 +221,8 @@ Solver::Solver(const Model& model)
 }
 
 Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
-  const auto row = static_cast<int>(3 * std::max(dissection_.places[a], dissection_.places[b]));
-  const auto column = static_cast<int>(3 * std::min(dissection_.places[a], dissection_.places[b]));
+  const auto row = static_cast<int>(3 * std::max(a, b));
+  const auto column = static_cast<int>(3 * std::min(a, b));
   const int* const rows = matrix_.innerIndexPtr();
   Slot result{};
   for (int c = 0; c < 3; ++c) {
@@ -442,14 +274,9 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
 
 // Solves with the assembled matrix; false if it has no Cholesky factor.
 bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
-  if (!factor_.factorize(matrix_)) return false;
-  Eigen::VectorXd permuted(right.size());
-  for (std::size_t v = 0; v < places().size(); ++v)
-    permuted.segment<3>(3 * places()[v]) = right.segment<3>(3 * v);
-  factor_.solve_in_place(permuted);
-  result.resize(right.size());
-  for (std::size_t v = 0; v < places().size(); ++v)
-    result.segment<3>(3 * v) = permuted.segment<3>(3 * places()[v]);
+  factor_.factorize(matrix_);
+  if (factor_.info() != Eigen::Success) return false;
+  result = factor_.solve(right);
   return true;
 }
 

@@ -28,7 +28,7 @@ void add(const Scene& scene, const std::vector<exact_distance::Nearest>& truth, 
   const VoronoiNeighbours published = voronoi_neighbours(scene, {.resolution = resolution});
   sums.published_ms += first.ms();
   const Stopwatch second;
-  const ReliableNeighbours reliable = reliable_neighbours(scene, {.resolution = resolution});
+  const VoronoiNeighbours reliable = reliable_neighbours(scene, {.resolution = resolution});
   sums.reliable_ms += second.ms();
   lab::count_losses(scene, truth, published.objects, sums.published);
   lab::count_losses(scene, truth, reliable.objects, sums.reliable);

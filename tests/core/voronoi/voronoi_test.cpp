@@ -210,7 +210,7 @@ Faults faults_of_reliable(std::uint64_t scenes, double widening) {
   for (std::uint64_t seed = 0; seed < scenes; ++seed) {
     const Scene scene = neighbours_scene(seed);
     constexpr std::array<int, 7> kResolutions = {1, 2, 3, 5, 8, 16, 33};
-    const ReliableNeighbours found =
+    const VoronoiNeighbours found =
         reliable_neighbours(scene, {.resolution = kResolutions[seed % 7], .widening = widening});
     const std::vector<exact_distance::Nearest> truth = exact_distance::nearest_neighbours(scene);
     const std::vector<std::uint32_t> owner = owners(scene);
@@ -247,11 +247,11 @@ TEST(VoronoiReliable, DoesNotDependOnThreads) {
     const Scene scene = lab::random_scene(seed);
     for (const int resolution : {3, 20, 64}) {
       const VoronoiOptions one{.resolution = resolution, .threads = 1};
-      const ReliableNeighbours kept = reliable_neighbours(scene, one);
+      const VoronoiNeighbours kept = reliable_neighbours(scene, one);
       const VoronoiNeighbours named = voronoi_neighbours(scene, one);
       for (const unsigned threads : {2u, 5u}) {
         const VoronoiOptions more{.resolution = resolution, .threads = threads};
-        const ReliableNeighbours same = reliable_neighbours(scene, more);
+        const VoronoiNeighbours same = reliable_neighbours(scene, more);
         EXPECT_EQ(same.triangles, kept.triangles);
         EXPECT_EQ(same.objects, kept.objects);
         EXPECT_EQ(same.upper, kept.upper);
@@ -270,7 +270,7 @@ TEST(VoronoiReliable, TakesAnyFiniteCoordinates) {
                                      Vec3(-size, -size, -size)};
     const Scene scene = scene_of_triangles({t, t, far});
     for (const int resolution : {1, 16, 100}) {
-      const ReliableNeighbours found = reliable_neighbours(scene, {.resolution = resolution});
+      const VoronoiNeighbours found = reliable_neighbours(scene, {.resolution = resolution});
       EXPECT_TRUE(lab::holds(found.objects, 0, 1)) << size;
       EXPECT_TRUE(lab::holds(found.objects, 0, 2)) << size;
     }

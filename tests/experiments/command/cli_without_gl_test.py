@@ -16,7 +16,6 @@ rows(r"""
 0 boxes | verify two-spheres --method boxes
 0 doctor | doctor --device native
 bad {method} on {device} | {message} | run two-spheres --method {method} --device {device}
-bad distances | {message} | distance two-spheres --voronoi published --device gl
 bad a picture | {message} | picture two-spheres -o picture.png
 """, method=['far', 'cullide'], device=['software', 'hardware', 'gl', '0'],
      message='.*built without OpenGL; use --device native, or build it with -DFARCULL_GL=ON')

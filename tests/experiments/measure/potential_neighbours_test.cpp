@@ -22,11 +22,11 @@ std::set<std::uint32_t> others_of(const std::vector<ObjectPair>& pairs, std::uin
 }
 
 // The record of each object is what its own definition says.
-void check(const Scene& scene, const DiagramOptions& options) {
+void check(const Scene& scene, const NeighbourOptions& options) {
   const DiagramRecord record = potential_neighbours(scene, options);
   const VoronoiOptions diagram{.resolution = options.resolution, .widening = options.widening};
-  const bool reliable = options.form == DiagramForm::reliable;
-  const ReliableNeighbours kept = reliable_neighbours(scene, diagram);
+  const bool reliable = options.method == NeighbourMethod::voronoi_reliable;
+  const VoronoiNeighbours kept = reliable_neighbours(scene, diagram);
   const std::vector<ObjectPair> pairs =
       reliable ? kept.objects : voronoi_neighbours(scene, diagram).objects;
   EXPECT_EQ(record.object_pairs, pairs.size());
@@ -65,13 +65,14 @@ TEST(PotentialNeighbours, AreWhatTheDiagramLeaves) {
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(120)); ++seed) {
     SCOPED_TRACE(seed);
     const int resolution = 1 + static_cast<int>(seed * 7 % 40);
-    for (const DiagramForm form : {DiagramForm::published, DiagramForm::reliable})
-      check(neighbours_scene(seed), {.form = form, .resolution = resolution});
+    for (const NeighbourMethod method :
+         {NeighbourMethod::voronoi, NeighbourMethod::voronoi_reliable})
+      check(neighbours_scene(seed), {.method = method, .resolution = resolution});
   }
 }
 
 // Nearest objects that are lost in all scenes.
-std::uint64_t lost_by(const DiagramOptions& options, int scenes) {
+std::uint64_t lost_by(const NeighbourOptions& options, int scenes) {
   std::uint64_t out = 0;
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(scenes)); ++seed)
     out += totals_of(potential_neighbours(neighbours_scene(seed), options)).lost;
@@ -79,20 +80,23 @@ std::uint64_t lost_by(const DiagramOptions& options, int scenes) {
 }
 
 TEST(PotentialNeighbours, ReliableOnesLoseNone) {
-  EXPECT_EQ(lost_by({.form = DiagramForm::reliable, .resolution = 8}, 800), 0u);
+  EXPECT_EQ(lost_by({.method = NeighbourMethod::voronoi_reliable, .resolution = 8}, 800), 0u);
 }
 
 // Twins: the published form, and the reliable one without its widening.
 TEST(PotentialNeighbours, PublishedOnesLoseSome) {
-  EXPECT_GT(lost_by({.form = DiagramForm::published, .resolution = 8}, 400), 0u);
+  EXPECT_GT(lost_by({.method = NeighbourMethod::voronoi, .resolution = 8}, 400), 0u);
 }
 TEST(PotentialNeighbours, LoseSomeWithoutTheWidening) {
-  EXPECT_GT(lost_by({.form = DiagramForm::reliable, .resolution = 8, .widening = 0}, 800), 0u);
+  EXPECT_GT(
+      lost_by({.method = NeighbourMethod::voronoi_reliable, .resolution = 8, .widening = 0}, 800),
+      0u);
 }
 
 TEST(PotentialNeighbours, RecordsAddUp) {
   const Scene scene = neighbours_scene(4, lab::kClusterKind);
-  const DiagramRecord record = potential_neighbours(scene, {.resolution = 16});
+  const DiagramRecord record =
+      potential_neighbours(scene, {.method = NeighbourMethod::voronoi, .resolution = 16});
   const DiagramTotals totals = totals_of(record);
   EXPECT_EQ(totals.potential_objects, 2 * record.object_pairs);
   const nlohmann::ordered_json json = diagram_json(scene, record);
@@ -108,7 +112,8 @@ TEST(PotentialNeighbours, RecordsAddUp) {
 TEST(PotentialNeighbours, ObjectsWithoutTrianglesHaveNone) {
   const std::array<Vec3, 3> point = {Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3)};
   const Scene scene = lab::scene_of({{point}, {}, {point}});
-  const DiagramRecord record = potential_neighbours(scene, {});
+  const DiagramRecord record =
+      potential_neighbours(scene, {.method = NeighbourMethod::voronoi, .resolution = 16});
   EXPECT_TRUE(record.objects[1].nearest.empty());
   EXPECT_EQ(record.objects[1].objects, 0u);
   EXPECT_EQ(record.objects[0].nearest, (std::vector<std::uint32_t>{2}));

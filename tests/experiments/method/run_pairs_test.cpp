@@ -220,7 +220,7 @@ TEST(RunPairs, ALimitEndsTheSearchInACrowd) {
   scene.triangles.assign(3000, {0, 1, 2});
   scene.source_face.resize(3000);
   scene.objects.push_back({.name = "o", .first_triangle = 0, .triangle_count = 3000, .self = true});
-  RunOptions options = on_cpu(Method::far_pairs);
+  RunOptions options = on_cpu(Method::boxes);
   options.limit = 5;
   const Record record = run(scene, options);
   EXPECT_TRUE(record.limited);

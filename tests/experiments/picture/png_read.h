@@ -1,8 +1,8 @@
-// Reads back the PNG files that farcull writes: libpng gives the pixels, a walk over the chunks the
+// Reads back the PNG files that farcull writes: cairo gives the pixels, a walk over the chunks the
 // texts.
 #pragma once
 
-#include <png.h>
+#include <cairo/cairo.h>
 
 #include "experiments/picture/panel.h"
 #include "tests/lab/test.h"
@@ -30,19 +30,29 @@ inline PngTexts png_texts(const std::string& bytes) {
   return out;
 }
 
-/// Fails the test and gives no image where libpng does not read the bytes.
+/// Fails the test and gives no image where cairo does not read the bytes.
 inline PngContent png_content(const std::string& bytes) {
+  std::string_view left = bytes;
+  const auto read = [](void* from, unsigned char* to, unsigned length) {
+    auto& rest = *static_cast<std::string_view*>(from);
+    if (rest.size() < length) return CAIRO_STATUS_READ_ERROR;
+    std::copy_n(rest.data(), length, to);
+    rest.remove_prefix(length);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  cairo_surface_t* const surface = cairo_image_surface_create_from_png_stream(read, &left);
   PngContent out;
-  png_image header = {};
-  header.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()) == 0) {
-    ADD_FAILURE() << header.message;
-    return out;
+  EXPECT_EQ(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
+  EXPECT_EQ(cairo_image_surface_get_format(surface), CAIRO_FORMAT_RGB24);
+  out.image =
+      Image(cairo_image_surface_get_width(surface), cairo_image_surface_get_height(surface), {});
+  const int stride = cairo_image_surface_get_stride(surface);
+  for (int y = 0; y < out.image.height; ++y) {
+    const unsigned char* const row = cairo_image_surface_get_data(surface) + y * stride;
+    for (int x = 0; x < out.image.width; ++x)  // blue, green, red, nothing
+      out.image.at(x, y) = {row[4 * x + 2], row[4 * x + 1], row[4 * x], 255};
   }
-  header.format = PNG_FORMAT_RGBA;
-  out.image = Image(static_cast<int>(header.width), static_cast<int>(header.height), {});
-  if (png_image_finish_read(&header, nullptr, out.image.pixels.data(), 0, nullptr) == 0)
-    ADD_FAILURE() << header.message;
+  cairo_surface_destroy(surface);
   out.texts = png_texts(bytes);
   return out;
 }

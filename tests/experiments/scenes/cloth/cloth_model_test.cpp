@@ -1,7 +1,5 @@
 // What a step of the cloth is made of: derivatives against differences, the inequalities that the
-// bound of the energy rests on, and the factorization.
-
-#include <Eigen/SparseCholesky>
+// bound of the energy rests on, and the minimum.
 
 #include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -129,13 +127,7 @@ TEST(ClothModel, HessianIsThatOfTheGradient) {
     const Eigen::SparseMatrix<double>& lower = solver.hessian(s.step, s.x);
     const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
     const VectorXd p = shaken(VectorXd::Zero(s.x.size()), 1, random);
-    VectorXd permuted(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v)
-      permuted.segment<3>(3 * solver.places()[v]) = p.segment<3>(3 * static_cast<Eigen::Index>(v));
-    const VectorXd product = whole * permuted;
-    VectorXd hp(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v)
-      hp.segment<3>(3 * static_cast<Eigen::Index>(v)) = product.segment<3>(3 * solver.places()[v]);
+    const VectorXd hp = whole * p;
     const auto along = [&](double t) {
       VectorXd g;
       gradient(s.step, s.x + t * p, g);
@@ -318,57 +310,6 @@ TEST(ClothModel, BendingHasTheRigidityOfAPlate) {
     // w is exact for such a surface; the edges of the cloth, 4 rows of cells, have no hinges.
     EXPECT_LE(energy, plate * (1 + 1e-9));
     EXPECT_GE(energy, plate * (1 - 4 * cell / settings.side));
-  }
-}
-
-TEST(ClothFactor, SolvesAsTheSimplicialOne) {
-  for (const std::uint64_t triangles : {8, 18, 32, 98, 450, 2048}) {
-    const Sample s = sample(triangles, settings_of(triangles));
-    Solver solver(s.model);
-    const Eigen::SparseMatrix<double> lower = solver.hessian(s.step, s.x);
-    Factor factor(dissect(s.model.cells + 1), lower);
-    ASSERT_TRUE(factor.factorize(lower));
-    shapes::Random random(7);
-    const VectorXd b = shaken(VectorXd::Zero(s.x.size()), 1, random);
-    VectorXd x = b;
-    factor.solve_in_place(x);
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> simplicial(lower);
-    const VectorXd y = simplicial.solve(b);
-    // Backward errors of two factorizations (Higham, theorem 10.4): each leaves a residual of at
-    // most 4 n (3 n + 1) u |H| |x|; times the inverse, whose norm is at most 1/min(m/h^2).
-    const double n = static_cast<double>(b.size());
-    const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
-    const double residual = 4 * n * (3 * n + 1) * 0x1p-53 * whole.norm() * x.norm();
-    EXPECT_LE((whole * x - b).norm(), residual);
-    EXPECT_LE((whole * y - b).norm(), residual);
-    EXPECT_LE((x - y).norm(), 1e-9 * y.norm()) << triangles;
-    // Again, on the same memory.
-    VectorXd again = b;
-    ASSERT_TRUE(factor.factorize(lower));
-    factor.solve_in_place(again);
-    EXPECT_EQ(again, x);
-    // The twin: an entry that is not what it was.
-    Eigen::SparseMatrix<double> other = lower;
-    other.coeffRef(0, 0) *= 1.01;
-    ASSERT_TRUE(factor.factorize(other));
-    again = b;
-    factor.solve_in_place(again);
-    EXPECT_GT((again - y).norm(), 1e-9 * y.norm());
-    other.coeffRef(other.rows() - 1, other.rows() - 1) = -1;
-    EXPECT_FALSE(factor.factorize(other));
-  }
-}
-
-TEST(ClothFactor, NumbersEveryVertexOnce) {
-  for (std::uint32_t side = 2; side < 40; ++side) {
-    const Dissection d = dissect(side);
-    std::vector<int> seen(d.places.size(), 0);
-    for (const std::uint32_t place : d.places) ++seen[place];
-    EXPECT_EQ(seen, std::vector<int>(d.places.size(), 1));
-    for (std::uint32_t p = 0; p + 1 < d.parts.size(); ++p) {
-      EXPECT_GT(d.parts[p].parent, p);
-      EXPECT_EQ(d.parts[p].end, d.parts[p + 1].begin);
-    }
   }
 }
 
