@@ -748,8 +748,9 @@ def as_json(card, rows, examples):
             row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
             row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # points are no part of the answer of others
         total.add(row)
-        scores.append([{'pair': 'pairs', 'mesh': 'meshes'}.get(kind, kind) + '/' + family, parameter,
-                       label if kind == 'pair' else kind, *(row[name] for name in SCORE.values()), row.worst, row['ns'], row.reason])
+        folder = {'pair': 'pairs', 'mesh': 'meshes'}.get(kind, kind)
+        scores.append([f'{folder}/{family}', parameter, label if kind == 'pair' else kind,
+                       *(row[name] for name in SCORE.values()), row.worst, row['ns'], row.reason])
     out = {'called': card['call'], **{name: card[name] for name in ('library', 'means', 'says', 'source', 'use')}}
     out.update({name.replace(' ', '_'): total[of] for name, of in SCORE.items()}, promises=card['promises'] == 'yes',
                reason=total.reason, scores=json.dumps(scores, separators=(',', ':')))

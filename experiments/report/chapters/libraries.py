@@ -38,8 +38,10 @@ def with_families(rows):
             families.setdefault(part[0], []).append(
                 dict(zip(["parameter", "kind", *SCORE, "worst", "ns", "reason"], part[1:])))
         for family, parts in families.items():
+            known = DOCUMENTED.get(row.method, {})
             out.append({"method": row.method, "family": family, "asks": family.partition("/")[0], "parts": parts,
-                        "promises": flag(row, "promises"), **{name: DOCUMENTED.get(row.method, {}).get(name) or text(row, name) for name in CARD},
+                        "promises": flag(row, "promises"),
+                        **{name: known.get(name) or text(row, name) for name in CARD},
                         **{name: sum(part[name] for part in parts) for name in SCORE},
                         "worst": max(part["worst"] for part in parts), "total_ms": sum(part["ns"] for part in parts) / 1e6})
     return pd.DataFrame(out, columns=["method", "family", "asks", "parts", "promises", *CARD, *SCORE, "worst", "total_ms"])
