@@ -68,8 +68,8 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
       app, "suite", "labelled triangle pairs and meshes, to test any library with",
       {{"DIR", &folder_, "", "the folder to write, which must not exist or be empty", Need::must},
        {"--size", &size_, "small|full",
-        "small: 10,098 pairs and 121 meshes, seconds (default);\nfull: 1,007,028 pairs and "
-        "155 meshes, minutes"},
+        "small: 10,098 pairs and 118 meshes, seconds (default);\nfull: 1,007,028 pairs and "
+        "146 meshes, minutes"},
        {"--seed", &seed_, "N", "seed of all draws; default 1"},
        {"--check", &check_, "",
         "read the suite in DIR, compare its sums and decide\nevery label anew"},

@@ -1,7 +1,7 @@
 // Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
-// small triangles at a ground. Others have one object that is tested against itself: cloth, ropes,
-// soup, fans and folds. Motions have a member for each frame, and loads have more contacts than
-// fixed buffers hold.
+// small triangles at a ground. Others have one object that is tested against itself: cloth, ropes
+// and folds. Motions have a member for each frame, and loads have more contacts than fixed buffers
+// hold.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -52,12 +52,6 @@ Objects accordion(RandomDraws&, double layers, int width) {
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
-/// A sheet whose vertices are moved by up to `amount` cells.
-Objects crumpled(RandomDraws& draws, double amount, int cells) {
-  return {sheet(cells, cells,
-                [&](int i, int j) { return Vec3(Vec3(i, j, 0) + amount * draws.point()); })};
-}
-
 /// Point i of the unit circle, computed without sines by a rational parameter for each quarter.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
@@ -90,34 +84,6 @@ Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
     for (std::uint32_t& v : triangle) {
       if (v % (around + 1) == around) v -= around;
     }
-  }
-  return {std::move(out)};
-}
-
-/// Triangles that share no vertices.
-Objects soup(RandomDraws& draws, double size, int count) {
-  SuiteObject out;
-  for (int i = 0; i < count; ++i) {
-    const Vec3 at = draws.point();
-    for (int k = 0; k < 3; ++k) out.vertices.emplace_back(at + size * draws.point());
-    out.add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
-  }
-  return {std::move(out)};
-}
-
-/// Triangles with one corner in common, all near one plane.
-Objects fan(RandomDraws& draws, double spread, int count) {
-  SuiteObject out;
-  out.vertices = {Vec3::Zero()};
-  for (int i = 0; i < count; ++i) {
-    const int from = draws.below(400);
-    const int to = from + 1 + draws.below(20);
-    for (const int at : {from, to}) {
-      Vec3 p = on_circle(at, 100) * draws.between(0.5, 1);
-      p.z() = spread * draws.between(-1, 1);
-      out.vertices.push_back(p);
-    }
-    out.add(0, index(2 * i + 1), index(2 * i + 2));
   }
   return {std::move(out)};
 }
@@ -461,12 +427,8 @@ const std::vector<MeshFamily>& mesh_families() {
                kSmall, {{1e-1, 12}, {1e-3, 48}, {1e-6, 48}, {1e-12, 32}}),
         family("copies", "a surface and its copy", "units of 2^-52 by which the copy is moved",
                copies, !kSelf, kSmall, {{0, 2}, {1, 3}, {1024, 3}}),
-        family("crumpled", "a sheet whose vertices are moved", "by how much at most, in cells",
-               crumpled, kSelf, kSmall, {{1, 20}, {2, 60}, {4, 30}}),
         family("degenerate", "a sheet with segments and points among its triangles",
                "one triangle in so many", degenerate, kSelf, kSmall, {{4, 20}, {2, 40}}),
-        family("fan", "triangles with one corner in common", "their heights above a plane", fan,
-               kSelf, kSmall, {{0.125, 200}, {1e-3, 500}, {1e-9, 500}}),
         family("far-scans", "two scans far from the origin", "the distance, in their radii",
                far_scans, !kSelf, kSmall, {{1e6, 3}, {1e10, 4}, {1e14, 4}}),
         family("ground", "two large triangles and small ones on them", "the ratio of their sizes",
@@ -486,9 +448,6 @@ const std::vector<MeshFamily>& mesh_families() {
         family("shells", "nested shells, of which the outermost crosses the one below it",
                "the gap between two, in radii", shells, !kSelf, kSmall,
                {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}}),
-        family("soup", "triangles that share no vertices",
-               "their size, in halves of the box around them", soup, kSelf, kSmall,
-               {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}}),
         motion("cogs", "two cogs whose teeth graze each other",
                "32ths of a quarter turn by which both have turned", cogs,
                {0, 1, 2, 3, 4, 5, 8, 12, 15, 16, 17, 20}),

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/base/text.h"
@@ -15,48 +18,39 @@
 namespace farcull {
 namespace {
 
-using Words = std::vector<std::string_view>;
+/// Numbers and words of a line.
 using Numbers = std::vector<double>;
+using Words = std::vector<std::string>;
 
-/// Removes what is before the first `end` from the text, and this end, and returns it.
-std::string_view take_until(std::string_view& text, char end) {
-  const std::size_t at = std::min(text.find(end), text.size());
-  const std::string_view out = text.substr(0, at);
-  text.remove_prefix(std::min(at + 1, text.size()));
-  return out;
+struct Malformed {};
+
+void require(bool holds) {
+  if (!holds) throw Malformed{};
 }
 
-Words words_of(std::string_view text) {
-  Words out;
-  while (!text.empty()) {
-    const std::string_view word = take_until(text, ' ');
-    if (!word.empty()) out.push_back(word);
-  }
-  return out;
-}
-
-/// Empty if a word is no number.
-std::optional<Numbers> numbers_of(const Words& words) {
+Numbers numbers_of(Words::const_iterator begin, Words::const_iterator end) {
   Numbers out;
-  for (const std::string_view word : words) {
-    const std::optional<double> value = parse_number<double>(word);
-    if (!value) return std::nullopt;
+  for (; begin != end; ++begin) {
+    const std::optional<double> value = parse_number<double>(*begin);
+    require(value.has_value());
     out.push_back(*value);
   }
   return out;
 }
 
 std::vector<Vec3> points_of(const Numbers& numbers) {
+  require(numbers.size() % 3 == 0);
   std::vector<Vec3> out;
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+  for (std::size_t i = 0; i < numbers.size(); i += 3)
     out.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
   return out;
 }
 
 /// A prism from z = numbers[0] to numbers[1] over the convex polygon that follows.
 SuiteObject prism(const Numbers& numbers) {
+  require(numbers.size() >= 8 && numbers.size() % 2 == 0);
   SuiteObject out;
-  for (std::size_t i = 2; i + 1 < numbers.size(); i += 2) {
+  for (std::size_t i = 2; i < numbers.size(); i += 2) {
     out.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[0]);
     out.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[1]);
   }
@@ -75,6 +69,7 @@ SuiteObject prism(const Numbers& numbers) {
 
 /// n times n cells between two corners, all at one height.
 SuiteObject grid(const Numbers& numbers) {
+  require(numbers.size() == 6 && numbers[5] >= 1);
   const double x0 = numbers[0], y0 = numbers[1], x1 = numbers[2], y1 = numbers[3];
   const auto cells = static_cast<std::uint32_t>(numbers[5]);
   Mesh mesh = shapes::surface(cells, cells, false, [&](std::uint32_t i, std::uint32_t j) -> Vec3 {
@@ -84,35 +79,29 @@ SuiteObject grid(const Numbers& numbers) {
 }
 
 /// Vertices, '/', and three vertices for each triangle.
-std::optional<SuiteObject> mesh(const Words& words) {
-  const auto slash = std::find(words.begin(), words.end(), "/");
-  const std::optional<Numbers> vertices = numbers_of(Words(words.begin(), slash));
-  if (slash == words.end() || !vertices || vertices->size() % 3 != 0) return std::nullopt;
-  const std::optional<Numbers> corners = numbers_of(Words(slash + 1, words.end()));
-  if (!corners || corners->size() % 3 != 0) return std::nullopt;
+SuiteObject mesh(Words::const_iterator begin, Words::const_iterator end) {
+  const auto slash = std::find(begin, end, "/");
+  require(slash != end);
   SuiteObject out;
-  out.vertices = points_of(*vertices);
-  for (const Vec3& t : points_of(*corners)) {
-    if (t.minCoeff() < 0 || t.maxCoeff() >= static_cast<double>(out.vertices.size()))
-      return std::nullopt;
+  out.vertices = points_of(numbers_of(begin, slash));
+  for (const Vec3& t : points_of(numbers_of(slash + 1, end))) {
+    require(t.minCoeff() >= 0 && t.maxCoeff() < static_cast<double>(out.vertices.size()));
     out.add(static_cast<std::uint32_t>(t.x()), static_cast<std::uint32_t>(t.y()),
             static_cast<std::uint32_t>(t.z()));
   }
   return out;
 }
 
-std::optional<SuiteObject> shape(Words words) {
-  if (words.empty()) return std::nullopt;
-  const std::string_view name = words.front();
-  words.erase(words.begin());
-  if (name == "mesh") return mesh(words);
-  const std::optional<Numbers> read = numbers_of(words);
-  if (!read) return std::nullopt;
-  const Numbers& n = *read;
-  if (name == "box" && n.size() == 6) return box_object({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
-  if (name == "prism" && n.size() >= 8 && n.size() % 2 == 0) return prism(n);
-  if (name == "grid" && n.size() == 6 && n[5] >= 1) return grid(n);
-  return std::nullopt;
+/// The shape that the words after the first one name.
+SuiteObject shape(const Words& words) {
+  require(words.size() > 2);
+  const std::string& name = words[1];
+  if (name == "mesh") return mesh(words.begin() + 2, words.end());
+  const Numbers n = numbers_of(words.begin() + 2, words.end());
+  if (name == "prism") return prism(n);
+  if (name == "grid") return grid(n);
+  require(name == "box" && n.size() == 6);
+  return box_object({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
 }
 
 void append(const SuiteObject& part, SuiteObject& to) {
@@ -121,44 +110,38 @@ void append(const SuiteObject& part, SuiteObject& to) {
   for (const auto& [i, j, k] : part.triangles) to.add(first + i, first + j, first + k);
 }
 
-bool set_pair(const Words& words, bool neighbours, ReportedCase& to) {
-  const std::optional<Numbers> numbers = numbers_of(words);
-  if (!numbers || numbers->size() != 18) return false;
-  const std::vector<Vec3> points = points_of(*numbers);
-  for (std::size_t i = 0; i < 6; ++i) (i < 3 ? to.pair.a : to.pair.b)[i % 3] = points[i];
-  to.pair.neighbours = neighbours;
-  return true;
-}
-
-/// Applies a line of the table to its case. False: the line is malformed.
-bool apply(std::string_view key, std::string_view rest, ReportedCase& to) {
+/// Applies a line of the table to its case. `rest`: the line after its first word.
+void apply(const Words& words, const std::string& rest, ReportedCase& to) {
+  const std::string& key = words[0];
   if (key == "expected" || key == "why" || key == "label") {
     (key == "expected" ? to.expected : key == "why" ? to.why : to.label) = rest;
-    return !rest.empty();
+    return require(!rest.empty());
   }
-  const Words words = words_of(rest);
-  if (key == "pair" || key == "neighbours") return set_pair(words, key == "neighbours", to);
   if (key == "object" || key == "self" || key == "part") {
-    const std::optional<SuiteObject> made = shape(words);
-    if (!made || (key == "part" && to.objects.empty())) return false;
     if (key != "part") to.objects.emplace_back();
+    require(!to.objects.empty());
     to.self = to.self || key == "self";
-    append(*made, to.objects.back());
-    return true;
+    return append(shape(words), to.objects.back());
   }
-  const std::optional<Numbers> n = numbers_of(words);
-  if (!n || to.objects.empty()) return false;
+  const Numbers n = numbers_of(words.begin() + 1, words.end());
+  if (key == "pair" || key == "neighbours") {
+    require(n.size() == 18);
+    const std::vector<Vec3> points = points_of(n);
+    for (std::size_t i = 0; i < 6; ++i) (i < 3 ? to.pair.a : to.pair.b)[i % 3] = points[i];
+    to.pair.neighbours = key == "neighbours";
+    return;
+  }
+  require(!to.objects.empty());
   Placement placement;
-  if (key == "turn" && n->size() == 4)
-    placement.rotate = Placement::Rotation{
-        .quaternion = std::array<double, 4>{(*n)[1], (*n)[2], (*n)[3], (*n)[0]}};
-  else if (key == "move" && n->size() == 3)
-    placement.translate = points_of(*n)[0];
-  else
-    return false;
+  if (key == "turn" && n.size() == 4) {
+    placement.rotate =
+        Placement::Rotation{.quaternion = std::array<double, 4>{n[1], n[2], n[3], n[0]}};
+  } else {
+    require(key == "move" && n.size() == 3);
+    placement.translate = points_of(n)[0];
+  }
   std::vector<Vec3>& vertices = to.objects.back().vertices;
   vertices = place(std::move(vertices), placement);
-  return true;
 }
 
 std::string note_of(const ReportedCase& one) {
@@ -218,14 +201,20 @@ SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
 
 std::vector<ReportedCase> parse_reported(std::string_view table) {
   std::vector<ReportedCase> out;
-  for (int number = 1; !table.empty(); ++number) {
-    std::string_view line = take_until(table, '\n');
+  std::istringstream lines{std::string(table)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
     if (line.empty() || line.front() == '#') continue;
-    const std::string_view key = take_until(line, ' ');
-    if (key == "case")
-      out.emplace_back().source = line;
-    else if (out.empty() || !apply(key, line, out.back()))
+    std::istringstream in(line);
+    const Words words(std::istream_iterator<std::string>(in), {});
+    const std::string rest = line.substr(std::min(words[0].size() + 1, line.size()));
+    try {
+      if (words[0] == "case") out.emplace_back().source = rest;
+      require(!out.empty());
+      if (words[0] != "case") apply(words, rest, out.back());
+    } catch (const Malformed&) {
       throw std::logic_error(fmt::format("reported.txt: line {} is malformed", number));
+    }
   }
   return out;
 }

@@ -127,30 +127,17 @@ bool pair(const SuitePair& asked) {
   return !meshes<margin>(two_objects(asked)).empty();
 }
 
-constexpr const char* kSource =
-    "Bullet 2.83 Physics SDK Manual (the newest that Bullet 3 has), Collision Margin and General "
-    "Tips; btCollisionWorld.h, contactPairTest()";
-
 // apart: how far apart triangles may be and still be reported, in units.
 template <Margin margin>
-Contestant contestant(const std::string& name, const std::string& with, double apart,
-                      const std::string& says) {
-  return {
-      .card =
-          {.name = name + kType,
-           .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-                      std::to_string(BT_BULLET_VERSION % 100),
-           .means = Means::crossing,
-           .degenerate = false,
-           .margin = apart,
-           .call = "btCollisionWorld::contactPairTest() of two btGImpactMeshShape with " + with +
-                   ", btScalar " + kType,
-           .says = says,
-           .source = kSource,
-           .use = "games and simulation, with moving objects of about 0.2 to 5 units and triangles "
-                  "below 10 units, as the manual advises"},
-      .pair = pair<margin>,
-      .mesh = meshes<margin>};
+Contestant contestant(const std::string& name, double apart) {
+  return {.card = {.name = name + kType,
+                   .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+                              std::to_string(BT_BULLET_VERSION % 100),
+                   .means = Means::crossing,
+                   .degenerate = false,
+                   .margin = apart},
+          .pair = pair<margin>,
+          .mesh = meshes<margin>};
 }
 
 }  // namespace
@@ -158,19 +145,8 @@ Contestant contestant(const std::string& name, const std::string& with, double a
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(
-      argc, argv,
-      {contestant<Margin::none>(
-           "bullet-gimpact-", "margin 0", 0,
-           "nothing of exact answers or of touching; of the margin 0 that it has here: \"zero "
-           "margin "
-           "might "
-           "introduce problems\"; of degenerate triangles and slivers that they \"can better be "
-           "avoided\""),
-       // 0.08: there are two shapes, and by the manual each has a margin of 0.04.
-       contestant<Margin::by_default>(
-           "bullet-gimpact-margin-", "the margin that it has by default", 0.08,
-           "nothing of exact answers; triangles closer than two margins may be reported, since "
-           "\"the "
-           "collision margin will expand the object\", and it \"is set to 0.04\"")});
+  // 0.08: there are two shapes, and by the manual each has a margin of 0.04.
+  return contest(argc, argv,
+                 {contestant<Margin::none>("bullet-gimpact-", 0),
+                  contestant<Margin::by_default>("bullet-gimpact-margin-", 0.08)});
 }

@@ -122,68 +122,25 @@ std::vector<TrianglePair> tree_scene(const Scene& scene) {
   return out;
 }
 
-const char* const kExact = "where every answer must be exact";
+ContestantCard card(const char* name, bool neighbours = false) {
+  return {.name = name, .library = kLibrary, .degenerate = false, .neighbours = neighbours};
+}
 
 }  // namespace
 }  // namespace farcull
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(
-      argc, argv,
-      {{.card = {.name = "cgal-exact",
-                 .library = kLibrary,
-                 .degenerate = false,
-                 .call = "CGAL::do_intersect(Triangle_3, Triangle_3); meshes by AABB_tree's "
-                         "all_intersected_primitives(); points by Side_of_triangle_mesh; kernel "
-                         "Exact_predicates_inexact_constructions_kernel",
-                 .says =
-                     "the kernel \"provides exact geometric predicates\"; two objects intersect "
-                     "\"if there is a point p that is part of both\"; triangles must not be "
-                     "degenerate, which the code checks and the manual does not say",
-                 .source = "CGAL 5.5 manual, 2D and 3D Linear Geometry Kernel, "
-                           "Exact_predicates_inexact_constructions_kernel and do_intersect(); "
-                           "Triangle_3_Triangle_3_do_intersect.h",
-                 .use = kExact},
-        .pair = do_intersect<Exact>,
-        .mesh = tree_scene,
-        .inside = side_of_mesh},
-       {.card = {.name = "cgal-double",
-                 .library = kLibrary,
-                 .degenerate = false,
-                 .call = "CGAL::do_intersect(Triangle_3, Triangle_3), kernel "
-                         "Simple_cartesian<double>",
-                 .says =
-                     "with double \"the geometry provided by the kernel is only an approximation "
-                     "of Euclidean geometry\"; what intersects is as with cgal-exact",
-                 .source = "CGAL 5.5 manual, 2D and 3D Linear Geometry Kernel, Simple_cartesian",
-                 .use = "for those who \"need speed and can live with approximate results\" "
-                        "(manual, Choosing a Kernel)"},
-        .pair = do_intersect<Plain>},
-       {.card = {.name = "cgal-self-intersections",
-                 .library = kLibrary,
-                 .degenerate = false,
-                 .neighbours = true,
-                 .call = "Polygon_mesh_processing::self_intersections() of a Surface_mesh of "
-                         "both triangles, or of all objects; does_self_intersect(); the kernel "
-                         "of cgal-exact",
-                 .says = "faces intersect if \"the corresponding triangles intersect and the "
-                         "intersection is not an edge nor a vertex incident to both faces\"; "
-                         "degenerate faces are reported by themselves; exact as its kernel",
-                 .source = "CGAL 5.5 manual, Polygon Mesh Processing, self_intersections()",
-                 .use = kExact},
-        .pair = self_pair,
-        .mesh = self_scene,
-        .self = [](const Scene& scene) { return PMP::does_self_intersect(mesh_of(scene)); }},
-       {.card = {.name = "cgal-do-intersect",
-                 .library = kLibrary,
-                 .degenerate = false,
-                 .call = "Polygon_mesh_processing::do_intersect() of two meshes of one triangle; "
-                         "the kernel of cgal-exact",
-                 .says =
-                     "true \"if there exists a face of tm1 and a face of tm2 which intersect\"; "
-                     "exact and closed as its kernel",
-                 .source = "CGAL 5.5 manual, Polygon Mesh Processing, do_intersect()",
-                 .use = kExact},
-        .pair = mesh_pair}});
+  const auto self = [](const Scene& scene) { return PMP::does_self_intersect(mesh_of(scene)); };
+  return contest(argc, argv,
+                 {{.card = card("cgal-exact"),
+                   .pair = do_intersect<Exact>,
+                   .mesh = tree_scene,
+                   .inside = side_of_mesh},
+                  {.card = card("cgal-double"), .pair = do_intersect<Plain>},
+                  {.card = card("cgal-self-intersections", true),
+                   .pair = self_pair,
+                   .mesh = self_scene,
+                   .self = self},
+                  {.card = card("cgal-do-intersect"), .pair = mesh_pair}});
 }

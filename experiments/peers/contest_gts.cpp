@@ -75,24 +75,15 @@ bool pair(const SuitePair& asked) { return !meshes(scene_of(asked)).empty(); }
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(
-      argc, argv,
-      {{.card =
-            {.name = "gts",
-             .library = "GTS " + std::to_string(gts_major_version) + "." +
-                        std::to_string(gts_minor_version) + "." + std::to_string(gts_micro_version),
-             .means = Means::crossing,
-             .degenerate = false,
-             .neighbours = true,
-             .call = "gts_surface_foreach_intersecting_face() of one surface of both triangles, "
-                     "or of all objects",
-             .says = "its test of a segment and a triangle is \"geometrically robust in the sense "
-                     "that it will not return a point if s and t do not intersect\"; coplanar "
-                     "ones it leaves out, of touching it says nothing",
-             .source = "GTS Library Reference Manual, Points, "
-                       "gts_segment_triangle_intersection(); boolean.c, "
-                       "gts_surface_foreach_intersecting_face()",
-             .use = "\"collision and intersection detection\" of triangulated surfaces (README)"},
-        .pair = pair,
-        .mesh = meshes}});
+  const std::string library = "GTS " + std::to_string(gts_major_version) + "." +
+                              std::to_string(gts_minor_version) + "." +
+                              std::to_string(gts_micro_version);
+  return contest(argc, argv,
+                 {{.card = {.name = "gts",
+                            .library = library,
+                            .means = Means::crossing,
+                            .degenerate = false,
+                            .neighbours = true},
+                   .pair = pair,
+                   .mesh = meshes}});
 }

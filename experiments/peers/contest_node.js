@@ -63,13 +63,7 @@ async function threeMeshBvh() {
   }
 
   return {
-    card: {
-      library: `three-mesh-bvh ${versionOf('three-mesh-bvh')}`, means: 'crossing', degenerate: 'no',
-      call: 'ExtendedTriangle.intersectsTriangle() and distanceToTriangle(); meshes by MeshBVH.bvhcast() with intersectsTriangles; not centred, which would round',
-      says: 'nothing of exactness or of touching: "Returns whether the triangles intersect"; of geometry far from the origin "it is recommended that geometry be centered"',
-      source: 'README, Gotchas; the comments of ExtendedTriangle.intersectsTriangle() and MeshBVH.bvhcast()',
-      use: 'to "speed up raycasting and enable spatial queries against three.js meshes", near the origin',
-    },
+    card: { library: `three-mesh-bvh ${versionOf('three-mesh-bvh')}`, means: 'crossing', degenerate: 'no' },
     mesh,
     pair: (a, b) => triangle(a).intersectsTriangle(triangle(b)),
     distance(a, b) {
@@ -90,13 +84,7 @@ async function rapier() {
   const point = (n, i) => ({ x: n[i], y: n[i + 1], z: n[i + 2] });
   const triangle = (n) => new RAPIER.Triangle(point(n, 0), point(n, 3), point(n, 6));
   return {
-    card: {
-      library: `rapier3d-compat ${versionOf('@dimforge/rapier3d-compat')}`, means: 'crossing', degenerate: 'no',
-      call: 'Shape.intersectsShape() and contactShape() of two Triangles; TriMesh.containsPoint() with the flag ORIENTED; in float, which the coordinates are rounded to',
-      says: 'nothing of exactness or of touching: "Tests if this shape intersects another shape"; a distance that "is negative" means "a penetration"',
-      source: 'the comments of geometry/shape.d.ts and geometry/contact.d.ts',
-      use: 'simulation of bodies in a browser; where a wrong answer near contact does no harm',
-    },
+    card: { library: `rapier3d-compat ${versionOf('@dimforge/rapier3d-compat')}`, means: 'crossing', degenerate: 'no' },
     pair: (a, b) => triangle(a).intersectsShape(at, turned, triangle(b), at, turned),
     distance(a, b) {
       const found = triangle(a).contactShape(at, turned, triangle(b), at, turned, 3e38);
@@ -122,13 +110,7 @@ async function cannon() {
   const body = (n) => new cannon.ConvexPolyhedron({
     vertices: [0, 3, 6].map((i) => new cannon.Vec3(n[i], n[i + 1], n[i + 2])), faces: [[0, 1, 2], [2, 1, 0]] });
   return {
-    card: {
-      library: `cannon-es ${versionOf('cannon-es')}`, means: 'crossing', degenerate: 'no',
-      call: 'ConvexPolyhedron.findSeparatingAxis() of two triangles, each a body with two opposite faces',
-      says: 'nothing of exactness or of touching: "Find the separating axis between this hull and another", which returns "false if a separation is found, else true"',
-      source: 'the comment of ConvexPolyhedron.findSeparatingAxis()',
-      use: 'a "lightweight 3D physics engine" for pages of the web; bodies that are convex',
-    },
+    card: { library: `cannon-es ${versionOf('cannon-es')}`, means: 'crossing', degenerate: 'no' },
     pair: (a, b) => body(a).findSeparatingAxis(body(b), at, turned, at, turned, new cannon.Vec3()),
   };
 }
@@ -148,13 +130,7 @@ async function manifold() {
     return out;
   }
   return {
-    card: {
-      library: `manifold-3d ${versionOf('manifold-3d')}`,
-      call: 'Manifold.intersect() of two solids, then isEmpty(); in float, which the coordinates are rounded to',
-      says: '"guaranteed manifold output without caveats or edge cases"; nothing of whether the intersection of two solids that touch is empty',
-      source: 'README of manifold-3d',
-      use: 'operations on solids, whose results are solids again',
-    },
+    card: { library: `manifold-3d ${versionOf('manifold-3d')}` },
     clash: (first, second) => !solid(first).intersect(solid(second)).isEmpty(),
   };
 }
@@ -177,13 +153,7 @@ async function jolt() {
     return made.Get();
   }
   return {
-    card: {
-      library: `jolt-physics ${versionOf('jolt-physics')}`,
-      call: 'TransformedShape.CollidePoint() of a MeshShape, not moved or turned; in float, which the coordinates are rounded to',
-      says: '"Check if inPoint is inside any shapes. For this tests all shapes are treated as if they were solid. For a mesh shape, this test will only provide sensible information if the mesh is a closed manifold"',
-      source: 'Jolt/Physics/Collision/TransformedShape.h, CollidePoint()',
-      use: '"games and VR applications"; where a wrong answer about a point does no harm',
-    },
+    card: { library: `jolt-physics ${versionOf('jolt-physics')}` },
     inside(file, p) {
       placed.mShape = known[file] ??= shape(file);
       const found = new Jolt.CollidePointAnyHitCollisionCollector(), point = new Jolt.RVec3(...p);

@@ -35,16 +35,7 @@ int main(int argc, char** argv) {
                  {{.card = {.name = "open3d",
                             .library = "Open3D " OPEN3D_VERSION,
                             .means = Means::crossing,
-                            .degenerate = false,
-                            .call = "IntersectionTest::TriangleTriangle3d(); meshes by "
-                                    "TriangleMesh::GetSelfIntersectingTriangles() of all objects "
-                                    "as one",
-                            .says = "nothing of exactness or of touching: the test of two "
-                                    "triangles has no comment, the other is a \"list of triangles "
-                                    "that are intersecting the mesh\"",
-                            .source = "open3d/geometry/IntersectionTest.h; TriangleMesh.h, "
-                                      "GetSelfIntersectingTriangles()",
-                            .use = "to inspect and repair scanned meshes"},
+                            .degenerate = false},
                    .pair = pair,
                    .mesh = meshes}});
 }

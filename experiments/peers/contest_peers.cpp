@@ -1,65 +1,37 @@
 // The libraries of `farcull bench` as contestants: FCL and ODE with their own tests of two
-// triangles, and broad phases followed by exact tests. If a pair is lost although the tests are
-// exact, the broad phase has lost it.
-#include "experiments/peers/peer.h"
-
+// triangles, their distances, and broad phases followed by exact tests. If a pair is lost although
+// the tests are exact, the broad phase has lost it.
 #include <algorithm>
 #include <memory>
 
 #include "experiments/peers/contestant.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {
 
-BenchAnswer answer(const Peer& peer, const BenchRun& run, const Scene& scene) {
-  if (peer.refuses) {
-    const std::string why = peer.refuses(scene);
-    if (!why.empty()) throw Refusal(why);
-  }
-  return run(scene);
+template <class AnyPeer>
+void require_taken(const AnyPeer& peer, const Scene& scene) {
+  const std::string why = peer.refuses ? peer.refuses(scene) : "";
+  if (!why.empty()) throw Refusal(why);
 }
 
-Contestant contestant(const Peer& peer, ContestantCard card) {
-  card.library = peer.library;
-  const auto run = std::make_shared<BenchRun>();
-  const auto found = [peer, run](const Scene& scene) {
+std::function<std::vector<TrianglePair>(const Scene&)> pairs_by(const Peer& peer) {
+  return [peer, run = std::make_shared<BenchRun>()](const Scene& scene) {
     if (!*run) *run = peer.set_up(1);
-    return answer(peer, *run, scene).pairs;
+    require_taken(peer, scene);
+    return (*run)(scene).pairs;
   };
-  return {.card = std::move(card),
-          .pair = [found](const SuitePair& pair) { return !found(scene_of(pair)).empty(); },
-          .mesh = found};
 }
 
 Contestant narrow(const Peer& peer) {
-  const bool fcl = peer.name.starts_with("fcl");
-  ContestantCard card{.name = peer.name, .means = Means::crossing, .degenerate = false};
-  if (fcl) {
-    card.call =
-        "what fcl::collide() calls for two BVHModel<OBBRSS>, all contacts, behind its broad phase; "
-        "scalar " +
-        peer.name.substr(peer.name.find('-') + 1);
-    card.says =
-        "nothing of exactness or of touching: \"detecting whether the two models overlap, and "
-        "optionally, all of the triangles that overlap\"";
-    card.source = "FCL README; fcl/narrowphase/collision.h, collide()";
-    card.use =
-        "\"proximity queries on a pair of geometric models composed of triangles\"; where a wrong "
-        "answer near contact does no harm";
-  } else {
-    card.call =
-        "dCollide() of two trimeshes with 65,535 contacts at most; a mesh of one triangle gets it "
-        "twice, since else it has no contacts, and two of them crash; pairs are read from the "
-        "contacts, and of those nearer than 1e-4 ODE keeps one";
-    card.says =
-        "nothing of exactness or of triangles that only touch: \"Trimesh/Trimesh collisions, "
-        "perform "
-        "quite well, but there are three minor caveats\"; those listed are about time steps";
-    card.source =
-        "ODE manual, Collision Detection, Triangle Mesh Class; ode/collision.h, dCollide()";
-    card.use = "simulation of bodies; \"It works well for relatively large triangles\"";
-  }
-  return contestant(peer, std::move(card));
+  const auto pairs = pairs_by(peer);
+  return {.card = {.name = peer.name,
+                   .library = peer.library,
+                   .means = Means::crossing,
+                   .degenerate = false},
+          .pair = [pairs](const SuitePair& pair) { return !pairs(scene_of(pair)).empty(); },
+          .mesh = pairs};
 }
 
 /// The distance that a library gives for two triangles, each an object of its own. It says no
@@ -67,34 +39,11 @@ Contestant narrow(const Peer& peer) {
 std::function<ContestDistance(const SuitePair&)> distance_by(const DistancePeer& peer) {
   return [peer](const SuitePair& pair) {
     const Scene scene = two_objects(pair);
-    const std::string why = peer.refuses ? peer.refuses(scene) : "";
-    if (!why.empty()) throw Refusal(why);
+    require_taken(peer, scene);
     const PeerDistances found = peer.run(scene, {}, 1);
     if (found.distances.empty()) throw Refusal("it gives no distance");
     return ContestDistance{found.distances[0].distance};
   };
-}
-
-Contestant distance_alone(const DistancePeer& peer) {
-  return {.card = {.name = peer.name,
-                   .library = peer.library,
-                   .call = "squared_distance() of two triangles in doubles",
-                   .says = "nothing is quoted: how far its distances are off is what is measured",
-                   .source = "experiments/peers/cgal.cpp",
-                   .use = "distances near the size of the objects"},
-          .distance = distance_by(peer)};
-}
-
-Contestant broad(const Peer& peer) {
-  Contestant out = contestant(
-      peer, {.name = peer.name + "-exact",
-             .call = "the broad phase `" + peer.name +
-                     "` of farcull bench, then exact tests of its candidates by farcull",
-             .says = "nothing is quoted: whether it loses pairs that meet is what is measured",
-             .source = "experiments/peers",
-             .use = "to tell a broad phase that loses pairs from a test that does"});
-  out.pair = {};  // a broad phase has no answer about a pair
-  return out;
 }
 
 }  // namespace
@@ -114,10 +63,13 @@ int main(int argc, char** argv) {
     if (same != all.end())
       same->distance = distance_by(peer);
     else if (peer.name == "cgal-aabb")
-      all.push_back(distance_alone(peer));
+      all.push_back(
+          {.card = {.name = peer.name, .library = peer.library}, .distance = distance_by(peer)});
   }
-  for (const Peer& peer : all_peers(1)) {
-    if (peer.missing.empty()) all.push_back(broad(peer));
+  for (const Peer& peer : all_peers(1)) {  // a broad phase has no answer about a pair
+    if (peer.missing.empty())
+      all.push_back({.card = {.name = peer.name + "-exact", .library = peer.library},
+                     .mesh = pairs_by(peer)});
   }
-  return contest(argc, argv, std::move(all));
+  return contest(argc, argv, all);
 }

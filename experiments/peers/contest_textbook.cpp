@@ -226,40 +226,20 @@ bool edges_against_faces(const SuitePair& pair) {
   return false;
 }
 
-Contestant contestant(const std::string& name, const std::string& paper, const std::string& call,
-                      Means means, const std::string& says, const std::string& source,
+Contestant contestant(const std::string& name, const char* paper, Means means,
                       std::function<bool(const SuitePair&)> pair) {
-  return {.card = {.name = name,
-                   .library = paper,
-                   .means = means,
-                   .degenerate = false,
-                   .call = call,
-                   .says = says,
-                   .source = source,
-                   .use = "where a pair that is decided wrongly near contact does no harm"},
+  return {.card = {.name = name, .library = paper, .means = means, .degenerate = false},
           .pair = std::move(pair)};
 }
 
-constexpr const char* kMoellerSays =
-    "nothing of exactness or of touching, though its code counts it; with distances below 1e-6 not "
-    "taken for 0 it is \"less robust\"";
-constexpr const char* kMoellerSource =
-    "Moeller's code for the paper, opttritri.txt, the comment over EPSILON";
+constexpr const char* kMoeller = "Moeller 1997";
 
 template <class T>
 void add_textbook(std::vector<Contestant>& all, const std::string& type) {
-  const std::string rounds = ", in " + type + ", which the coordinates are rounded to";
-  all.push_back(contestant("moeller-" + type, "Moeller 1997",
-                           "the test of the paper with the tolerance 1e-6" + rounds,
-                           Means::crossing, kMoellerSays, kMoellerSource,
+  all.push_back(contestant("moeller-" + type, kMoeller, Means::crossing,
                            [](const SuitePair& pair) { return moeller<T>(pair, T(1e-6)); }));
-  all.push_back(contestant(
-      "guigue-devillers-" + type, "Guigue, Devillers 2003", "the test of the paper" + rounds,
-      Means::closed,
-      "it \"relies exclusively on the sign of 4 x 4 determinants\"; triangles count \"including "
-      "their boundary\"; of rounded determinants it says only that it is \"more reliable\"",
-      "the abstract of the paper; the comment at the top of the authors' code",
-      guigue_devillers<T>));
+  all.push_back(contestant("guigue-devillers-" + type, "Guigue, Devillers 2003", Means::closed,
+                           guigue_devillers<T>));
 }
 
 }  // namespace
@@ -270,16 +250,9 @@ int main(int argc, char** argv) {
   std::vector<Contestant> all;
   add_textbook<float>(all, "float");
   add_textbook<double>(all, "double");
-  all.push_back(contestant("moeller-double-0", "Moeller 1997",
-                           "the test of the paper without a tolerance, in double", Means::crossing,
-                           kMoellerSays, kMoellerSource,
+  all.push_back(contestant("moeller-double-0", kMoeller, Means::crossing,
                            [](const SuitePair& pair) { return moeller<double>(pair, 0); }));
-  all.push_back(contestant("edge-face-double", "each edge against the other face",
-                           "the six tests of a segment and a "
-                           "triangle (Moeller, Trumbore 1997), in double",
-                           Means::crossing,
-                           "nothing is quoted: a segment in the plane of the triangle is taken for "
-                           "apart, since the ray of that paper has no point there",
-                           "experiments/peers/contest_textbook.cpp", edges_against_faces<double>));
-  return contest(argc, argv, std::move(all));
+  all.push_back(contestant("edge-face-double", "each edge against the other face", Means::crossing,
+                           edges_against_faces<double>));
+  return contest(argc, argv, all);
 }

@@ -81,54 +81,11 @@ std::vector<TrianglePair> collision_scene(const Scene& scene) {
 
 bool collision_pair(const SuitePair& pair) { return !collision_scene(two_objects(pair)).empty(); }
 
-ContestantCard card(const std::string& name, const std::string& call, const std::string& says,
-                    const std::string& source, const std::string& use) {
+ContestantCard card(const char* name) {
   return {.name = name,
           .library = std::string("VTK ") + vtkVersion::GetVTKVersion(),
           .means = Means::crossing,
-          .degenerate = false,
-          .call = call,
-          .says = says,
-          .source = source,
-          .use = use};
-}
-
-Contestant collision() {
-  return {
-      .card = card("vtk-collision",
-                   "vtkCollisionDetectionFilter, all contacts, tolerances as they are by default "
-                   "(0.001 for boxes, 0 for cells)",
-                   "nothing of exactness or of touching; each pair names \"a cell (triangle) which "
-                   "contacts/intersects a cell\" of the other model",
-                   "vtkCollisionDetectionFilter.h, GetContactCells()",
-                   "\"collision determination between two polyhedral surfaces\", and clipping one "
-                   "with the other"),
-      .pair = collision_pair,
-      .mesh = collision_scene};
-}
-
-Contestant triangle() {
-  return {
-      .card = card("vtk-triangle", "vtkTriangle::TrianglesIntersect()",
-                   "nothing of exactness or of touching; \"Determine whether or not triangle "
-                   "(p1,q1,r1) intersects triangle (p2,q2,r2)\", adapted from Devillers and Guigue",
-                   "vtkTriangle.h, TrianglesIntersect()",
-                   "two triangles, where a wrong answer near contact does no harm"),
-      .pair = triangles_intersect};
-}
-
-Contestant intersection() {
-  return {
-      .card = card(
-          "vtk-intersection",
-          "vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(), tolerance 1e-6",
-          "nothing of exactness or of touching; \"A geometric tolerance can be specified\", and "
-          "the "
-          "filter \"relies on the inputs having no co-planar, overlapping cells\"",
-          "vtkIntersectionPolyDataFilter.h, TriangleTriangleIntersection() and the warning of the "
-          "class",
-          "the line in which two surfaces intersect, without coplanar overlap"),
-      .pair = intersection_filter};
+          .degenerate = false};
 }
 
 }  // namespace
@@ -136,5 +93,8 @@ Contestant intersection() {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(argc, argv, {collision(), triangle(), intersection()});
+  return contest(argc, argv,
+                 {{.card = card("vtk-collision"), .pair = collision_pair, .mesh = collision_scene},
+                  {.card = card("vtk-triangle"), .pair = triangles_intersect},
+                  {.card = card("vtk-intersection"), .pair = intersection_filter}});
 }

@@ -1,7 +1,6 @@
 // The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes
 // answers. Standard output is kept for the answers: text that a library prints there goes to
-// standard error. Also writes cards (descriptions of contestants, ContestantCard), one line
-// for each field.
+// standard error.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
@@ -12,7 +11,6 @@
 #include <iostream>
 #include <new>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -126,37 +124,32 @@ std::string verdict(const std::string& begin, const Ask& ask) {
   return begin + (yes ? "1\t" : "0\t") + ns + "\n";
 }
 
-std::string answer_pair(const Contestant& contestant, const Fields& fields,
-                        const std::string& begin) {
+std::string answer_pair(const Contestant& of, const Fields& fields, const std::string& begin) {
   const SuitePair pair = read_pair(fields);
-  return verdict(begin, [&] { return contestant.pair(pair); });
+  return verdict(begin, [&] { return of.pair(pair); });
 }
 
-std::string answer_self(const Contestant& contestant, const Fields& fields,
-                        const std::string& begin) {
+std::string answer_self(const Contestant& of, const Fields& fields, const std::string& begin) {
   const Scene scene = read_scene(fields, 2, 3, true);
-  return verdict(begin, [&] { return contestant.self(scene); });
+  return verdict(begin, [&] { return of.self(scene); });
 }
 
-std::string answer_inside(const Contestant& contestant, const Fields& fields,
-                          const std::string& begin) {
+std::string answer_inside(const Contestant& of, const Fields& fields, const std::string& begin) {
   const Scene scene = read_scene(fields, 2, 3, false);
   if (fields.size() != 6) throw NoQuestion("inside has 6 fields");
   const Vec3 point(number<double>(fields[3]), number<double>(fields[4]), number<double>(fields[5]));
-  return verdict(begin, [&] { return contestant.inside(scene, point); });
+  return verdict(begin, [&] { return of.inside(scene, point); });
 }
 
-std::string answer_clash(const Contestant& contestant, const Fields& fields,
-                         const std::string& begin) {
+std::string answer_clash(const Contestant& of, const Fields& fields, const std::string& begin) {
   const Scene scene = read_scene(fields, 2, 4, false);
-  return verdict(begin, [&] { return contestant.clash(scene); });
+  return verdict(begin, [&] { return of.clash(scene); });
 }
 
-std::string answer_mesh(const Contestant& contestant, const Fields& fields,
-                        const std::string& begin) {
+std::string answer_mesh(const Contestant& of, const Fields& fields, const std::string& begin) {
   const Scene scene = read_scene(fields, 3, fields.size(), fields[2] == "1");
   const Timer timer;
-  const std::vector<TrianglePair> found = contestant.mesh(scene);
+  const std::vector<TrianglePair> found = of.mesh(scene);
   const std::string ns = timer.nanoseconds();
   const std::vector<std::uint32_t> owner = owners(scene);
   std::string out;
@@ -171,20 +164,17 @@ std::string answer_mesh(const Contestant& contestant, const Fields& fields,
   return out + begin + "done\t" + ns + "\n";
 }
 
-std::string answer_distance(const Contestant& contestant, const Fields& fields,
-                            const std::string& begin) {
-  const ContestDistance found = contestant.distance(read_triangles(fields, 20));
+std::string answer_distance(const Contestant& of, const Fields& fields, const std::string& begin) {
+  const ContestDistance found = of.distance(read_triangles(fields, 20));
   std::string out = begin + shortest(found.distance);
   for (std::size_t i = 0; found.points && i < 6; ++i)
     out += "\t" + shortest((*found.points)[i / 3][static_cast<Eigen::Index>(i % 3)]);
   return out + "\n";
 }
 
-std::string answer_card(const Contestant& contestant, const std::string& begin) {
-  std::string out;
-  std::istringstream lines(card_text(contestant.card));
-  for (std::string line; std::getline(lines, line);) out += begin + "card\t" + line + "\n";
-  return out + begin + "done\n";
+template <auto member>
+bool has(const Contestant& contestant) {
+  return static_cast<bool>(contestant.*member);
 }
 
 /// A kind of question, whether a contestant answers it, and its answer.
@@ -194,12 +184,40 @@ struct Question {
   std::string (*answer)(const Contestant&, const Fields&, const std::string& begin);
 };
 constexpr std::array kQuestions = {
-    Question{"pair", [](const Contestant& of) { return bool(of.pair); }, answer_pair},
-    Question{"mesh", [](const Contestant& of) { return bool(of.mesh); }, answer_mesh},
-    Question{"distance", [](const Contestant& of) { return bool(of.distance); }, answer_distance},
-    Question{"self", [](const Contestant& of) { return bool(of.self); }, answer_self},
-    Question{"inside", [](const Contestant& of) { return bool(of.inside); }, answer_inside},
-    Question{"clash", [](const Contestant& of) { return bool(of.clash); }, answer_clash}};
+    Question{"pair", has<&Contestant::pair>, answer_pair},
+    Question{"mesh", has<&Contestant::mesh>, answer_mesh},
+    Question{"distance", has<&Contestant::distance>, answer_distance},
+    Question{"self", has<&Contestant::self>, answer_self},
+    Question{"inside", has<&Contestant::inside>, answer_inside},
+    Question{"clash", has<&Contestant::clash>, answer_clash}};
+
+/// A line KEY TAB VALUE for each member of the card that has a value.
+std::string answer_card(const Contestant& contestant, const std::string& begin) {
+  const ContestantCard& card = contestant.card;
+  std::string answers, out;
+  for (const Question& question : kQuestions) {
+    if (question.known(contestant))
+      answers += (answers.empty() ? "" : " ") + std::string(question.word);
+  }
+  const auto word = [](bool yes) { return yes ? "yes" : "no"; };
+  const std::pair<const char*, std::string> lines[] = {
+      {"name", card.name},
+      {"library", card.library},
+      {"answers", answers},
+      {"means", card.means == Means::closed ? "closed" : "crossing"},
+      {"degenerate", word(card.degenerate)},
+      {"neighbours", word(card.neighbours)},
+      {"promises", word(card.promises)},
+      {"margin", shortest(card.margin)},
+      {"call", card.call},
+      {"says", card.says},
+      {"source", card.source},
+      {"use", card.use}};
+  for (const auto& [key, value] : lines) {
+    if (!value.empty()) out += begin + "card\t" + key + "\t" + one_line(value) + "\n";
+  }
+  return out + begin + "done\n";
+}
 
 /// The answer, or a refusal if the library throws.
 std::string answer_line(const Contestant& contestant, const std::string& line) {
@@ -225,20 +243,15 @@ std::string answer_line(const Contestant& contestant, const std::string& line) {
 
 }  // namespace
 
-int contest(int argc, char** argv, std::vector<Contestant> contestants) {
+int contest(int argc, char** argv, const std::vector<Contestant>& contestants) {
   const int to = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
   std::ios::sync_with_stdio(false);
   const std::string name = argc == 2 ? argv[1] : "";
   std::string names;
-  for (Contestant& contestant : contestants) {
+  for (const Contestant& contestant : contestants) {
     names += " " + contestant.card.name;
     if (contestant.card.name != name) continue;
-    for (const Question& question : kQuestions) {
-      if (!question.known(contestant)) continue;
-      contestant.card.answers += (contestant.card.answers.empty() ? "" : " ");
-      contestant.card.answers += question.word;
-    }
     try {
       for (std::string line; std::getline(std::cin, line);)
         answer(to, answer_line(contestant, line));
@@ -289,27 +302,6 @@ Scene scene_of(const SuitePair& pair) {
   out.source_face = {0, 1};
   out.objects = {{.name = "0", .first_triangle = 0, .triangle_count = 2, .self = true}};
   for (const auto& [first, second] : pair.shared) out.triangles[1][second] = first;
-  return out;
-}
-
-std::string card_text(const ContestantCard& card) {
-  std::string out;
-  const auto add = [&out](const char* key, const std::string& value) {
-    if (!value.empty()) out += std::string(key) + "\t" + one_line(value) + "\n";
-  };
-  const auto flag = [&add](const char* key, bool value) { add(key, value ? "yes" : "no"); };
-  add("name", card.name);
-  add("library", card.library);
-  add("answers", card.answers);
-  add("means", card.means == Means::closed ? "closed" : "crossing");
-  flag("degenerate", card.degenerate);
-  flag("neighbours", card.neighbours);
-  flag("promises", card.promises);
-  if (card.margin > 0) add("margin", shortest(card.margin));
-  add("call", card.call);
-  add("says", card.says);
-  add("source", card.source);
-  add("use", card.use);
   return out;
 }
 

@@ -34,17 +34,13 @@ struct ContestantCard {
   bool degenerate = true;   // the library takes triangles that are segments or points
   bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
-  bool promises = false;     // only for farcull's methods: a miss breaks a promise
-  std::string answers = {};  // the questions that it answers, such as "pair mesh"
-  std::string call = {};     // the function that is called, and its arguments
-  std::string says = {};     // what its documentation says of exactness and of touching
-  std::string source = {};   // where the documentation says so; others may omit it
-  std::string use = {};      // for which purpose it is the right choice
+  bool promises = false;  // only for farcull's methods: a miss breaks a promise
+  // Of libraries of the study these texts stand in experiments/report/chapters/libraries.csv.
+  std::string call = {};    // the function that is called, and its arguments
+  std::string says = {};    // what its documentation says of exactness and of touching
+  std::string source = {};  // where the documentation says so; others may omit it
+  std::string use = {};     // for which purpose it is the right choice
 };
-
-/// The card as lines KEY TAB VALUE. The keys are the names of the members. `means` is closed or
-/// crossing, and a bool is yes or no.
-std::string card_text(const ContestantCard& card);
 
 /// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
 /// documentation says that it is not made for the question.
@@ -59,7 +55,8 @@ struct ContestDistance {
 };
 
 struct Contestant {
-  ContestantCard card;  // `answers` is set by the functions below that are not null
+  ContestantCard card;
+  // The questions that it answers: the functions that are not null.
   std::function<bool(const SuitePair&)> pair = {};
   /// The pairs of triangles of the scene that the library calls colliding, in any order. Either all
   /// objects are tested against themselves too, or none. A triangle with itself is no pair.
@@ -75,7 +72,7 @@ struct Contestant {
 /// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a
 /// refusal, except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call
 /// or a line that is no question; 3 if memory ran out.
-int contest(int argc, char** argv, std::vector<Contestant> contestants);
+int contest(int argc, char** argv, const std::vector<Contestant>& contestants);
 
 /// Calls `ask` for every pair of objects, and with a == b for each object that is tested against
 /// itself. For libraries that test two meshes.

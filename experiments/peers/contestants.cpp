@@ -1,7 +1,6 @@
-// Lists the contestants that the study knows, and runs study.py by Python.
+// Lists the contestants that the study knows, and runs ask.py by Python.
 #include "experiments/peers/contestants.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,9 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/view/view.h"
 #include "embedded/ask_py.h"
-#include "embedded/study_py.h"
 #include "experiments/system/python.h"
 #include "experiments/system/text_table.h"
 
@@ -63,11 +60,6 @@ std::vector<KnownContestant> make_list() {
   return all;
 }
 
-/// study.py imports ask.py, which is handed to it as its argument.
-constexpr const char* kImport =
-    "import sys, types\nsys.modules['ask'] = ask = types.ModuleType('ask')\n"
-    "exec(sys.argv.pop(1), ask.__dict__)\n";
-
 }  // namespace
 
 const std::vector<KnownContestant>& known_contestants() {
@@ -87,11 +79,6 @@ const KnownContestant& known_contestant(const std::string& name) {
   return *at;
 }
 
-bool answers(const KnownContestant& contestant, const std::string& question) {
-  const std::vector<std::string> all = split_list(contestant.answers, ' ');
-  return std::find(all.begin(), all.end(), question) != all.end();
-}
-
 std::string command_of(const KnownContestant& contestant) {
   const char* const named = std::getenv("FARCULL_CONTESTANTS");
   std::error_code error;
@@ -104,39 +91,21 @@ std::string command_of(const KnownContestant& contestant) {
 }
 
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options) {
-  // One process of Python answers all: to start it takes longer than most questions.
-  static FILE *questions = nullptr, *answers = nullptr;
-  if (questions == nullptr) {
-    std::array<int, 2> ends = {-1, -1};
-    if (::pipe(ends.data()) != 0) throw Error("study.py", "got no pipe", "allow more open files");
-    ::fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-    std::string line = "exec";
-    const std::string program = std::string(kImport) + embedded::study_py;
-    for (const std::string& word : {python(), {"-I"}, {"-B"}, {"-c"}, program, {embedded::ask_py}})
-      line += " " + quoted(word);
-    questions = ::popen((line + " >/dev/fd/" + std::to_string(ends[1])).c_str(), "we");
-    ::close(ends[1]);
-    answers = ::fdopen(ends[0], "r");
-  }
-  std::string call;
-  for (const std::string& word : options) call += word + '\0';
-  call += std::string("--") + '\0' + command + '\0' + '\0';
-  char* text = nullptr;
-  std::size_t size = 0;
-  if (questions != nullptr) {
-    std::fwrite(call.data(), 1, call.size(), questions);
-    std::fflush(questions);
-  }
-  const bool answered = answers != nullptr && ::getline(&text, &size, answers) > 0;
-  nlohmann::json out = nlohmann::json::parse(answered ? text : "", nullptr, false);
-  std::free(text);
-  if (!answered) {  // it has ended; the next call starts another one
-    if (questions != nullptr) ::pclose(questions);
-    std::fclose(answers);
-    questions = nullptr;
-  }
-  if (out.is_discarded() || out.contains("error")) {
-    throw Error(command, out.is_discarded() ? "cannot be asked" : out["error"].get<std::string>(),
+  std::string line;
+  for (const char* word : {"-I", "-B", "-c", embedded::ask_py, "--json"})
+    line += " " + quoted(word);
+  for (const std::string& word : options) line += " " + quoted(word);
+  line = "exec " + quoted(python()) + line + " -- " + quoted(command) + " 2>&1";
+  FILE* const pipe = ::popen(line.c_str(), "re");
+  if (pipe == nullptr) throw Error("ask.py", "cannot be started", "allow more processes");
+  std::string text;
+  std::array<char, 1 << 16> part;
+  for (std::size_t size; (size = std::fread(part.data(), 1, part.size(), pipe)) > 0;)
+    text.append(part.data(), size);
+  const int status = ::pclose(pipe);
+  nlohmann::json out = nlohmann::json::parse(text, nullptr, false);
+  if (status != 0 || out.is_discarded()) {
+    throw Error(command, "cannot be asked: " + text.substr(0, text.find('\n')),
                 "install Python 3.8 or later; docs/ask.md has the protocol");
   }
   return out;

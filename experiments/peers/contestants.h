@@ -1,5 +1,5 @@
 // The contestants that the study "libraries" knows. They are asked as anybody's program is, by
-// experiments/suite/ask.py (docs/ask.md); experiments/suite/study.py says what the study keeps.
+// experiments/suite/ask.py (docs/ask.md), which also counts what they get wrong.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,16 +20,13 @@ struct KnownContestant {
 const std::vector<KnownContestant>& known_contestants();
 /// The contestant with this name. Throws Error if there is none.
 const KnownContestant& known_contestant(const std::string& name);
-/// Whether the contestant is asked questions of this kind.
-bool answers(const KnownContestant& contestant, const std::string& question);
-
 /// The command line of the contestant's program, which is in the folder that the variable
 /// FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program. Empty: it was
 /// not built.
 std::string command_of(const KnownContestant& contestant);
 
-/// What study.py answers to these options about the program that a command line starts. Throws
-/// Error with the reason if it fails. Not for several threads.
+/// What `ask.py --json` prints with these options about the program that a command line starts.
+/// Throws Error with the reason if it fails.
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options);
 
 }  // namespace farcull

@@ -174,32 +174,16 @@ struct SceneCounts {
   FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)
 };
 
-/// Counts of a LibraryPoint (experiments/suite/study.py). Of pairs and of other questions they are
-/// answers, of meshes colliding pairs. `missed` and `wrong` compare with closed triangles, `own_`
-/// with what the library's documentation promises; of distances all faults are `wrong`.
+/// The names and values of counts, in the order in which a store holds them.
+using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
+using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
+
+/// Counts of a LibraryPoint, as experiments/suite/ask.py names them: `missed` and `wrong` compare
+/// with closed triangles, `own_` with what the library's documentation promises; `scores` has them
+/// for each family, parameter and kind. example_FAULT: a family and the smallest pair of its kind
+/// of fault for which the documentation promises the answer.
 struct LibraryCounts {
-  std::uint64_t asked = 0, answered = 0, missed = 0, wrong = 0;
-  std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
-  std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
-  std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
-  std::uint64_t timed = 0;                 // answers whose times `total` adds up
-  std::uint64_t twice = 0, differing = 0;  // asked a second time, and the different answers
-  bool promises = false;                   // as in RunCounts
-  std::string library = {}, means = {}, call = {};  // as on its card
-  std::string says = {}, source = {}, use = {};     // as on its card
-  std::string reason = {};                          // of the first refusal or death
-  std::string scores = {};                          // by kind and parameter, as study.py writes it
-  /// Faults of distances (docs/ask.md); the largest relative error.
-  std::optional<std::uint64_t> zero = {}, not_zero = {}, negative = {}, off = {}, points = {},
-                               points_off = {};
-  std::optional<double> worst = {};
-  /// The smallest pair of its kind of fault for which the documentation promises the answer: the
-  /// line of a pair with ID 0 (suite/writer.h).
-  std::optional<std::string> example_missed = {}, example_wrong = {}, example_death = {};
-  FARCULL_FIELDS(asked, answered, missed, wrong, own_asked, own_missed, own_wrong, refused,
-                 unanswered, crashed, hung, no_memory, not_asked, timed, twice, differing, promises,
-                 library, means, call, says, source, use, reason, scores, zero, not_zero, negative,
-                 off, points, points_off, worst, example_missed, example_wrong, example_death)
+  NamedCounts values = {};
 };
 
 /// Counts of a NeighbourPoint.
@@ -234,9 +218,7 @@ using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, 
                             ForecastCounts, ClothCounts, SceneCounts, LibraryCounts, SetCounts,
                             DistanceCounts>;
 
-/// The names and values of counts, in the order in which a store holds them.
-using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
-using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
+/// The values of counts, with the fields of members in place of the members.
 NamedCounts named(const Counts& counts);
 
 /// Milliseconds; they differ between runs.

@@ -124,11 +124,7 @@ PointKey key_of(const LibraryPoint& point) {
   const std::string suite = !point.suite.empty() ? "suite-" + point.suite_name
                             : point.small        ? "small"
                                                  : "full";
-  key.scene = fmt::format("{}/{}/{}", suite,
-                          point.question == "pair"   ? "pairs"
-                          : point.question == "mesh" ? "meshes"
-                                                     : point.question,
-                          point.family);
+  key.scene = suite + "/" + point.question;
   key.method = point.contestant;
   key.seed = point.seed;
   return key;

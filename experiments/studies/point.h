@@ -109,11 +109,9 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/contestants.h) and what it is asked: a family of pairs or of meshes of a
-/// suite, or all of its questions of another kind.
+/// A contestant (peers/contestants.h) and the kind of question that it is asked of a suite.
 struct LibraryPoint {
   std::string contestant = {};
-  std::string family = {};        // "all" for questions about neither pairs nor meshes
   std::string question = "pair";  // as in docs/ask.md
   bool small = false;             // of the small suite; else of the full one
   std::uint64_t seed = 1;         // of the suite

@@ -67,7 +67,11 @@ NamedCounts named(const Counts& counts) {
   NamedCounts out;
   std::visit(
       [&](const auto& of) {
-        if constexpr (HasFields<std::decay_t<decltype(of)>>) add(out, "", of);
+        using Of = std::decay_t<decltype(of)>;
+        if constexpr (std::is_same_v<Of, LibraryCounts>)
+          out = of.values;
+        else if constexpr (HasFields<Of>)
+          add(out, "", of);
       },
       counts);
   return out;

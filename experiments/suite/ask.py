@@ -8,8 +8,8 @@ import argparse
 import collections
 import contextlib
 import csv
-import functools
 import hashlib
+import json
 import math
 import os
 import queue
@@ -113,6 +113,9 @@ class Child:
 
 
 Answer = collections.namedtuple('Answer', 'outcome value ns reason')
+DEATHS = ['crashed', 'hung', 'no memory']
+ROUNDS = 4  # of the search for a simpler pair with the same fault
+Fault = collections.namedtuple('Fault', 'family parameter numbers right answer')  # right: whether the pair meets
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
@@ -405,10 +408,9 @@ class Suite:
             raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
         return text
 
-    def lists(self, folder, only=None):
-        """The names of the lists in a folder, or the one of a family."""
-        return [name for name in self.files
-                if re.fullmatch(f'{folder}/[^/]*[.]txt', name) and only in (None, name[len(folder) + 1:-4])]
+    def lists(self, folder):
+        """The names of the lists in a folder."""
+        return [name for name in self.files if re.fullmatch(f'{folder}/[^/]*[.]txt', name)]
 
     def lines(self, name):
         """The family and the lines, as words, of a list."""
@@ -467,14 +469,11 @@ def corners_of(numbers):
 Listed = collections.namedtuple('Listed', 'number parameter question label numbers')
 
 
-@functools.lru_cache(maxsize=1)  # of the same list a study asks one contestant after the other
 def pairs_of(suite, name):
     family, lines = suite.lines(name)
-    listed = []
     for number_, parameter, shared, label, *words in lines:
         numbers = [*map(float.fromhex, words)]
-        listed.append(Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)], family), label, numbers))
-    return listed
+        yield Listed(number_, parameter, Question('pair', [shared, *map(repr, numbers)], family), label, numbers)
 
 
 def questions_of(kind, family, suite, lines):
@@ -485,10 +484,10 @@ def questions_of(kind, family, suite, lines):
         yield Listed(number_, parameter, Question(kind, fields, family), label, numbers)
 
 
-def lists_of(card, suite, kinds, only=None):
-    """The kind and the lines of each list of pairs, or of the list `only`, and of all questions of each other kind: they are
-    few, and starting a process takes longer than most."""
-    for name in suite.lists('pairs', only) if 'pair' in kinds else []:
+def lists_of(card, suite, kinds):
+    """The kind and the lines of each list of pairs, and of all questions of each other kind: they are few, and starting a
+    process takes longer than most."""
+    for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
     families = {}  # of questions about meshes, each of which has a list
     for family, lines in map(suite.lines, suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []):
@@ -540,8 +539,7 @@ def score_distance(label, numbers, value, row):
             point_to_triangle(point, exact(triangle)) > near ** 2 for point, triangle in zip(points, triangles))
 
 
-def score_mesh(card, objects, rows, kinds, reported, row):
-    """kinds: of pairs that were looked at before, which many contestants report."""
+def score_mesh(card, objects, rows, reported, row):
     def shared(a, b):
         return len({*objects[a[0]][a[1]][0]} & {*objects[b[0]][b[1]][0]}) if a[0] == b[0] else 0
     counts = card['neighbours'] == 'yes'
@@ -550,43 +548,145 @@ def score_mesh(card, objects, rows, kinds, reported, row):
     row['colliding'] += len(truth)
     row['reported'] += len(found)
     def own(pairs, label):
-        own_pairs = 0
-        for pair in pairs:
-            a, b = (objects[o][t][1] for o, t in pair)
-            if label and card['means'] == 'crossing' and pair not in kinds:
-                kinds[pair] = 'crossing' if crosses(a, b) else 'touch'
-            own_pairs += promised(card, a, b, label, kinds.get(pair) if label else None)
-        return own_pairs
+        return sum(promised(card, *(objects[o][t][1] for o, t in pair), label) for pair in pairs)
     for fault, pairs in ('missed', truth - found), ('wrong', found - truth):
         row[fault] += len(pairs)
         row['own ' + fault] += own(pairs, fault == 'missed')
     row['own asked'] += row['own missed'] + own(truth & found, True)
 
 
-@functools.lru_cache(maxsize=1)
-def meshes_of(suite, names):
-    """Of each mesh the question, the objects, the rows of pairs.csv (None if there is none), and room for kinds of pairs."""
-    out = []
-    for name in names:
-        paths, objects = suite.objects(name)
-        question = Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)])
-        known = name + '/pairs.csv' in suite.files
-        lines = suite.text(name + '/pairs.csv').split('\n')[1:-1] if known else []
-        out.append((question, objects, [[*map(int, line.split(','))] for line in lines] if known else None, {}))
-    return out
-
-
 def ask_family(command, card, suite, names, options):
     """A row for each mesh of a family; one process is asked about all."""
-    meshes = meshes_of(suite, tuple(names))
-    for (_, objects, rows, kinds), answer, differs in zip(meshes, *ask_twice(command, [mesh[0] for mesh in meshes], options)):
+    objects, questions = [], []
+    for name in names:
+        paths, of = suite.objects(name)
+        objects.append(of)
+        questions.append(Question('mesh', ['1' if suite.properties(name)['self'] == 'yes' else '0', *map(suite.path, paths)]))
+    for name, of, answer, differs in zip(names, objects, *ask_twice(command, questions, options)):
         pairs, row = [tuple(sorted(((a, i), (b, j)))) for a, i, b, j in answer.value or []], Row()
-        if any(not (0 <= o < len(objects) and 0 <= t < len(objects[o])) for pair in pairs for o, t in pair):
+        if any(not (0 <= o < len(of) and 0 <= t < len(of[o])) for pair in pairs for o, t in pair):
             answer = Answer('crashed', None, 0, 'named a triangle that the mesh does not have')
         row.take(answer, differs)
-        if answer.outcome == 'answered' and rows is not None:
-            score_mesh(card, objects, rows, kinds, pairs, row)
+        if answer.outcome == 'answered' and name + '/pairs.csv' in suite.files:
+            lines = suite.text(name + '/pairs.csv').split('\n')[1:-1]
+            score_mesh(card, of, [[*map(int, line.split(','))] for line in lines], pairs, row)
         yield row
+
+
+def rows_of(command, card, suite, kinds, options):
+    """A row for each kind of question, family, parameter and label (of a mesh its name). With `--json` also an example of each
+    fault of pairs: its family and its parameter, and the coordinates."""
+    rows, examples = {}, {}
+    for kind, listed in lists_of(card, suite, kinds):
+        answers, differs = ask_twice(command, [one.question for one in listed], options)
+        for one, answer, again in zip(listed, answers, differs):
+            row = rows.setdefault((kind, one.question.family, one.parameter, one.label if kind == 'pair' else kind), Row())
+            row.take(answer, again)
+            if answer.outcome == 'answered' and is_scored(card, one):
+                row['scored'] += 1
+                score(card, one, answer.value, row)
+        if kind == 'pair' and options.json:
+            faults = faults_of(card, listed, answers)
+            for name, numbers in simplest(command, card, faults, options).items() if faults else ():
+                if name not in examples or cost(numbers) < cost(examples[name][2:]):
+                    examples[name] = [f'pairs/{faults[name].family}', float(faults[name].parameter), *numbers]
+    for family, names in suite.meshes().items() if 'mesh' in kinds else []:
+        for name, row in zip(names, ask_family(command, card, suite, names, options)):
+            rows['mesh', family, suite.properties(name)['parameter'], name] = row
+    return rows, examples
+
+
+# ---- the smallest pair of each kind of fault
+
+def faults_of(card, listed, answers):
+    """For each fault the pair with the fewest characters at which the contestant has it, of those of which its documentation
+    promises the answer. Triangles that share corners are left out."""
+    found, faults = [], {}
+    for one, answer in zip(listed, answers):
+        right = one.label != 'apart'
+        if one.label != '?' and one.question.fields[0] == '-' and (answer.outcome, answer.value) not in (
+                ('answered', right), ('refused', None), ('unanswered', None), ('not asked', None)):
+            name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
+            fault = Fault(one.question.family, one.parameter, one.numbers, right, (answer.outcome, answer.value))
+            found.append((cost(one.numbers), len(found), name, fault, one.label))
+    for *_, name, fault, label in sorted(found, key=lambda one: one[:2]):
+        a, b = corners_of(fault.numbers), corners_of(fault.numbers[9:])
+        if name not in faults and promised(card, a, b, fault.right, label):
+            faults[name] = fault
+    return faults
+
+
+def decimal(x):
+    text = repr(x + 0.0)
+    return text[:-2] if text[-2:] == '.0' else text.replace('.0e', 'e')
+
+
+def cost(numbers):
+    return sum(len(decimal(x)) for x in numbers)
+
+
+def to_bits(x, bits):
+    fraction, exponent = math.frexp(x)
+    return math.ldexp(round(math.ldexp(fraction, bits)), exponent - bits)
+
+
+def to_digits(x, digits):
+    return float(f'{x:.{digits - 1}e}') if digits else 0.0
+
+
+def simpler(numbers):
+    """Pairs with fewer characters: rounded to bits, digits and whole numbers, moved to a corner, with one coordinate rounded."""
+    most = math.frexp(max(map(abs, numbers)))[1]
+    changes = [lambda x, n=n: to_bits(x, n) for n in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)]
+    changes += [lambda x, n=n: to_digits(x, n) for n in range(1, 17)]
+    changes += [lambda x, n=n: float(round(math.ldexp(x, n - most))) for n in range(1, 31)]
+    changes += [lambda x: math.ldexp(x, -most)]
+    found = [[change(x) for x in numbers] for change in changes]
+    found += [[x - numbers[3 * corner + i % 3] for i, x in enumerate(numbers)] for corner in range(6)]
+    found += [[*numbers[:i], to_digits(numbers[i], n), *numbers[i + 1:]] for i in range(18) for n in (0, 1, 2, 3, 5, 8)]
+    found = {tuple(x + 0.0 for x in one) for one in found if all(map(math.isfinite, one))}
+    return sorted((one for one in found if cost(one) < cost(numbers)), key=lambda one: (cost(one), one))
+
+
+def pierces(edge, t):
+    """Whether an edge crosses the inside of a triangle."""
+    edge, t = whole(edge, t)
+    p, along = edge[0], minus(edge[1], edge[0])
+    side = [dot(normal(t), minus(q, t[0])) for q in edge]
+    turns = [dot(along, cross(minus(a, p), minus(b, p))) for a, b in edges(t)]
+    return min(side) < 0 < max(side) and (min(turns) > 0 or max(turns) < 0)
+
+
+def meets(a, b):
+    """Whether two closed triangles have a point in common, exactly."""
+    return any(pierces(edge, t) for s, t in ((a, b), (b, a)) for edge in edges(s)) or within(a, b, 0)
+
+
+def simplest(command, card, faults, options):
+    """Of each fault a pair with the same fault and fewer characters, which is the only one that a process is asked about; none
+    if the fault depends on what was asked before. Each round asks about all simpler pairs in one process."""
+    def err(tried):
+        questions = [Question('pair', ['-', *map(repr, pair)], name) for name, pair in tried]
+        return [(answer.outcome, answer.value) == faults[name].answer
+                for (name, _), answer in zip(tried, ask(command, questions, options)[0])]
+
+    def is_like(name, numbers):
+        a, b, right = corners_of(numbers), corners_of(numbers[9:]), faults[name].right
+        return meets(a, b) == right and promised(card, a, b, right)
+
+    found = {name: fault.numbers for name, fault in faults.items()}
+    better = found
+    for _ in range(ROUNDS):  # each death costs a process, a hang its whole limit
+        tried = [(name, pair) for name, from_ in better.items()
+                 for pair in simpler(from_)[:4 if faults[name].answer[0] in DEATHS else None]]
+        better = {}
+        for (name, pair), errs in zip(tried, err(tried)):
+            if errs and name not in better and is_like(name, pair):
+                better[name] = pair
+        found = {**found, **better}
+    alone = {name: next((pair for pair in (found[name], fault.numbers) if all(err([(name, pair)])[0] for _ in range(2))), None)
+             for name, fault in faults.items()}
+    return {name: pair for name, pair in alone.items() if pair}
 
 
 # ---- tables
@@ -630,26 +730,49 @@ def write_csv(path, name, rows):
                 writer.writerow([name, kind, family, *(row[column] for column in columns), row.worst, int(row['ns']), row.reason])
 
 
+# Of a row, what `--json` writes, by the names in the file. `answered` counts answers whose label is known.
+SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'own missed', 'own wrong', 'refused', 'unanswered',
+                                    'crashed', 'hung', 'no memory', 'not asked', 'twice')},
+         'answered': 'scored', 'differing': 'differs', 'timed': 'answered',
+         **{name: name for name in ('zero', 'not zero', 'negative', 'off', 'points', 'points off')}}
+
+
+def as_json(card, rows, examples):
+    """What the study `libraries` keeps of one kind of question (experiments/studies/libraries.cpp): the card, the sums of all
+    rows, the rows, and the smallest pair of each fault."""
+    total, scores = Row(), []
+    for (kind, family, parameter, label), row in rows.items():
+        if kind == 'mesh':  # its colliding pairs are what counts
+            row['asked'] = row['scored'] = row['colliding']
+        if kind == 'distance':
+            row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
+            row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # points are no part of the answer of others
+        total.add(row)
+        folder = {'pair': 'pairs', 'mesh': 'meshes'}.get(kind, kind)
+        scores.append([f'{folder}/{family}', parameter, label if kind == 'pair' else kind,
+                       *(row[name] for name in SCORE.values()), row.worst, row['ns'], row.reason])
+    out = {'called': card['call'], **{name: card[name] for name in ('library', 'means', 'says', 'source', 'use')}}
+    out.update({name.replace(' ', '_'): total[of] for name, of in SCORE.items()}, promises=card['promises'] == 'yes',
+               reason=total.reason, scores=json.dumps(scores, separators=(',', ':')))
+    return {'counts': out, 'ns': total['ns'], 'examples': examples}
+
+
 def measure(command, options):
-    suite = Suite(options.suite)
+    suite = None if options.only == ['card'] else Suite(options.suite)
     card = card_of(command, ask(command, [Question('card', [])], options)[0][0])
-    asked = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
-    rows = {kind: {} for kind in KINDS}
-    for kind, listed in lists_of(card, suite, asked):
-        for one, answer, differs in zip(listed, *ask_twice(command, [one.question for one in listed], options)):
-            row = rows[kind].setdefault(one.question.family, Row())
-            row.take(answer, differs)
-            if answer.outcome == 'answered' and is_scored(card, one):
-                score(card, one, answer.value, row)
-    for family, names in suite.meshes().items() if 'mesh' in asked else []:
-        row = rows['mesh'].setdefault(family, Row())
-        for one in ask_family(command, card, suite, names, options):
-            row.add(one)
-    print(f"{card['name']}{', ' + card['library'] if card['library'] else ''}, asked about the suite {suite.sum[:8]}; "
-          f"own: as its documentation promises, {card['means']}\n")
-    print('\n'.join(table_of(kind, rows[kind]) for kind in KINDS if rows[kind]), end='')
+    kinds = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
+    rows, examples = rows_of(command, card, suite, kinds, options) if suite else ({}, {})
+    if options.json:
+        json.dump(as_json(card, rows, examples), sys.stdout)
+        return 0
+    families = {kind: {} for kind in KINDS}
+    for (kind, family, *_), row in rows.items():
+        families[kind].setdefault(family, Row()).add(row)
+    print(f"{card['name']}{', ' + card['library'] if card['library'] else ''}, asked about the suite "
+          f"{suite.sum[:8] if suite else ''}; own: as its documentation promises, {card['means']}\n")
+    print('\n'.join(table_of(kind, families[kind]) for kind in KINDS if families[kind]), end='')
     if options.csv:
-        write_csv(options.csv, card['name'], rows)
+        write_csv(options.csv, card['name'], families)
     return 0
 
 
@@ -693,10 +816,11 @@ def main(arguments):
             ('memory', 4096, 'MiB of a process'), ('deaths', 20, 'after so many in a family its rest is not asked'):
         parser.add_argument('--' + name, metavar='N', type=type(value), default=value, help=f'{what}; default {value:g}')
     parser.add_argument('--csv', metavar='FILE', help='also write all rows to this file')
+    parser.add_argument('--json', action='store_true', help='print what the study `libraries` keeps in place of tables')
     options = parser.parse_args(arguments)
     try:
         command = shlex.split(options.command)
-        if not command or not {*(options.only or [])} <= {*KINDS}:
+        if not command or not {*(options.only or [])} <= {*KINDS, 'card'}:
             raise Wrong('COMMAND is empty' if not command else f"--only: choose of {','.join(KINDS)}")
         return check(command, options) if options.check else measure(command, options)
     except KeyboardInterrupt:

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/base/error.h"
 #include "verify/certificate/certificate.h"
@@ -174,28 +175,17 @@ void require_equal(bool one, bool other, const char* oracles, const std::string&
 
 /// Throws Error if two vertices that triangles of the object use are at one position.
 void require_distinct(const Scene& scene, const Object& object, const std::string& where) {
-  std::vector<std::uint32_t> used;
+  std::map<std::array<double, 3>, std::uint32_t> at;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    const auto& corners = scene.triangles[object.first_triangle + t];
-    used.insert(used.end(), corners.begin(), corners.end());
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+      const Vec3& p = scene.vertices[v];
+      if (at.try_emplace({p.x(), p.y(), p.z()}, v).first->second == v) continue;
+      throw Error(where,
+                  fmt::format("object {} has two vertices at ({}, {}, {})", object.name, p.x(),
+                              p.y(), p.z()),
+                  "join them, so that neighbours share an index wherever they share a position");
+    }
   }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto position = [&](std::uint32_t v) {
-    const Vec3& p = scene.vertices[v];
-    return std::array<double, 3>{p.x(), p.y(), p.z()};
-  };
-  std::sort(used.begin(), used.end(),
-            [&](std::uint32_t v, std::uint32_t w) { return position(v) < position(w); });
-  const auto same = std::adjacent_find(
-      used.begin(), used.end(),
-      [&](std::uint32_t v, std::uint32_t w) { return position(v) == position(w); });
-  if (same == used.end()) return;
-  const Vec3& p = scene.vertices[*same];
-  throw Error(
-      where,
-      fmt::format("object {} has two vertices at ({}, {}, {})", object.name, p.x(), p.y(), p.z()),
-      "join them, so that neighbours share an index wherever they share a position");
 }
 
 }  // namespace

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -23,7 +21,6 @@ namespace farcull {
 namespace {
 
 constexpr const char* kReport = "one of the oracles is wrong; report the question";
-constexpr const char* kFormat = "docs/suite.md has the format; write the suite again";
 constexpr std::array<const char*, 4> kKinds = {"distance", "self", "inside", "clash"};
 
 /// How many paths and coordinates follow the label.
@@ -39,31 +36,19 @@ std::string hexadecimal(double value) {
 
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 
-SuiteQuestion parse_question(const std::string& line, const std::string& path, long number) {
-  const auto fail = [&](const std::string& why) { throw Error(path, why, kFormat, number); };
-  SuiteQuestion out;
-  std::istringstream words(line);
-  std::string id, parameter, kind, word;
-  words >> id >> parameter >> kind >> out.label;
-  const auto read_id = parse_number<std::uint64_t>(id);
-  const auto read_parameter = parse_number<double>(parameter);
-  const auto* const at = std::find(kKinds.begin(), kKinds.end(), kind);
-  if (!read_id || !read_parameter || at == kKinds.end() || out.label.empty())
-    fail("the line is not 'ID PARAMETER QUESTION LABEL ARGUMENTS...'");
-  out.id = *read_id;
-  out.parameter = *read_parameter;
-  out.kind = static_cast<SuiteQuestionKind>(at - kKinds.begin());
-  for (std::size_t i = 0; i < kPaths[number_of(out.kind)]; ++i) {
-    words >> out.paths.emplace_back();
-    if (out.paths.back().empty()) fail("a path is missing");
-  }
-  while (words >> word) {
-    const std::optional<double> value = parse_hexadecimal(word);
-    if (!value) fail(quote_token(word) + " is no number such as 0x1.8p+1");
-    out.coordinates.push_back(*value);
-  }
-  if (out.coordinates.size() != kCoordinates[number_of(out.kind)])
-    fail(fmt::format("{} has {} coordinates", kind, kCoordinates[number_of(out.kind)]));
+SuiteQuestion parse_question(const ListLine& line) {
+  SuiteQuestion out{
+      .id = line.id, .parameter = line.parameter, .label = std::string(line.words[3])};
+  const auto* const at = std::find(kKinds.begin(), kKinds.end(), line.words[2]);
+  if (at == kKinds.end()) line.fail(quote_token(line.words[2]) + " is no kind of question");
+  const auto kind = static_cast<std::size_t>(at - kKinds.begin());
+  out.kind = static_cast<SuiteQuestionKind>(kind);
+  if (line.words.size() != 4 + kPaths[kind] + kCoordinates[kind])
+    line.fail(
+        fmt::format("{} has {} paths and {} coordinates", *at, kPaths[kind], kCoordinates[kind]));
+  const auto paths = line.words.begin() + 4;
+  out.paths.assign(paths, paths + static_cast<std::ptrdiff_t>(kPaths[kind]));
+  out.coordinates = line.coordinates(4 + kPaths[kind]);
   return out;
 }
 
@@ -97,22 +82,16 @@ Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bo
   return out;
 }
 
-struct Extent {
-  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-};
-Extent box_of(const Scene& scene, std::size_t o) {
-  Extent out;
+Box box_of(const Scene& scene, std::size_t o) {
+  Box out = Box::empty();
   const Object& object = scene.objects[o];
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    for (const Vec3& p : scene.corners(object.first_triangle + t)) {
-      out.lo = out.lo.cwiseMin(p);
-      out.hi = out.hi.cwiseMax(p);
-    }
+    for (const Vec3& p : scene.corners(object.first_triangle + t)) out.add(p);
   }
   return out;
 }
 
-Vec3 point_in(RandomDraws& draws, const Extent& box) {
+Vec3 point_in(RandomDraws& draws, const Box& box) {
   Vec3 out;
   for (int k = 0; k < 3; ++k) out[k] = draws.between(box.lo[k], box.hi[k]);
   return out;
@@ -120,7 +99,7 @@ Vec3 point_in(RandomDraws& draws, const Extent& box) {
 
 /// Points where a test of a point is hard. The parameter: 0 anywhere in the box; 1 above or below a
 /// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
-Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Extent& box, int parameter) {
+Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];
   const auto corners = scene.corners(object.first_triangle + draws.below(object.triangle_count));
   Vec3 p = point_in(draws, box);
@@ -163,20 +142,11 @@ constexpr std::size_t kDistances = 530;  // of each family of pairs: those of th
 }  // namespace
 
 SuiteQuestions read_questions(const std::string& path) {
-  std::istringstream lines(read_file(path, std::numeric_limits<std::uint64_t>::max()));
   SuiteQuestions out;
-  std::string line, format, version, more;
-  std::getline(lines, line);
-  std::istringstream words(line);
-  words >> format >> version >> out.family;
-  if (format != "farcull-questions" || version != "1" || out.family.empty() || words >> more)
-    throw Error(path, "the first line is not 'farcull-questions 1 FAMILY'", kFormat, 1);
-  for (long number = 2; std::getline(lines, line); ++number) {
-    if (line.starts_with('#')) continue;
-    out.questions.push_back(parse_question(line, path, number));
-    if (out.questions.back().id != out.questions.size() - 1)
-      throw Error(path, "questions do not count from 0", kFormat, number);
-  }
+  const std::string text = read_file(path, std::numeric_limits<std::uint64_t>::max());
+  out.family = read_list(text, path, "farcull-questions", [&](const ListLine& line) {
+    out.questions.push_back(parse_question(line));
+  });
   return out;
 }
 
@@ -225,7 +195,7 @@ SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed) {
     if (!is_closed(alone, 0)) continue;
     closed.push_back(o);
     RandomDraws draws(seed_of_item(seed, mesh.name, o));
-    const Extent box = box_of(alone, 0);
+    const Box box = box_of(alone, 0);
     std::vector<Vec3> points;
     for (int i = 0; i < kPoints; ++i) points.push_back(hard_point(draws, alone, box, i % 4));
     const std::vector<bool> labels = decide_inside(alone, points, mesh.name);
@@ -304,8 +274,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
 }
 
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where) {
-  const std::array<Extent, 2> boxes = {box_of(scene, 0), box_of(scene, 1)};
-  const Extent common{boxes[0].lo.cwiseMax(boxes[1].lo), boxes[0].hi.cwiseMin(boxes[1].hi)};
+  const Box common = intersection(box_of(scene, 0), box_of(scene, 1));
   if ((common.lo.array() >= common.hi.array()).any()) return false;
   constexpr int kTries = 256;
   RandomDraws draws(seed_of_item(0, "clash", 0));

@@ -30,17 +30,18 @@ constexpr std::array<const char*, 10> kKinds = {
     "apart",    "touch-vertex", "touch-edge",      "touch-face",       "crossing",
     "coplanar", "equal",        "neighbours-meet", "neighbours-apart", "?"};
 
-constexpr const char* kFormat = "docs/suite.md has the format; write the suite again";
-constexpr const char* kAgain = "write the suite again, as in farcull suite DIR";
+constexpr const char* kAgain = "docs/suite.md has the format; write the suite again";
 constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();
 
-/// Removes the next word from `line`, with the blanks before it, and returns it. Empty at the end.
-std::string_view take_word(std::string_view& line) {
+std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view kBlanks = " \t\r";
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-  line.remove_prefix(word.size());
-  return word;
+  std::vector<std::string_view> out;
+  for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+    out.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return out;
 }
 
 /// The lines of a text one by one, with their numbers.
@@ -48,10 +49,8 @@ class Lines {
  public:
   /// `name` stands for the file in errors. Throws Error if the text does not end with a newline.
   Lines(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
-    if (text.empty() || text.back() != '\n') {
-      throw Error(name_, "the file does not end with a newline, so its end may be missing",
-                  "write or download it again");
-    }
+    if (text.empty() || text.back() != '\n')
+      throw Error(name_, "the file does not end with a newline, so its end may be missing", kAgain);
   }
 
   /// The next line without its newline; false at the end.
@@ -64,19 +63,25 @@ class Lines {
     return true;
   }
   /// Reads the next line, which must be `key` and one word, and returns the word.
-  std::string word_after(std::string_view key, const char* remedy) {
+  std::string_view word_after(std::string_view key) {
     std::string_view line;
-    if (!next(line) || take_word(line) != key)
-      fail(fmt::format("the line does not begin with '{}'", key), remedy);
-    const std::string out(take_word(line));
-    if (out.empty() || !take_word(line).empty())
-      fail(fmt::format("there is not one word after '{}'", key), remedy);
-    return out;
+    const std::vector<std::string_view> words =
+        next(line) ? words_of(line) : std::vector<std::string_view>{};
+    if (words.size() != 2 || words[0] != key)
+      fail(fmt::format("the line is not '{}' and one word", key));
+    return words[1];
   }
-  long number() const { return number_; }  // of the line read last, from 1
+  template <class T>
+  T number(std::string_view word, const char* called) const {
+    const std::optional<T> value = parse_number<T>(word);
+    if (!value || !std::isfinite(static_cast<double>(*value)))
+      fail(fmt::format("{} is no number for {}", quote_token(word), called));
+    return *value;
+  }
+  long line() const { return number_; }  // the number of the line read last, from 1
   /// Throws Error naming the file and the line read last.
-  [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const {
-    throw Error(name_, reason, remedy, number_);
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw Error(name_, reason, kAgain, number_);
   }
 
  private:
@@ -85,82 +90,50 @@ class Lines {
   long number_ = 0;
 };
 
-template <class T>
-T number(const Lines& lines, std::string_view word, const char* called) {
-  const std::optional<T> value = parse_number<T>(word);
-  if (!value || (std::is_floating_point_v<T> && !std::isfinite(static_cast<double>(*value))))
-    lines.fail(fmt::format("{} is no number for {}", quote_token(word), called), kFormat);
-  return *value;
-}
-
 bool is_corner(char c) { return c >= '0' && c <= '2'; }
 
 /// "0-1,2-0", ascending.
-std::vector<SharedCorner> parse_shared(const Lines& lines, std::string_view word) {
+std::vector<SharedCorner> parse_shared(const ListLine& line, std::string_view word) {
   std::vector<SharedCorner> out;
-  if (word == "-") return out;
-  for (std::string_view rest = word;;) {
-    if (rest.size() < 3 || !is_corner(rest[0]) || rest[1] != '-' || !is_corner(rest[2]) ||
-        (rest.size() > 3 && rest[3] != ',')) {
-      lines.fail(quote_token(word) + " names no shared corners",
-                 "give - for none, or corners from 0 to 2 as in 0-1,2-0");
-    }
+  for (std::string_view rest = word == "-" ? "" : word; !rest.empty();
+       rest.remove_prefix(std::min<std::size_t>(4, rest.size()))) {
+    if (rest.size() < 3 || rest.size() == 4 || !is_corner(rest[0]) || rest[1] != '-' ||
+        !is_corner(rest[2]) || (rest.size() > 3 && rest[3] != ','))
+      line.fail(quote_token(word) + " names no shared corners, as 0-1,2-0 does");
     const SharedCorner next{static_cast<std::uint8_t>(rest[0] - '0'),
                             static_cast<std::uint8_t>(rest[2] - '0')};
-    if (!out.empty() && next <= out.back())
-      lines.fail("the shared corners do not ascend", "sort them, each once");
+    if (!out.empty() && next <= out.back()) line.fail("the shared corners do not ascend");
     out.push_back(next);
-    if (rest.size() == 3) return out;
-    rest.remove_prefix(4);
-  }
-}
-
-Vec3 parse_point(const Lines& lines, std::string_view& line) {
-  Vec3 out;
-  for (int k = 0; k < 3; ++k) {
-    const std::string_view word = take_word(line);
-    if (word.empty()) lines.fail("the line has fewer than 18 coordinates", kFormat);
-    const std::optional<double> value = parse_hexadecimal(word);
-    if (!value) {
-      lines.fail(quote_token(word) + " is no finite hexadecimal number",
-                 "write coordinates as C's %a does, such as 0x1.8p+1");
-    }
-    out[k] = *value;
   }
   return out;
 }
 
-void check_pair(const Lines& lines, const SuitePair& pair) {
-  for (const auto& [i, j] : pair.shared) {
-    if (pair.a[i] == pair.b[j]) continue;
-    lines.fail(fmt::format("corners {}-{} are called shared, but their coordinates differ", i, j),
-               kFormat);
-  }
-  if (pair.kind == SuiteKind::unlabelled) return;
-  const bool of_neighbours =
-      pair.kind == SuiteKind::neighbours_meet || pair.kind == SuiteKind::neighbours_apart;
-  if (of_neighbours != !pair.shared.empty()) {
-    lines.fail(fmt::format("the kind {} is for triangles {} shared corners", to_string(pair.kind),
-                           of_neighbours ? "with" : "without"),
-               kFormat);
-  }
-}
-
-SuitePair parse_pair(const Lines& lines, std::string_view line) {
+SuitePair parse_pair(const ListLine& line) {
+  const std::vector<std::string_view>& words = line.words;
+  if (words.size() != 22) line.fail("the line is not 'ID PARAMETER SHARED KIND' and 18 numbers");
   SuitePair out;
-  out.line = lines.number();
-  out.id = number<std::uint64_t>(lines, take_word(line), "the pair");
-  out.parameter = number<double>(lines, take_word(line), "the parameter");
-  out.shared = parse_shared(lines, take_word(line));
-  const std::string_view kind = take_word(line);
-  const std::optional<SuiteKind> known = parse_suite_kind(kind);
-  if (!known) lines.fail(quote_token(kind) + " is no kind of contact", kFormat);
+  out.line = line.number;
+  out.id = line.id;
+  out.parameter = line.parameter;
+  out.shared = parse_shared(line, words[2]);
+  const std::optional<SuiteKind> known = parse_suite_kind(words[3]);
+  if (!known) line.fail(quote_token(words[3]) + " is no kind of contact");
   out.kind = *known;
-  for (auto* t : {&out.a, &out.b}) {
-    for (Vec3& p : *t) p = parse_point(lines, line);
+  const std::vector<double> x = line.coordinates(4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.a[i] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
+    out.b[i] = {x[3 * i + 9], x[3 * i + 10], x[3 * i + 11]};
   }
-  if (!take_word(line).empty()) lines.fail("the line has more than 18 coordinates", kFormat);
-  check_pair(lines, out);
+  for (const auto& [i, j] : out.shared) {
+    if (out.a[i] != out.b[j])
+      line.fail(fmt::format("corners {}-{} are called shared, but their coordinates differ", i, j));
+  }
+  const bool of_neighbours =
+      out.kind == SuiteKind::neighbours_meet || out.kind == SuiteKind::neighbours_apart;
+  if (out.kind != SuiteKind::unlabelled && of_neighbours == out.shared.empty()) {
+    line.fail(fmt::format("the kind {} is for triangles {} shared corners", words[3],
+                          of_neighbours ? "with" : "without"));
+  }
   return out;
 }
 
@@ -169,18 +142,13 @@ SuitePair parse_pair(const Lines& lines, std::string_view line) {
 void read_properties(const std::string& path, SuiteMesh& mesh) {
   const std::string text = read_file(path, kAnyBytes);
   Lines lines(text, path);
-  const std::string self = lines.word_after("self", kFormat);
-  if (self != "yes" && self != "no")
-    lines.fail(quote_token(self) + " is neither yes nor no", kFormat);
+  const std::string_view self = lines.word_after("self");
+  if (self != "yes" && self != "no") lines.fail(quote_token(self) + " is neither yes nor no");
   mesh.self = self == "yes";
-  const std::string parameter = lines.word_after("parameter", kFormat);
-  const std::optional<double> number = parse_number<double>(parameter);
-  if (!number) lines.fail(quote_token(parameter) + " is no number", kFormat);
-  mesh.parameter = *number;
-  mesh.family = lines.word_after("family", kFormat);
+  mesh.parameter = lines.number<double>(lines.word_after("parameter"), "the parameter");
+  mesh.family = lines.word_after("family");
   for (std::string_view line; lines.next(line);) {
-    if (!line.starts_with("# "))
-      lines.fail("after three lines there is one that is no comment", kFormat);
+    if (!line.starts_with("# ")) lines.fail("after three lines there is one that is no comment");
     if (!mesh.note.empty()) mesh.note += '\n';
     mesh.note += line.substr(2);
   }
@@ -195,7 +163,7 @@ Scene read_objects(const std::string& folder, const SuiteMesh& mesh) {
     const Mesh object = load_mesh(path);
     for (std::size_t t = 0; t < object.triangles.size(); ++t) {
       if (object.source_face[t] != t)
-        throw Error(path, fmt::format("face {} is no triangle", object.source_face[t]), kFormat);
+        throw Error(path, fmt::format("face {} is no triangle", object.source_face[t]), kAgain);
     }
     builder.add(object, std::to_string(i), Split::kNone, {}, mesh.self);
   }
@@ -208,23 +176,23 @@ SuiteMeshPair parse_row(const Lines& lines, std::string_view line, const SuiteMe
     const std::string_view cell = line.substr(0, line.find(','));
     const std::optional<std::uint32_t> value = parse_number<std::uint32_t>(cell);
     if (!value || (i < 4) != (cell.size() < line.size()))
-      lines.fail("the line is not five whole numbers with commas between them", kFormat);
+      lines.fail("the line is not five whole numbers with commas between them");
     cells[i] = *value;
     line.remove_prefix(std::min(line.size(), cell.size() + 1));
   }
   const auto triangle = [&](std::uint32_t object, std::uint32_t row) {
     if (object >= mesh.scene.objects.size() || row >= mesh.scene.objects[object].triangle_count)
-      lines.fail(fmt::format("object {} has no triangle {}", object, row), kFormat);
+      lines.fail(fmt::format("object {} has no triangle {}", object, row));
     return mesh.scene.objects[object].first_triangle + row;
   };
   const SuiteMeshPair out{{triangle(cells[0], cells[1]), triangle(cells[2], cells[3])}, cells[4]};
-  if (out.pair.a >= out.pair.b) lines.fail("the first triangle is not before the second", kFormat);
+  if (out.pair.a >= out.pair.b) lines.fail("the first triangle is not before the second");
   const bool one_object = cells[0] == cells[2];
   if (one_object && !mesh.self)
-    lines.fail("the triangles are of one object, which is not tested against itself", kFormat);
+    lines.fail("the triangles are of one object, which is not tested against itself");
   const std::uint32_t shared = one_object ? shared_vertices(mesh.scene, out.pair) : 0;
   if (out.shared != shared)
-    lines.fail(fmt::format("the triangles share {} vertices, not {}", shared, out.shared), kFormat);
+    lines.fail(fmt::format("the triangles share {} vertices, not {}", shared, out.shared));
   return out;
 }
 
@@ -234,40 +202,23 @@ void read_colliding(const std::string& path, SuiteMesh& mesh) {
   std::string_view line;
   lines.next(line);
   if (line != "object_a,triangle_a,object_b,triangle_b,shared")
-    lines.fail("the first line is not object_a,triangle_a,object_b,triangle_b,shared", kFormat);
+    lines.fail("the first line is not object_a,triangle_a,object_b,triangle_b,shared");
   while (lines.next(line)) {
     const SuiteMeshPair row = parse_row(lines, line, mesh);
     if (!mesh.pairs.empty() && !(mesh.pairs.back().pair < row.pair))
-      lines.fail("the pairs do not ascend", kFormat);
+      lines.fail("the pairs do not ascend");
     mesh.pairs.push_back(row);
   }
 }
 
 // suite.txt.
 
-std::uint64_t whole(const Lines& lines, std::string_view word) {
-  const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(word);
-  if (!value) lines.fail(quote_token(word) + " is no whole number", kAgain);
-  return *value;
-}
-
-bool is_sum(std::string_view word) {
-  return word.size() == 64 && word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-/// Whether the path is relative to the folder and does not lead out of it.
-bool is_inner_path(std::string_view path) {
-  return !path.empty() && path[0] != '/' && path.find("..") == std::string_view::npos;
-}
-
-SuiteIndex::File parse_file(const Lines& lines, std::string_view line) {
-  SuiteIndex::File out;
-  out.path = take_word(line);
-  out.bytes = whole(lines, take_word(line));
-  out.sha256 = take_word(line);
-  out.items = whole(lines, take_word(line));
-  if (!is_inner_path(out.path) || !is_sum(out.sha256) || !take_word(line).empty())
-    lines.fail("the line is not 'file PATH BYTES SHA256 ITEMS'", kAgain);
+SuiteIndex::File parse_file(const Lines& lines, const std::vector<std::string_view>& words) {
+  if (words.size() != 5) lines.fail("the line is not 'file PATH BYTES SHA256 ITEMS'");
+  const SuiteIndex::File out{std::string(words[1]), lines.number<std::uint64_t>(words[2], "bytes"),
+                             std::string(words[3]), lines.number<std::uint64_t>(words[4], "items")};
+  if (out.path.starts_with('/') || out.path.find("..") != std::string::npos)
+    lines.fail("the path leads out of the folder");
   return out;
 }
 
@@ -285,25 +236,44 @@ bool collides(SuiteKind kind) {
   return kind != SuiteKind::apart && kind != SuiteKind::neighbours_apart;
 }
 
-SuitePairs parse_pairs(std::string_view text, const std::string& name) {
+void ListLine::fail(const std::string& reason) const { throw Error(list, reason, kAgain, number); }
+
+std::vector<double> ListLine::coordinates(std::size_t from) const {
+  std::vector<double> out;
+  for (; from < words.size(); ++from) {
+    const std::optional<double> value = parse_hexadecimal(words[from]);
+    if (!value)
+      fail(quote_token(words[from]) + " is no finite hexadecimal number, such as 0x1.8p+1");
+    out.push_back(*value);
+  }
+  return out;
+}
+
+std::string read_list(std::string_view text, const std::string& name, const std::string& kind,
+                      const std::function<void(const ListLine&)>& take) {
   Lines lines(text, name);
-  SuitePairs out;
   std::string_view line;
   lines.next(line);
-  if (take_word(line) != "farcull-pairs" || take_word(line) != "1")
-    lines.fail("the first line is not 'farcull-pairs 1 FAMILY'", "give a file of pairs, version 1");
-  out.family = take_word(line);
-  if (out.family.empty() || !take_word(line).empty())
-    lines.fail("the first line is not 'farcull-pairs 1 FAMILY'", "give a file of pairs, version 1");
-  while (lines.next(line)) {
+  const std::vector<std::string_view> head = words_of(line);
+  if (head.size() != 3 || head[0] != kind || head[1] != "1")
+    lines.fail(fmt::format("the first line is not '{} 1 FAMILY'", kind));
+  for (std::uint64_t id = 0; lines.next(line);) {
     if (line.starts_with('#')) continue;
-    SuitePair pair = parse_pair(lines, line);
-    if (pair.id != out.pairs.size()) {
-      lines.fail(fmt::format("the pair is called {} and should be {}", pair.id, out.pairs.size()),
-                 "pairs count from 0; write the suite again if a line is missing");
-    }
-    out.pairs.push_back(std::move(pair));
+    ListLine out{name, lines.line(), id, 0, words_of(line)};
+    if (out.words.size() < 4) lines.fail("the line has fewer than four words");
+    if (out.words[0] != std::to_string(id))
+      lines.fail(fmt::format("the line is called {} and should be {}", out.words[0], id));
+    out.parameter = lines.number<double>(out.words[1], "the parameter");
+    take(out);
+    ++id;
   }
+  return std::string(head[2]);
+}
+
+SuitePairs parse_pairs(std::string_view text, const std::string& name) {
+  SuitePairs out;
+  out.family = read_list(text, name, "farcull-pairs",
+                         [&](const ListLine& line) { out.pairs.push_back(parse_pair(line)); });
   return out;
 }
 
@@ -338,29 +308,22 @@ SuiteIndex parse_suite(std::string_view text, const std::string& name) {
   SuiteIndex out;
   std::string_view line;
   lines.next(line);
-  if (line != "farcull-suite 1")
-    lines.fail("the first line is not 'farcull-suite 1'", "give the folder of a suite, version 1");
-  out.seed = whole(lines, lines.word_after("seed", kAgain));
-  out.size = lines.word_after("size", kAgain);
-  out.licence = lines.word_after("licence", kAgain);
-  while (lines.next(line)) {
-    const std::size_t before = static_cast<std::size_t>(line.data() - text.data());
-    const std::string_view key = take_word(line);
-    if (key == "file") {
-      SuiteIndex::File file = parse_file(lines, line);
-      if (!out.files.empty() && !(out.files.back().path < file.path))
-        lines.fail("the paths do not ascend", kAgain);
-      out.files.push_back(std::move(file));
-      continue;
-    }
-    if (key != "sum") lines.fail(quote_token(key) + " is no word of a suite", kAgain);
-    out.sum = take_word(line);
-    if (out.sum != sha256(text.substr(0, before)))
-      lines.fail("the sum is not that of the lines before it", kAgain);
-    if (lines.next(line)) lines.fail("there are lines after the sum", kAgain);
-    return out;
+  if (line != "farcull-suite 1") lines.fail("the first line is not 'farcull-suite 1'");
+  out.seed = lines.number<std::uint64_t>(lines.word_after("seed"), "the seed");
+  out.size = lines.word_after("size");
+  out.licence = lines.word_after("licence");
+  while (lines.next(line) && line.starts_with("file ")) {
+    SuiteIndex::File file = parse_file(lines, words_of(line));
+    if (!out.files.empty() && !(out.files.back().path < file.path))
+      lines.fail("the paths do not ascend");
+    out.files.push_back(std::move(file));
   }
-  lines.fail("the last line is not 'sum SHA256', so the end of the file is missing", kAgain);
+  const auto before = static_cast<std::size_t>(line.data() - text.data());
+  if (line != "sum " + sha256(text.substr(0, before)))
+    lines.fail("the sum is not that of the lines before it");
+  out.sum = line.substr(4);
+  if (lines.next(line)) lines.fail("there are lines after the sum");
+  return out;
 }
 
 SuiteIndex read_suite(const std::string& folder) {

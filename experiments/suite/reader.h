@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -124,6 +125,25 @@ SuiteIndex parse_suite(std::string_view text, const std::string& name);
 /// Throws Error naming the first file of the suite that is missing or has another length or sum; or
 /// the first file below pairs/ and meshes/ that the suite does not name.
 void check_files(const std::string& folder, const SuiteIndex& index);
+
+/// A line of a list of pairs or of questions that is no comment.
+struct ListLine {
+  std::string list;  // the name of the file
+  long number = 0;   // from 1
+  std::uint64_t id = 0;
+  double parameter = 0;
+  std::vector<std::string_view> words;  // all of the line; at least four
+
+  /// The words from that one on as doubles.
+  std::vector<double> coordinates(std::size_t from) const;
+  /// Throws Error naming the file and the line.
+  [[noreturn]] void fail(const std::string& reason) const;
+};
+/// Calls take() for each line of a list whose first line is `KIND 1 FAMILY`, and returns the
+/// family. Throws Error for another first line, a text that does not end with a newline, and IDs
+/// that do not count from 0.
+std::string read_list(std::string_view text, const std::string& name, const std::string& kind,
+                      const std::function<void(const ListLine&)>& take);
 
 /// A finite double as C's %a prints it, such as 0x1.8p+1; empty for anything else.
 std::optional<double> parse_hexadecimal(std::string_view word);

@@ -3,15 +3,21 @@
 Counts of pairs of triangles and of pairs of meshes are never added: the first are questions, each with its answer, the
 second are the parts of one answer about a mesh.
 """
+import csv
 import os
 from dataclasses import dataclass
 
 from frame import *  # noqa: F403: a chapter uses most of it
 from tables import table_csv
 
-# The counts of a part of a row, in the order of experiments/suite/study.py.
-SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
-         "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
+# The counts of a part of a row, in the order of experiments/suite/ask.py (SCORE).
+SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered", "crashed", "hung",
+         "no_memory", "not_asked", "twice", "answered", "differing", "timed", "zero", "not_zero", "negative", "off", "points",
+         "points_off"]
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.csv"), encoding="utf-8") as known_file:
+    # How each contestant of ours is called and what its documentation says. Others say it on their cards.
+    DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
+CARD = ["library", "means", "called", "says", "source", "use"]
 FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
@@ -21,17 +27,29 @@ QUESTIONS = ["distance", "self", "inside", "clash"]
 # ---- rows and their sums
 
 def with_families(rows):
-    """The rows with the columns family (`pairs/random` for `small/pairs/random`) and asks (`pairs`, `meshes` or one of
-    QUESTIONS), and the columns of text without gaps."""
-    return rows.assign(family=[scene.partition("/")[2] for scene in rows.scene],
-                       asks=[scene.split("/")[1] for scene in rows.scene], **{
-        name: [text(row, name) for row in rows.itertuples()]
-        for name in ("library", "means", "call", "says", "source", "use", "scores")})
+    """A row for each family of a row: its contestant, with the sums of its parts, and the parts. `asks` is pairs, meshes or
+    one of QUESTIONS; `family` is as in pairs/random."""
+    out = []
+    for row in rows.itertuples():
+        families = {}
+        for part in json.loads(text(row, "scores") or "[]"):
+            if not isinstance(part, list) or len(part) != len(SCORE) + 6:
+                raise Damaged(f"'{part}' is no score of this version of farcull")
+            families.setdefault(part[0], []).append(
+                dict(zip(["parameter", "kind", *SCORE, "worst", "ns", "reason"], part[1:])))
+        for family, parts in families.items():
+            known = DOCUMENTED.get(row.method, {})
+            out.append({"method": row.method, "family": family, "asks": family.partition("/")[0], "parts": parts,
+                        "promises": flag(row, "promises"),
+                        **{name: known.get(name) or text(row, name) for name in CARD},
+                        **{name: sum(part[name] for part in parts) for name in SCORE},
+                        "worst": max(part["worst"] for part in parts), "total_ms": sum(part["ns"] for part in parts) / 1e6})
+    return pd.DataFrame(out, columns=["method", "family", "asks", "parts", "promises", *CARD, *SCORE, "worst", "total_ms"])
 
 
 def meshes_of(rows):
-    """How many meshes the rows have, each with a part of its own in `scores`."""
-    return sum(len(row.scores.split(";")) for row in rows.itertuples() if row.scores)
+    """How many meshes the rows have, each with a part of its own."""
+    return sum(map(len, rows.parts))
 
 
 def totals(rows, *names):
@@ -64,14 +82,8 @@ def answers(rows, pairs, own):
 
 def parts_of(rows):
     """The parts of the rows, by contestant, parameter and kind of contact."""
-    out = []
-    for row in rows.itertuples():
-        for score in row.scores.split(";") if row.scores else []:
-            words = score.partition("|")[0].split()
-            if "|" not in score or len(words) != len(SCORE) + 3:
-                raise Damaged(f"'{score}' is no score of this version of farcull")
-            out.append([row.method, *words[:2], *map(int, words[2:-1])])
-    return pd.DataFrame(out, columns=["contestant", "parameter", "kind", *SCORE]).astype({name: int for name in SCORE})
+    return pd.DataFrame([{"contestant": row.method, **part} for row in rows.itertuples() for part in row.parts],
+                        columns=["contestant", "parameter", "kind", *SCORE])
 
 
 def rates_of_kinds(rows):
@@ -187,7 +199,7 @@ def questions_table(rows):
 
 
 def calls_table(rows):
-    names = ["method", "library", "call", "says", "source", "use"]
+    names = ["method", "library", "called", "says", "source", "use"]
     return Table(
         "libraries-calls",
         "How each was called, what its documentation says of exactness and of touching, where it says that, and where "
@@ -327,29 +339,21 @@ class Example:
 
 
 def examples_of(rows):
-    """For each contestant and fault the example whose corners take the fewest characters."""
-    found = [Example(contestant, fault, row.family, line) for contestant, of in by(rows, "method")
-             for fault, end in FAULTS.items() for row in of.itertuples() if (line := text(row, "example_" + end))]
-    best = {}
-    for example in sorted(found, key=lambda example: len(example.words)):
-        best.setdefault((example.contestant, example.fault), example)
-    return [best[key] for key in dict.fromkeys((one.contestant, one.fault) for one in found)]
+    return [Example(row.method, fault, *example.split(" ", 1)) for row in rows.itertuples() if text(row, "library") != "farcull"
+            for fault, end in FAULTS.items() if " " in (example := text(row, "example_" + end))]
 
 
-def add_examples(chapter, rows):
-    """rows: those about pairs of triangles, of contestants that are not ours. Adds nothing where they hold no example.
-    Raises ValueError where an example is no pair. Returns the examples."""
-    examples = examples_of(rows)
-    if examples:
-        add_file(chapter, Table(
-            "libraries-examples", "", columns(["contestant", "fault", "family", "kind", "coordinates"], []),
-            [[one.contestant, one.fault, one.family, one.kind, one.words] for one in examples]))
-        chapter.files["libraries-examples.txt"] = (
-            "farcull-pairs 1 libraries-examples\n# Pairs at which libraries err, minimized: whose fault, which, and the "
-            "family that the pair was made from.\n" + "".join(
-                f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
-                for number, one in enumerate(examples)))
-    return examples
+def add_examples(chapter, examples):
+    if not examples:
+        return
+    add_file(chapter, Table(
+        "libraries-examples", "", columns(["contestant", "fault", "family", "kind", "coordinates"], []),
+        [[one.contestant, one.fault, one.family, one.kind, one.words] for one in examples]))
+    chapter.files["libraries-examples.txt"] = (
+        "farcull-pairs 1 libraries-examples\n# Pairs at which libraries err, minimized: whose fault, which, and the "
+        "family that the pair was made from.\n" + "".join(
+            f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
+            for number, one in enumerate(examples)))
 
 
 # ---- the page of cases: pairs in three dimensions, with what each contestant said
@@ -403,13 +407,6 @@ def add_file(chapter, table):
 
 def fill(chapter, study):
     rows = with_families(study.rows)
-    pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
-    add_ours(chapter, rows)
-    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions
-        if of.library.nunique() > 1:
-            chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
-    for asks in ("pairs", "meshes"):
-        add_others(chapter, rows, asks)
     chapter.limits = [
         "The families are made to be hard. A rate here is no rate on the scenes of a user: the table says which "
         "questions a contestant gets wrong, not how often they come.",
@@ -418,16 +415,26 @@ def fill(chapter, study):
         "How each was called, what its documentation says, and all rates by kind and family are in `tables/libraries-*.csv`. "
         "`libraries-cases.html` shows pairs to turn in three dimensions, with what each contestant said."]
     add_gaps(chapter, study)
-    if len(rows):
-        chapter.tables += [trust_table(rows), uses_table(rows)]
-        for table in (calls_table(rows), families_table(rows[rows.asks.isin(["pairs", "meshes"])])):
-            add_file(chapter, table)
+    if rows.empty:
+        return
+    pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
+    add_ours(chapter, rows)
+    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions
+        if of.library.nunique() > 1:
+            chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
+    for asks in ("pairs", "meshes"):
+        add_others(chapter, rows, asks)
+    chapter.tables += [trust_table(rows), uses_table(rows)]
+    files = [calls_table(rows), families_table(rows[rows.asks.isin(["pairs", "meshes"])])]
     if len(pairs):
-        for table in (overview(pairs, True), kinds_table(pairs)):
-            add_file(chapter, table)
+        files += [overview(pairs, True), kinds_table(pairs)]
         chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
-        add_cases(chapter, pairs, add_examples(chapter, pairs[pairs.library != "farcull"]), study.folder)
+        examples = examples_of(study.rows)
+        add_examples(chapter, examples)
+        add_cases(chapter, pairs, examples, study.folder)
     if len(meshes):
-        add_file(chapter, overview(meshes, False))
+        files.append(overview(meshes, False))
     if len(distances):
-        add_file(chapter, questions_table(distances))
+        files.append(questions_table(distances))
+    for table in files:
+        add_file(chapter, table)

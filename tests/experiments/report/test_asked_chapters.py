@@ -2,11 +2,14 @@
 import csv
 import importlib
 import io
+import json
 
 import pytest
 
 from made_up import chapter_of, figure, findings, row, study_of, table
 from frame import Chapter
+
+libraries_chapter = importlib.import_module("chapters.libraries")
 
 
 # ---- proximity
@@ -101,29 +104,30 @@ PAIR = "0 0 - crossing " + " ".join(x.hex() for x in (
     0., 0., 0., 1., 0., 0., 0., 1., 0., .25, .25, -1., .25, .25, 1., 1e300, 2., 1.))
 
 
-def of_pairs(ours=False, missed=0, **more):
+def counts_of(family, kind, card, counts, parameter="0"):
+    """Counts of one part."""
+    part = [family, parameter, kind, *(counts.get(name, 0) for name in libraries_chapter.SCORE), 0, 1e6, ""]
+    return {"promises": False, "library": "x 1", "means": "closed", "scores": json.dumps([part]), **card}
+
+
+def of_pairs(ours=False, missed=0, card=(), parameter="0", family="pairs/random", **more):
     """Of 1,000 crossing pairs it refuses 500 and answers 500."""
-    refused = 0 if ours else 500
-    return {"asked": 1000, "answered": 500, "timed": 500, "missed": missed, "wrong": 0, "own_asked": 500,
-            "own_missed": missed, "own_wrong": 0, "refused": refused, "promises": ours,
-            "library": "farcull" if ours else "x 1", "means": "closed",
-            "scores": f"0 crossing 1000 500 {missed} 0 500 {missed} 0 {refused} 0 0 0 0 0 0 0 0|", **more}
+    return counts_of(family, "crossing", {"promises": ours, "library": "farcull" if ours else "x 1", **dict(card)}, {
+        "asked": 1000, "answered": 500, "timed": 500, "missed": missed, "own_asked": 500, "own_missed": missed,
+        "refused": 0 if ours else 500, **more}, parameter)
 
 
 def of_mesh(ours=False, **more):
     """Of 100 colliding pairs it misses 10, and it reports 30 that are apart. Its documentation speaks of 50 of the
     colliding pairs, 5 of the missed and 20 of those apart."""
     bad = {"missed": 10, "wrong": 30, "own_missed": 5, "own_wrong": 20}
-    return {"asked": 100, "answered": 100, "own_asked": 50, **({name: 0 for name in bad} if ours else bad),
-            "promises": ours, "library": "farcull" if ours else "x 1", "means": "crossing", "scores": f"0 mesh{' 0' * 16}|",
-            **more}
+    return counts_of("meshes/some", "mesh", {"promises": ours, "library": "farcull" if ours else "x 1", "means": "crossing"},
+                     {"asked": 100, "answered": 100, "own_asked": 50, **({} if ours else bad), **more})
 
 
 def libraries(*asked_of):
     """asked_of: pairs of a contestant and its counts."""
-    return chapter_of("libraries", [
-        row("small/pairs/random" if "timed" in counts else f"small/meshes/{at}", name, counts, 1.0)
-        for at, (name, counts) in enumerate(asked_of)])
+    return chapter_of("libraries", [row(f"small/{at}", name, counts, 1.0) for at, (name, counts) in enumerate(asked_of)])
 
 
 def cells(chapter, name):
@@ -141,7 +145,7 @@ def test_rates_of_libraries_are_of_what_was_answered():
     assert "1 of 1 libraries and tests gave wrong answers where their documentation promises the answer: " \
         "theirs (5 of 500)." in findings(chapter)
     with pytest.raises(ValueError, match="is no score"):
-        libraries(("theirs", of_pairs(scores="0 crossing 1|")))
+        libraries(("theirs", {"scores": '[["pairs/random", 0, "crossing", 1]]'}))
 
 
 @pytest.mark.parametrize("more, broken", [
@@ -180,18 +184,19 @@ def test_pairs_and_pairs_of_meshes_are_not_added():
 def test_contestants_are_sorted_into_those_that_err_or_do_not():
     said = findings(libraries(
         ("good", of_pairs()), ("bad", of_pairs(missed=5)), ("worse", of_pairs(missed=9, differing=3, twice=34)),
-        ("dead", of_pairs(crashed=1, hung=1)), ("cullide", of_pairs(library="farcull", missed=7))))
+        ("dead", of_pairs(crashed=1, hung=1)), ("cullide", of_pairs(card={"library": "farcull"}, missed=7))))
     for part in ("no answer was wrong of good and dead.",
                  "2 of 4 libraries and tests gave wrong", "most often worse (9 of 500), least often bad (5 of 500);"):
         assert part in said
     assert "more than one version" not in said
     assert "The rows of theirs are of more than one version: x 1 and x 2." in findings(
-        libraries(("theirs", of_pairs()), ("theirs", of_pairs(library="x 2"))))
+        libraries(("theirs", of_pairs()), ("theirs", of_pairs(card={"library": "x 2"}))))
 
 
 def test_examples_are_a_table_and_a_file_of_the_suite():
-    chapter = libraries(("theirs", of_pairs(missed=5, example_missed=PAIR)), ("others", of_pairs()),
-                        ("cullide", of_pairs(library="farcull", missed=5, example_missed=PAIR)))
+    example = {"example_missed": "pairs/random " + PAIR}
+    chapter = libraries(("theirs", of_pairs(missed=5, card=example)), ("others", of_pairs()),
+                        ("cullide", of_pairs(missed=5, card={"library": "farcull", **example})))
     assert [*cells(chapter, "libraries-examples").values()] == [
         "theirs", "missed", "pairs/random", "crossing",
         "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]
@@ -200,13 +205,14 @@ def test_examples_are_a_table_and_a_file_of_the_suite():
     for wrong in ("0 0 - crossing 1 2 3", PAIR.replace("crossing", "guess"), PAIR + " 0x1p+0",
                   PAIR.replace("0x0.0p+0", "nan", 1)):
         with pytest.raises(ValueError, match="the example of liars is no pair"):
-            libraries(("liars", of_pairs(example_missed=wrong)))
+            libraries(("liars", of_pairs(card={"example_missed": "pairs/random " + wrong})))
 
 
 def test_the_table_says_whom_to_trust_for_what():
     chapter = chapter_of("libraries", [
-        row("small/pairs/random", "theirs", of_pairs(missed=5), 1.0), row("small/pairs/random", "boxes", of_pairs(True), 1.0),
-        row("small/distance/all", "theirs", {"asked": 9, "answered": 7, "wrong": 2, "refused": 2, "library": "x 1", "zero": 2}, 1.0)])
+        row("small/pair", "theirs", of_pairs(missed=5), 1.0), row("small/pair", "boxes", of_pairs(True), 1.0),
+        row("small/distance", "theirs", counts_of("distance/random", "distance", {}, {
+            "asked": 9, "answered": 7, "wrong": 2, "refused": 2, "zero": 2}), 1.0)])
     found = next(table for table in chapter.tables if table.name == "libraries-trust")
     assert [name for name, _ in found.columns] == ["contestant", "library", "pairs", "distance", "ns a pair"]
     assert [line[:4] for line in found.rows] == [["boxes", "farcull", "0 of 500", ""],
@@ -215,8 +221,8 @@ def test_the_table_says_whom_to_trust_for_what():
 
 
 def test_a_wrong_distance_of_ours_is_broken():
-    wrong = {"asked": 9, "answered": 9, "wrong": 1, "promises": True, "library": "farcull"}
-    said = findings(chapter_of("libraries", [row("small/distance/all", "exact", wrong, 1.0)]))
+    wrong = counts_of("distance/random", "distance", {"promises": True, "library": "farcull"}, {"asked": 9, "answered": 9, "wrong": 1})
+    said = findings(libraries(("exact", wrong)))
     assert said.startswith("BROKEN: exact: 1 of 9 other questions answered wrongly")
 
 
@@ -224,8 +230,8 @@ def test_the_page_of_cases_has_what_each_contestant_said(tmp_path):
     (tmp_path / "suite/pairs").mkdir(parents=True)
     (tmp_path / "suite/pairs/reported.txt").write_text(
         "farcull-pairs 1 reported\n# source: a/b#1\n# expected: They meet.\n# why: A line.\n" + PAIR.replace("0 0", "0 7", 1) + "\n")
-    scores = f"7 crossing 1 1 1{' 0' * 12} 5|"
-    study = study_of("libraries", [row("small/pairs/reported", "theirs", of_pairs(missed=1, scores=scores), 1.0)])
+    said = of_pairs(missed=1, parameter="7", family="pairs/reported")
+    study = study_of("libraries", [row("small/pair", "theirs", said, 1.0)])
     study.folder = str(tmp_path)
     chapter = Chapter("libraries", "title", "question?", "command")
     importlib.import_module("chapters.libraries").fill(chapter, study)
@@ -236,8 +242,8 @@ def test_the_page_of_cases_has_what_each_contestant_said(tmp_path):
 
 def test_libraries_are_rows_from_the_best_to_the_worst():
     """Ours are marked, and wrong answers count only where the documentation promises the answer."""
-    chapter = libraries(("boxes", of_pairs(True)), ("a", of_pairs(missed=3, library="FCL 1")),
-                        ("b", of_pairs(missed=400, own_missed=2, library="CGAL 1")))
+    chapter = libraries(("boxes", of_pairs(True)), ("a", of_pairs(missed=3, card={"library": "FCL 1"})),
+                        ("b", of_pairs(missed=400, own_missed=2, card={"library": "CGAL 1"})))
     rows = [[(s.name, s.x[0]) for s in panel.strip] for panel in figure(chapter, "libraries-time").panels]
     assert rows[0] == [("boxes (ours)", 0), ("b", 4000), ("a", 6000)]
     assert [name for name, _ in rows[2]] == ["boxes (ours)", "b", "a"]

@@ -207,9 +207,7 @@ Study asking(const std::string& version, int fails_from = kPoints + 1) {
   out.measure = [=](const Point& point, Lab&) {
     if (number_of(point) >= fails_from) throw Error("device", "is lost", "try again");
     if (version.empty()) return PointResult{.device = "none", .left_out = "it is not there"};
-    LibraryCounts counts;
-    counts.library = version;
-    return PointResult{.counts = counts, .device = "process"};
+    return PointResult{.counts = LibraryCounts{{{"library", version}}}, .device = "process"};
   };
   return out;
 }
@@ -316,7 +314,7 @@ TEST(Versions, ShardsOfTwoAreNotMerged) {
 // The study itself asks the programs of contestants for their versions.
 TEST(Versions, OfTheStudyAreThoseThatItsProgramsSay) {
   const Study study = study_named("libraries");
-  const Point point = LibraryPoint{.contestant = "gts", .family = "random"};
+  const Point point = LibraryPoint{.contestant = "gts"};
   const auto said = [&](const std::string& folder) {
     ::setenv("FARCULL_CONTESTANTS", folder.c_str(), 1);
     std::string out = study.library(point);

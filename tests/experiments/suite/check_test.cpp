@@ -138,8 +138,8 @@ TEST(SuiteReader, NamesTheLineOfAMalformedPair) {
   expect("0x1.8p+1", "0x1.8g+1", 3, "no finite hexadecimal number");
   expect("0x1.8p+1", "3", 3, "no finite hexadecimal number");
   expect("0x1.8p+1", "0x1p+2000", 3, "no finite hexadecimal number");
-  expect(" 0x1p-40", "", 5, "fewer than 18");
-  expect("0x1p-40", "0x1p-40 0x0p+0", 5, "more than 18");
+  expect(" 0x1p-40", "", 5, "18 numbers");
+  expect("0x1p-40", "0x1p-40 0x0p+0", 5, "18 numbers");
 }
 
 TEST(SuiteReader, RefusesAFileThatIsCut) {
