@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import os
+import re
 import tempfile
 
 import farcull
@@ -145,7 +146,7 @@ def scene(rng, spoil):
                 file.write(forgery)
             names += [f"{FOLDER.name}/{k}.json", FOLDER.name + "/scene"]
         status, out, err = call(*names, program=VERIFIED)
-        verdicts = [line.split(":")[0] for line in out.splitlines() if line.split(":")[0] in ("proved", "refuted", "not proved")]
+        verdicts = re.findall("^verified   (proved|refuted|not proved):", out, re.MULTILINE)
         require(len(verdicts) == len(texts) and all(v in right for v, (_, right) in zip(verdicts, texts)),
                 "verdicts of the proved checker", verdicts, [right for _, right in texts], out, err)
     if rng.random() < 0.02 or spoil.fault == "a tile left out":

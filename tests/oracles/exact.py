@@ -68,6 +68,8 @@ def within(p, q, square, unit):
     product is unit * (3 * 2^22)^2 < 2^60."""
     out = meet(p, q)
     k = np.flatnonzero(~out)
+    if not len(k):
+        return out
     p, q = p[k], q[k]
     found = np.zeros(len(k), bool)
 

@@ -4,7 +4,7 @@ import farcull
 import numpy as np
 
 from . import exact
-from .lab import all_pairs, dropped, require, rotation, rows, soup, starts_of
+from .lab import all_pairs, as_tuples, dropped, indexed, require, rotation, rows, soup, starts_of
 
 FAULTS = ["a dropped pair", "a pair too many"]
 LONG, WIDE = 32, 6
@@ -55,19 +55,23 @@ def scene(rng, spoil):
     power = rng.choice([0, 0, 0, rng.randint(-60, -31), rng.randint(31, 45), rng.randint(-80, 80), rng.choice([-990, 990])])
     if clearance and abs(power) > 900 and rng.random() < 0.8:  # exact tests take long there
         power = 0
-    V, F = soup(images)
+    V, F = rng.choice([soup, indexed])(images)
     V = np.ldexp(V, power)
     a, b = all_pairs(sizes, selves)
     near = exact.within(corners[a], corners[b], square, scale**2) if clearance else exact.meet(corners[a], corners[b])
-    if len(sizes) == 1:  # neighbours share a position
-        near &= ~(corners[a][:, :, None] == corners[b][:, None]).all(3).any((1, 2))
-    expected = rows(np.stack([a, b], 1)[near])
+    neighbours = np.zeros(len(a), bool)
+    if selves[0]:  # neighbours share a position
+        neighbours = (corners[a][:, :, None] == corners[b][:, None]).all(3).any((1, 2))
+    expected = rows(np.stack([a, b], 1)[near & ~neighbours])
     found = farcull.collide(V, F, starts_of(sizes), self=selves, clearance=float(np.ldexp(clearance, power)), threads=1)
     pairs = spoil("a dropped pair", rows(found.pairs), dropped)
     missing = [pair for pair in zip(a[~near].tolist(), b[~near].tolist())]
     pairs = spoil("a pair too many", pairs, lambda all_: sorted([*all_, missing[0]]) if missing and len(sizes) > 1 else None)
     require(pairs == expected, f"sizes {sizes}, clearance {clearance}, power {power}", set(pairs) ^ set(expected),
             found.report.stages)
+    shared = [(i, j, *as_tuples(corners[[i, j]])) for i, j in zip(a[neighbours].tolist(), b[neighbours].tolist())]
+    require(rows(found.neighbour_pairs) == [(i, j) for i, j, p, q in shared if exact.meet_as_neighbours(p, q, exact.common(p, q))],
+            "neighbours", found.neighbour_pairs, corners[a[neighbours]], corners[b[neighbours]])
     oriented = any("oriented" in str(stage.get("reason", "")) and stage["ran"] for stage in found.report.stages)
-    return {"by oriented boxes": oriented, "of them with a clearance": oriented and clearance > 0, "pairs": len(pairs),
+    return {"by oriented boxes": oriented, "of them with a clearance": oriented and clearance > 0, "pairs": len(pairs), "pairs of neighbours": len(shared),
             "of them at scales beyond 1e+-9": oriented and abs(power) > 30, "at 1e+-300": abs(power) > 900}
