@@ -18,7 +18,8 @@ from .lab import Spoiler, Wrong
 
 LINES = {"oriented": 20000, "contained": 20000, "welded": 20000, "distances": 20000, "frames": 20000, "kinds": 20000,
          "certificates": 20000, "options": 2000, "hostile": 20000}
-PLANTED = 10  # of each fault
+PLANTED = 10  # of each fault, where there are ENOUGH scenes for them
+ENOUGH = 100
 TRIES = 3000  # scenes at most in which a fault is planted
 
 
@@ -57,7 +58,7 @@ def run(name, scenes, seed, at):
                     traceback.print_exc(limit=-1)
     words = ", ".join(f"{count:,} {what}" for what, count in sorted(counts.items()))
     print(f"{name}: {scenes:,} scenes from seed {seed}, {wrong} wrong, {time.process_time() - started:.0f} s; {words}", flush=True)
-    return wrong == 0 and (scenes == 1 or planted(line, name, seed))
+    return wrong == 0 and (scenes < ENOUGH or planted(line, name, seed))
 
 
 def apart(name, scenes, seed):

@@ -64,22 +64,24 @@ def expected_of(tuples, sizes, question):
     starts = starts_of(sizes)
     owner = np.repeat(np.arange(len(sizes)), sizes).tolist()
     selves = [question["self"]] * len(sizes)
-    squares = {}
-    for a, b in zip(*(x.tolist() for x in all_pairs(sizes, selves))):
+    most = question["within"]
+    ends = [[(min(x), max(x)) for x in zip(*t)] for t in tuples]
+    squares, best = {}, {}
+    for a, b in zip(*(x.tolist() for x in all_pairs(sizes, selves))):  # ascending, so of equal ones the first stays
         pair = owner[a], owner[b]
         if pair in question["ignore"] or (pair[0] == pair[1] and set(tuples[a]) & set(tuples[b])):
             continue
-        squares[a, b] = exact.squared(tuples[a], tuples[b])
-    most = question["within"]
-    if most is not None:
-        squares = {pair: s for pair, s in squares.items() if s <= most**2}
-    if question["kind"] == "all":
-        return squares
-    best = {}
-    for (a, b), s in squares.items():  # in ascending order, so of equal ones the first stays
-        pair = owner[a], owner[b]
+        gap = sum(max(0, low - h, l - high) ** 2 for (low, high), (l, h) in zip(ends[a], ends[b]))  # of the boxes
+        if (most is not None and gap > most**2) or (question["kind"] != "all" and pair in best and gap >= best[pair][0]):
+            continue
+        s = exact.squared(tuples[a], tuples[b])
+        if most is not None and s > most**2:
+            continue
+        squares[a, b] = s
         if pair not in best or s < best[pair][0]:
             best[pair] = s, a, b
+    if question["kind"] == "all":
+        return squares
     if question["kind"] == "nearest":
         wanted = set()
         for o in range(len(starts)):
