@@ -28,6 +28,7 @@ campaigns=(
   "reliability_boxes bash experiments/reliability.sh boxes"
   "reliability_motion bash experiments/reliability.sh motion"
   "reliability_distances bash experiments/reliability.sh distances"
+  "oracles bash tests/oracles.sh"
   "odr bash tests/odr.sh"
   "coq bash tests/coq.sh --long"
   "fuzz bash tests/fuzz/run.sh"

@@ -163,7 +163,7 @@ def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str,
     """The answer of a compiled collider or finder of ``owner``, which then knows the objects of the call.
     If a signal handler asked it in between, it knows those of the handler's call, which was the last."""
     turn = object()
-    if not given[1].size and given[3].size and owner._grouped is not grouped:
+    if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
     owner._grouped = turn  # nothing is called before the next line: Python checks for signals after calls
     found = compiled.find(*given)

@@ -147,7 +147,7 @@ class Collider:
         question = _question(
             self, clearance, neighbours, threads, contacts, segments, ignore, limit
         )
-        collider._grouped: Any = None  # of the call before, if it had an answer
+        collider._grouped: Any = None  # of the call before, if it had an answer; else None
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(question)
 
@@ -175,7 +175,8 @@ class Collider:
         ``ignore`` names an object that is not there; and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
-        grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, self._grouped)
+        before, self._grouped = self._grouped, None
+        grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, before)
         if labels is not None and self._needs_numbers:
             raise InputError(
                 "labels", "have no meaning with the ignored numbers or the limit of a Collider",

@@ -120,7 +120,7 @@ class DistanceFinder:
         if parity and which == "all":
             raise InputError("inside", "has no meaning with kind all", "leave it out")
         pairs = _arguments.ignored(ignore)
-        finder._grouped: Any = None  # of the call before, if it had an answer
+        finder._grouped: Any = None  # of the call before, if it had an answer; else None
         finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
             which, wanted, limit, all_objects, each, parity or _arguments.flag("inside", inside),
@@ -134,14 +134,13 @@ class DistanceFinder:
     ) -> Distances:
         """The distances. The parameters are those of :meth:`Collider.find`; with ``labels`` the objects
         of an answer are labels. The finder can be used again after an error, and after Ctrl-C."""
+        before, self._grouped = self._grouped, None
         if labels is not None and self._ignores:
             raise InputError(
                 "labels", "have no meaning with the ignored numbers of a DistanceFinder",
                 "sort the triangles by label and give object_starts, or call farcull.distances",
             )
-        return self._find(
-            *_arguments.arrays(V, F, object_starts, labels, poses, self._grouped)
-        )
+        return self._find(*_arguments.arrays(V, F, object_starts, labels, poses, before))
 
     def _find(self, grouped: _arguments.Grouped, given: _arguments.Arrays) -> Distances:
         found = _arguments.ask(self, self._finder, grouped, given)

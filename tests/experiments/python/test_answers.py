@@ -230,6 +230,10 @@ def test_poses_alone_follow_an_answer():
         shared = F.copy()
         shared[-1] = 0
         assert refused(kept.find, V, shared, starts, poses=still) == "poses"
+        for bad in ({"labels": starts}, {"poses": np.eye(3)}, {"V": "no array"}):  # refused before the library sees them
+            kept.find(V, F, starts)
+            refused(kept.find, **{"V": V, "F": F, "object_starts": starts, **bad})
+            assert refused(kept.find, poses=still) == "V"
     assert "poses" in str(error_of(farcull.show, farcull.collide(V, F, starts, poses=into), browse=False))
 
 
