@@ -50,7 +50,8 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
                bool or_as_far);
 
 // Decides in integers whether one of two objects lies inside the other. For the accounting, so this
-// part uses neither verify/inside nor experiments/method/distances. docs/proximity.md has the proof.
+// part uses neither verify/inside nor experiments/method/distances. docs/proximity.md has the
+// proof.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
 // triangles; triangles with two equal corners do not count. It is *oriented* if they also pass each
