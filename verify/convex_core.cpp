@@ -21,7 +21,7 @@ using Corners = ClosedObject::Corners;
 using separation::kU;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostCuts = 40;  // of a core
+constexpr std::size_t kMostCuts = 64;  // of a core
 
 /// The point of a triangle that is nearest to p, in plain doubles (Ericson, Real-Time Collision
 /// Detection, 2005, section 5.1.5).
@@ -227,6 +227,35 @@ bool ClosedObject::has(const Vec3& point) const {
   return inside(scene_, object_, point, surface_) == Inside::yes;
 }
 
+Vec3 ClosedObject::nearest(const Vec3& point) const {
+  const auto squared_to = [&](const Node& node) {
+    double out = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double gap = std::max({node.box.lo[k] - point[k], point[k] - node.box.hi[k], 0.0});
+      out += gap * gap;
+    }
+    return out;
+  };
+  double least = kInf;
+  Vec3 out = triangles_[0][0];
+  std::vector<std::pair<double, std::uint32_t>> stack = {{0, 0}};
+  while (!stack.empty()) {
+    const auto [squared, at] = stack.back();
+    stack.pop_back();
+    if (squared >= least) continue;
+    const Node& node = nodes_[at];
+    for (std::uint32_t k = 0; k < node.count; ++k) {
+      const Vec3 p = nearest_on(triangles_[node.first + k], point);
+      if (const double to = (p - point).squaredNorm(); to < least) least = to, out = p;
+    }
+    if (node.count > 0) continue;
+    stack.emplace_back(squared_to(nodes_[at + 1]), at + 1);
+    stack.emplace_back(squared_to(nodes_[node.second]), node.second);
+    if (stack.back() > stack[stack.size() - 2]) std::swap(stack.back(), stack[stack.size() - 2]);
+  }
+  return out;
+}
+
 bool ClosedObject::has_not(const Vec3& point) const {
   if ((point.array() < box_.lo.array()).any() || (point.array() > box_.hi.array()).any())
     return true;
@@ -296,8 +325,8 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
       order[k] = {(nearest_on(near[k], seed) - seed).squaredNorm(), k};
     std::ranges::sort(order);
     for (std::size_t k = 0; k < near.size(); ++k) sorted[k] = near[order[k].second];
+    work -= double(near.size());
     for (const double pull : kPulls) {
-      work -= double(near.size());
       std::optional<Grown> one = grow(solid, sorted, region, seed, pull);
       if (!one) continue;
       grown.push_back(std::move(*one));

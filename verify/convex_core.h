@@ -41,7 +41,8 @@ class ClosedObject {
   double largest() const { return largest_; }  // coordinate, by magnitude
   /// The whole object as a core, if it is convex: all corners, moved inward a little.
   const std::vector<Vec3>& convex() const { return convex_; }
-  bool has(const Vec3& point) const;  // strictly inside, exactly
+  bool has(const Vec3& point) const;      // strictly inside, exactly
+  Vec3 nearest(const Vec3& point) const;  // point of the surface, in plain doubles
   /// Outside for certain, of a point off the surface.
   bool has_not(const Vec3& point) const;
 

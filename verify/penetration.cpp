@@ -487,6 +487,42 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   }
 }
 
+/// Points inside both objects and far from their surfaces, the farthest first; then the starts.
+Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
+                   const Vec3& translation) {
+  constexpr std::size_t kMost = 6, kStarts = 8;
+  struct Deep {
+    Vec3 point, nearest;
+    double distance() const { return (point - nearest).norm(); }
+  };
+  const auto deep = [&](const Vec3& p) {
+    const Deep of_a{p, a.nearest(p)}, of_b{p, b.nearest(p)};
+    return of_a.distance() < of_b.distance() ? of_a : of_b;
+  };
+  std::vector<Deep> found;
+  for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
+    for (const double part : {-0.5, -0.25, -0.05, 0.0, 0.05, 0.25, 0.5}) {
+      const Vec3 p = starts[k] + part * translation;
+      if (a.has(p) && b.has(p)) found.push_back(deep(p));
+    }
+  }
+  std::ranges::sort(found, std::greater(), &Deep::distance);
+  const std::size_t most = std::min(found.size(), kMost);
+  for (std::size_t k = 0; k < most; ++k) {
+    Deep& d = found[k];
+    // A step away from the nearest point that is shorter than the way to it stays inside.
+    for (int step = 0; step < 20; ++step) {
+      const Deep next = deep(d.point + (step % 2 == 0 ? 0.8 : 0.2) * (d.point - d.nearest));
+      if (next.distance() > d.distance()) d = next;
+    }
+  }
+  std::ranges::sort(found, std::greater(), &Deep::distance);
+  Points out;
+  for (const Deep& d : found) out.push_back(d.point);
+  out.insert(out.end(), starts.begin(), starts.end());
+  return out;
+}
+
 }  // namespace
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
@@ -494,18 +530,13 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   // Work for each pair of objects. The larger ones get fewer cores, so that the time is about that
   // of finding their pairs of triangles.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
-  const std::size_t most_cores = small ? 48 : 8, most_pairs = small ? 256 : 32;
+  const std::size_t most_cores = small ? 48 : 10, most_pairs = small ? 256 : 64;
   const int steps = small ? 200 : 60;
   const FloatingPointGuard guard;
   Penetration out;
   bound_by_hulls(a, b, out);
   if (!(out.hi < kInf)) return out;
-  Points seeds;
-  for (const Vec3& p : starts) {
-    seeds.push_back(p);
-    for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5})
-      seeds.push_back(p + part * out.translation);
-  }
+  const Points seeds = deep_points(a, b, starts, out.translation);
   std::array<std::vector<Points>, 2> cores;
   for_each_shared(2, threads, [&](std::size_t side) {
     const ClosedObject &own = side == 0 ? a : b, &other = side == 0 ? b : a;
