@@ -40,14 +40,13 @@ farcull_packages=(
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
-# Packages that only tests need; a test names and skips what is missing. The test of the report opens
-# the page in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on
-# the disk; the browser alone takes 290 MB). Another one makes the paper a PDF (32 MB to fetch, 202 MB
-# on the disk); another one reads the manual and tries completion. gappa proves the bounds of rounding
-# errors. Those of the Python module take pytest and hypothesis, and install it into a virtual
-# environment.
-farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended lmodern
-  librsvg2-bin mandoc groff-base man-db zsh fish python3-pytest python3-hypothesis python3-venv python3-pip)
+# Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
+# Python module take pytest and hypothesis, and install it into a virtual environment.
+farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
+# Packages of tests that are labelled "rare", 300 MB: the report and pages of pictures in a browser, their PDF and LaTeX; the
+# paper as a PDF; the manual, and completion in other shells.
+farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin mandoc
+  groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {
@@ -269,6 +268,6 @@ farcull_keep_report() {
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
-  farcull_packages+=("${farcull_test_packages[@]}")
+  farcull_packages+=("${farcull_test_packages[@]}" "${farcull_rare_packages[@]}")
   farcull_setup
 fi

@@ -77,7 +77,14 @@ if [[ ${1-} == --sanitize ]]; then
   shift
 fi
 
+# Tests labelled "rare" need 300 MB of packages: a browser, TeX and other shells. CI and campaigns run them, and who names tests.
+left_out=()
 farcull_packages+=("${farcull_test_packages[@]}")
+if [[ ${CI-} || ${1-} == --long ]]; then
+  farcull_packages+=("${farcull_rare_packages[@]}")
+elif (($# == 0)); then
+  left_out=(rare)
+fi
 farcull_setup
 farcull_build all
 
@@ -87,16 +94,20 @@ if [[ ${1-} == --long ]]; then
   exit
 fi
 
-without=()
 status=0
 bash experiments/meshes.sh || status=$?
 if ((status == 3)); then
-  without=(-LE '^meshes$')
-  echo "tests: NOT RUN, because the packaged meshes are missing:"
-  # The list names the tests that are left out, and ends with their number.
-  ctest --test-dir build -C Release -N -L '^meshes$' | grep -E '^ +Test +#|^Total Tests'
+  left_out+=(meshes)
 elif ((status)); then
   exit 2
+fi
+without=()
+if ((${#left_out[@]})); then
+  pattern="^($(IFS='|' && echo "${left_out[*]}"))\$"
+  without=(-LE "$pattern")
+  echo "tests: NOT RUN: those of packaged meshes that are missing, and rare ones (CI=1 bash tests/run.sh runs these):"
+  # The list names the tests that are left out, and ends with their number.
+  ctest --test-dir build -C Release -N -L "$pattern" | grep -E '^ +Test +#|^Total Tests'
 fi
 
 # One test for each core at a time. Tests that must run alone have a ctest property that says so.
@@ -111,16 +122,16 @@ fewer=()
 if [[ $sanitize == inner ]]; then fewer=(-DFARCULL_GL=OFF "-DFARCULL_WITHOUT_LANES=HWY_SSE4|HWY_AVX3"); fi
 farcull_build_beside build-sanitize "farcull_tests farcull_fuzz_replay" -DFARCULL_TESTS_OF="$sanitize" "${fewer[@]}" \
   -DFARCULL_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
-left_out=gl
-if ((${#without[@]})); then left_out='gl|meshes'; fi
+pattern=gl
+if ((status == 3)); then pattern='gl|meshes'; fi
 # Without arguments many tests share a process; with arguments each is found by its name.
 shape=one
 if (($#)); then shape=shard; fi
-ctest --test-dir build-sanitize -N -L "^($left_out)$" | grep -E '^ +Test +#|^Total Tests' |
+ctest --test-dir build-sanitize -N -L "^($pattern)$" | grep -E '^ +Test +#|^Total Tests' |
   sed 's/^/  not run with sanitizers:/' || true
 # Nor is the program built with sanitizers, so tests that call it are left out.
 program='^(cli\.|readme$)'
-ctest --test-dir build-sanitize -N -R "$program" -LE "^($left_out)$" | grep -E '^ +Test +#' |
+ctest --test-dir build-sanitize -N -R "$program" -LE "^($pattern)$" | grep -E '^ +Test +#' |
   sed 's/^/  not run with sanitizers:/' || true
 ctest --test-dir build-sanitize --output-on-failure --no-tests=error \
-  -j "$(nproc 2>/dev/null || echo 1)" -LE "^($left_out|$shape)$" -E "$program" "$@"
+  -j "$(nproc 2>/dev/null || echo 1)" -LE "^($pattern|$shape)$" -E "$program" "$@"

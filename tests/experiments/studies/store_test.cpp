@@ -356,14 +356,14 @@ TEST(Counts, AreStoredUnderTheirNamesInOrder) {
   run.colliding = 7;
   run.promises = true;
   run.drawn = DrawnCounts{.queries = 1, .draws = 2, .queries_saved = 3, .draws_saved = 4};
-  run.fragments = FragmentCounts{.fragments = 5, .tests = 6, .views = 3};
+  run.fragments = FragmentCounts{.elements = 3, .covered = 4, .fragments = 5};
   run.scene_hash = "h";
   EXPECT_EQ(stored({.counts = run}).counts->dump(),
             R"({"colliding":7,"missed":0,"missed_penetrating":0,"colliding_triangles":0,)"
             R"("missed_triangles":0,"candidates":0,"kept_triangles":0,"kept_objects":0,)"
             R"("triangles":0,"objects":0,"promises":true,"scene_hash":"h","left_by_boxes":0,)"
             R"("views_used":0,"queries":1,"draws":2,)"
-            R"("queries_saved":3,"draws_saved":4,"fragments":5,"tests":6,"views":3})");
+            R"("queries_saved":3,"draws_saved":4,"elements":3,"covered":4,"fragments":5})");
   // A revoked verdict of the device is said, and hides no miss.
   run.missed = 1;
   run.revoked = true;
