@@ -204,9 +204,9 @@ std::vector<ReportedCase> parse_reported(std::string_view table) {
   std::istringstream lines{std::string(table)};
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    if (line.empty() || line.front() == '#') continue;
     std::istringstream in(line);
     const Words words(std::istream_iterator<std::string>(in), {});
+    if (words.empty() || words[0].front() == '#') continue;
     const std::string rest = line.substr(std::min(words[0].size() + 1, line.size()));
     try {
       if (words[0] == "case") out.emplace_back().source = rest;
