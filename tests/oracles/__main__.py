@@ -7,14 +7,13 @@ import importlib
 import mmap
 import os
 import random
+import signal
 import struct
 import sys
 import time
 import traceback
 import warnings
 from collections import Counter
-
-from .lab import Spoiler, Wrong
 
 LINES = {"oriented": 20000, "contained": 20000, "welded": 20000, "distances": 20000, "frames": 20000, "kinds": 20000,
          "certificates": 20000, "options": 2000, "hostile": 20000}
@@ -23,16 +22,16 @@ ENOUGH = 100
 TRIES = 3000  # scenes at most in which a fault is planted
 
 
-def planted(line, name, seed):
+def planted(line, lab, name, seed):
     """How many of PLANTED scenes show each fault. A fault that few scenes can have is tried in more of them."""
     good = True
     for fault in line.FAULTS:
         found = done = 0
         for k in range(TRIES):
-            spoil = Spoiler(fault)
+            spoil = lab.Spoiler(fault)
             try:
                 line.scene(random.Random(f"{name} {seed + k}"), spoil)
-            except Wrong:
+            except lab.Wrong:
                 found += spoil.planted
             done += spoil.planted
             if done == PLANTED:
@@ -43,22 +42,28 @@ def planted(line, name, seed):
 
 
 def run(name, scenes, seed, at):
-    """In a process of its own, which notes the seed that it is at, so that a crash of the product is reported as well."""
-    line = importlib.import_module("." + name, __package__)
-    counts, wrong, started = Counter(), 0, time.process_time()
+    """In a process of its own, which notes the seed that it is at, so that a crash of the product is reported as well. Ctrl-C or
+    SIGTERM ends the line, and what it saw until then is printed."""
+    lab, line = (importlib.import_module("." + module, __package__) for module in ("lab", name))  # with a folder of their own
+    counts, wrong, started, stopped = Counter(), 0, time.process_time(), []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stopped.append(True))
     for k in range(scenes):
         at[:] = struct.pack("q", seed + k)
+        if stopped:
+            scenes = k
+            break
         try:
-            counts.update(line.scene(random.Random(f"{name} {seed + k}"), Spoiler()))
+            counts.update(line.scene(random.Random(f"{name} {seed + k}"), lab.Spoiler()))
         except Exception as error:
             wrong += 1
             if wrong <= 10:
-                print(f"{name}: WRONG; bash tests/oracles.sh {name} --seed {seed + k} --scenes 1 repeats it: {error!s}", flush=True)
-                if not isinstance(error, Wrong):
+                print(f"{name}: WRONG; {name} --seed {seed + k} --scenes 1 repeats it: {error!s}", flush=True)
+                if not isinstance(error, lab.Wrong):
                     traceback.print_exc(limit=-1)
     words = ", ".join(f"{count:,} {what}" for what, count in sorted(counts.items()))
     print(f"{name}: {scenes:,} scenes from seed {seed}, {wrong} wrong, {time.process_time() - started:.0f} s; {words}", flush=True)
-    return wrong == 0 and (scenes < ENOUGH or planted(line, name, seed))
+    return not stopped and wrong == 0 and (scenes < ENOUGH or planted(line, lab, name, seed))
 
 
 def apart(name, scenes, seed):

@@ -5,16 +5,15 @@ import hashlib
 import json
 import os
 import re
-import tempfile
+import shutil
 
 import farcull
 import numpy as np
 
 from . import exact
-from .lab import PROGRAM, all_pairs, as_tuples, call, dropped, indexed, require, rows, starts_of, write_off
+from .lab import HERE, PROGRAM, all_pairs, as_tuples, call, dropped, indexed, require, rows, starts_of, write, write_off
 
 FAULTS = ["a dropped pair of the list", "a byte of a pair that meets", "a verdict about a forged certificate", "a tile left out"]
-FOLDER = tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
 VERIFIED = os.path.join(os.path.dirname(os.path.realpath(PROGRAM)), "farcull-check-verified")
 MEETS, NEIGHBOURS, KEPT = 38, 39, 64
 
@@ -59,7 +58,8 @@ def forged(rng, certificate, evidence):
     def other_hash(_, all_):
         all_["list_sha256"] = hashlib.sha256(b"another list").hexdigest()
 
-    out = [(made(other_hash, evidence), ["not proved"]), (made(lambda c, _: c.update(meeting=c["meeting"] + 1), evidence), ["not proved"])]
+    out = [(made(other_hash, evidence), ["not proved"]),
+           (made(lambda c, _: c.update(meeting=c["meeting"] + 1), evidence), ["not proved"])]
     places = list(range(len(evidence)))
     rng.shuffle(places)
     for k in places[:4]:
@@ -115,7 +115,7 @@ def scene(rng, spoil):
         if meet:
             found[s, t] = neighbours
     claims = certificate["claims"]
-    require(all(claims[key] == count for key, count in counts.items()) and claims["box_pairs"] == len(pairs), "counts", claims, counts)
+    require({**claims, **counts, "box_pairs": len(pairs)} == claims, "counts", claims, counts)
     listed = list_of(found, sizes, selves)
     require(hashlib.sha256(listed.encode()).hexdigest() == certificate["list_sha256"], "the hash of the list", found)
 
@@ -124,7 +124,8 @@ def scene(rng, spoil):
     require(check.proved, "not proved", check.verdict, check.reason)
     answer = spoil("a dropped pair of the list", rows(check.pairs), dropped)
     require(answer == sorted(found), "pairs of the check", answer, found)
-    wrong = sorted(found)[1:] if found and rng.random() < 0.5 else sorted(set(zip(a.tolist(), b.tolist())) - set(found))[:1] + sorted(found)
+    apart = set(zip(a.tolist(), b.tolist())) - set(found)
+    wrong = sorted(found)[1:] if found and rng.random() < 0.5 else sorted(apart)[:1] + sorted(found)
     if wrong != sorted(found):
         verdict = farcull.check(made, pairs=np.array(wrong, int).reshape(-1, 2), clearance=float(clearance)).verdict
         require(verdict != "proved", "a wrong list is proved", wrong, found)
@@ -138,13 +139,10 @@ def scene(rng, spoil):
     if os.path.exists(VERIFIED):
         facts["by the proved checker"] = len(texts)
         words = [len(sizes), *(n + (s << 32) for n, s in zip(sizes, selves))]
-        with open(FOLDER.name + "/scene", "wb") as file:
-            file.write(np.array(words, "<u8").tobytes() + corners.astype("<f8").tobytes())
+        write(HERE + "scene", np.array(words, "<u8").tobytes() + corners.astype("<f8").tobytes())
         names = []
         for k, (forgery, _) in enumerate(texts):
-            with open(f"{FOLDER.name}/{k}.json", "w", encoding="utf-8") as file:
-                file.write(forgery)
-            names += [f"{FOLDER.name}/{k}.json", FOLDER.name + "/scene"]
+            names += [write(f"{HERE}{k}.json", forgery), HERE + "scene"]
         status, out, err = call(*names, program=VERIFIED)
         verdicts = re.findall("^verified   (proved|refuted|not proved):", out, re.MULTILINE)
         require(len(verdicts) == len(texts) and all(v in right for v, (_, right) in zip(verdicts, texts)),
@@ -161,24 +159,23 @@ def in_tiles(rng, spoil, V, F, sizes, selves, clearance, listed):
         return
     files, at = [], starts_of(sizes)
     for k, (start, size) in enumerate(zip(at, sizes)):
-        files.append(f"{FOLDER.name}/part{k}.off")
+        files.append(f"{HERE}part{k}.off")
         write_off(files[-1], V, F[start : start + size])
     options = ["--self"] if selves[0] else []
     tiles = rng.randint(2, 4)
     more = ["--clearance", clearance] if clearance else []
     for k in range(1, tiles + 1):
-        status, out, err = call("run", *files, *options, *more, "--tiles", f"{k}/{tiles}", "--json", f"{FOLDER.name}/r{k}.json",
-                                "--pairs", f"{FOLDER.name}/p{k}.csv", "--certificate", f"{FOLDER.name}/t{k}.json")
+        status, out, err = call("run", *files, *options, *more, "--tiles", f"{k}/{tiles}", "--json", f"{HERE}r{k}.json",
+                                "--pairs", f"{HERE}p{k}.csv", "--certificate", f"{HERE}t{k}.json")
         require(status == 0, "a tile", status, out, err)
-    merged = FOLDER.name + "/merged.csv"
-    status, out, err = call("merge", *(f"{FOLDER.name}/r{k}.json" for k in range(1, tiles + 1)), "-o", merged)
+    merged = HERE + "merged.csv"
+    status, out, err = call("merge", *(f"{HERE}r{k}.json" for k in range(1, tiles + 1)), "-o", merged)
     require(status == 0, "merge", out, err)
     with open(merged, encoding="ascii") as file:
         require(file.read() == listed, "the merged list", listed)
     if spoil.fault == "a tile left out":  # its list is that of the tile before
         spoil("a tile left out", None, lambda _: True)
-        with open(f"{FOLDER.name}/t1.json", encoding="utf-8") as one, open(f"{FOLDER.name}/t2.json", "w", encoding="utf-8") as two:
-            two.write(one.read())
+        shutil.copy(HERE + "t1.json", HERE + "t2.json")
     verified = ["--verified"] if os.path.exists(VERIFIED) else []
-    status, out, err = call("check", f"{FOLDER.name}/t%d.json", *files, *options, "--tiles", tiles, "--pairs", merged, *verified)
+    status, out, err = call("check", f"{HERE}t%d.json", *files, *options, "--tiles", tiles, "--pairs", merged, *verified)
     require(status == 0 and out.startswith("proved"), "check of tiles", status, out, err)

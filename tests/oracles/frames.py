@@ -60,7 +60,8 @@ def refused(rng, asked, frame, selves):
     beyond[rng.randrange(len(F)), 0] = len(V)
     wrong = rng.choice([
         lambda: asked.find(bad, F, starts), lambda: asked.find(V, beyond, starts), lambda: asked.find(V, F, [*starts, len(F) + 1]),
-        lambda: asked.find(V, F, starts, poses=np.zeros((len(starts) + 1, 3, 4))), lambda: asked.find(V, F, None if not selves else [3, 2]),
+        lambda: asked.find(V, F, starts, poses=np.zeros((len(starts) + 1, 3, 4))),
+        lambda: asked.find(V, F, None if not selves else [3, 2]),
         lambda: asked.find(V, F, starts, poses=np.full((len(starts), 3, 4), np.inf)),
         lambda: asked.find("V", F, starts), lambda: asked.find(V, F, starts, poses=np.eye(3))])
     try:

@@ -1,12 +1,17 @@
 """What the oracles share: how a fault is planted, small scenes of whole numbers, and the names of methods and options."""
+import csv
+import json
 import os
 import subprocess
+import tempfile
 
 import numpy as np
 
 PROGRAM = os.environ.get("FARCULL_PROGRAM", "build/farcull")
 BOXES = "far-pairs"  # the method that the oracles are about
 BOXES_OPTION = "--boxes"  # which boxes come before pixels
+FOLDER = tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
+HERE = FOLDER.name + "/"
 
 
 class Wrong(Exception):
@@ -86,8 +91,23 @@ def write_off(path, V, F):
     text = [f"OFF\n{len(V)} {len(F)} 0"]
     text += [" ".join(map(repr, v)) for v in np.asarray(V, float).tolist()]
     text += ["3 %d %d %d" % tuple(f) for f in np.asarray(F).tolist()]
-    with open(path, "w", encoding="ascii") as file:
-        file.write("\n".join(text) + "\n")
+    write(path, "\n".join(text) + "\n")
+
+
+def write(path, data):
+    with open(path, "wb") as file:
+        file.write(data if isinstance(data, bytes) else data.encode())
+    return path
+
+
+def read_json(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def read_table(path):
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def call(*words, timeout=60, program=None, before=(), **options):

@@ -1,19 +1,14 @@
 """Options of run, verify, clash, distance, check and compare in combinations, and small scenes in files. An answer has to be that
 of the oracle for just these options, and the record has to name them; a refusal has to name one of them."""
-import csv
 import itertools
-import json
-import os
-import tempfile
 
 import numpy as np
 
 from . import distances, exact
-from .lab import BOXES, BOXES_OPTION, all_pairs, as_tuples, call, dropped, indexed, require, starts_of, write_off
+from .lab import (BOXES, BOXES_OPTION, HERE, all_pairs, as_tuples, call, dropped, indexed, read_json, read_table, require, starts_of,
+                  write, write_off)
 
 FAULTS = ["a dropped row", "an option that the record does not name", "another exit status"]
-FOLDER = tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
-HERE = FOLDER.name + "/"
 NAMES = ["o0", "o1", "p2"]
 PAIRS_OF_OBJECTS = ["o0:o1", "o*:p2", "o1:p2,p2:o0", "*:o1"]
 METHODS = [BOXES, "far", "cullide", "quick-cullide", "s-cullide", "i-collide", "exact"]
@@ -35,7 +30,8 @@ COMMANDS = {
     "distance": {"--pairs": ["objects", "nearest", "all"], "--k": ["1", "2"], "--within": ["0", "1", "2"], "--self": [],
                  "--ignore": PAIRS_OF_OBJECTS, "--inside": ["yes", "parity", "no"], "--threads": ["1", "2"], "--verify": []},
     "compare": {"--methods": [f"{BOXES},exact", "far,cullide", "i-collide,s-cullide"], "--resolutions": ["32", "16,64"],
-                "--offsets": ["obb,exact"], "--repeat": ["2"], "--self": [], "--clearance": ["1"], BOXES_OPTION: ["objects", "triangles"],
+                "--offsets": ["obb,exact"], "--repeat": ["2"], "--self": [], "--clearance": ["1"],
+                BOXES_OPTION: ["objects", "triangles"],
                 "--views": ["x", "z,-z"], "--rounds": ["1"], "--clear": ["all"], "--level": ["objects"], "--conservative": [],
                 "--device": ["native"]}}
 WEIGHTS = {"run": 8, "verify": 2, "check": 2, "clash": 3, "distance": 4, "compare": 2}
@@ -61,8 +57,7 @@ def scene(rng, spoil):
     for name, start, size in zip(NAMES, starts_of(sizes), sizes):
         files.append(HERE + name + ".off")
         write_off(files[-1], V, F[start : start + size])
-    with open(HERE + "ignored", "w", encoding="ascii") as file:
-        file.write("# a comment\no0:p2\n")
+    write(HERE + "ignored", "# a comment\no0:p2\n")
     words = [word for name, value in given.items() for word in (name, value) if word is not None]
     facts = {f"calls of {command}": 1}
     for pair in itertools.combinations(sorted((command, *item) for item in given.items()), 2):
@@ -140,10 +135,8 @@ def ask_run(rng, files, words, question, spoil, command="run"):
     status, out, err = call(command, *files, *words, "--pairs", HERE + "pairs.csv", "--json", HERE + "r.json")
 
     def check(status, say):
-        with open(HERE + "r.json", encoding="utf-8") as file:
-            record = json.load(file)
-        with open(HERE + "pairs.csv", encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
+        record = read_json(HERE + "r.json")
+        table = read_table(HERE + "pairs.csv")
         record = spoil("an option that the record does not name", record,
                        lambda r: {**r, "method": "none"} if "--method" in given else None)
         for option, key in KEYS.items():
@@ -203,9 +196,8 @@ def ask_check(rng, files, words, question, spoil):
         lines[k : k + 1] = rng.choice([[], [lines[k]] * 2])
     elif rng.random() < 0.5:
         rng.shuffle(lines)
-    with open(HERE + "list.csv", "w", encoding="ascii") as file:
-        head = "object_a,triangle_a,object_b,triangle_b" + (",neighbours" if question.self else "")
-        file.write("\n".join([head, *lines]) + "\n")
+    head = "object_a,triangle_a,object_b,triangle_b" + (",neighbours" if question.self else "")
+    write(HERE + "list.csv", "\n".join([head, *lines]) + "\n")
     status, out, err = call("check", *files, *words, "--pairs", HERE + "list.csv")
 
     def check(status, say):
@@ -218,14 +210,13 @@ def ask_clash(rng, files, words, question, spoil):
     status, out, err = call("clash", *files, *words, "--json", HERE + "r.json", "--csv", HERE + "pairs.csv")
 
     def check(status, say):
-        with open(HERE + "r.json", encoding="utf-8") as file:
-            record = json.load(file)
-        with open(HERE + "pairs.csv", encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
+        record = read_json(HERE + "r.json")
+        table = read_table(HERE + "pairs.csv")
         rows = spoil("a dropped row", record["pairs"], dropped)
         found = {(r["object_a"], r["object_b"]): r for r in rows}
-        require([(r["object_a"], r["object_b"], r["verdict"], r["triangle_pairs"]) for r in record["pairs"]] ==
-                [(int(r["object_a"]), int(r["object_b"]), r["verdict"], int(r["triangle_pairs"])) for r in table], "CSV and JSON", *say)
+        keys = "object_a", "object_b", "verdict", "triangle_pairs"
+        require([[str(r[key]) for key in keys] for r in record["pairs"]] == [[r[key] for key in keys] for r in table],
+                "CSV and JSON", *say)
         starts = starts_of(question.sizes)
         for pair in ((0, 1), (0, 2), (1, 2)):
             blocks = [range(starts[o], starts[o] + question.sizes[o]) for o in pair]
@@ -248,10 +239,8 @@ def ask_distance(rng, files, words, question, spoil):
 
     def check(status, say):
         given = question.given
-        with open(HERE + "r.json", encoding="utf-8") as file:
-            record = json.load(file)
-        with open(HERE + "pairs.csv", encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
+        record = read_json(HERE + "r.json")
+        table = read_table(HERE + "pairs.csv")
         rows = spoil("a dropped row", record["pairs"], dropped)
         starts = starts_of(question.sizes)
         found = sorted((starts[r["a"]] + r["triangles"][0], starts[r["b"]] + r["triangles"][1], r["squared"]) for r in rows)
@@ -274,8 +263,7 @@ def ask_compare(rng, files, words, question, spoil):
                             *([] if "--resolutions" in question.given else ["--resolutions", "32"]))
 
     def check(status, say):
-        with open(HERE + "r.json", encoding="utf-8") as file:
-            record = json.load(file)
+        record = read_json(HERE + "r.json")
         runs = record if isinstance(record, list) else record.get("runs") or record.get("rows") or record.get("records")
         require(runs, "no rows", list(record), *say)
         runs = spoil("a dropped row", runs, lambda r: [{**r[0], "all_colliding_pairs": -1}, *r[1:]] if r[0]["promises"] else None)

@@ -73,5 +73,6 @@ def scene(rng, spoil):
     require(rows(found.neighbour_pairs) == [(i, j) for i, j, p, q in shared if exact.meet_as_neighbours(p, q, exact.common(p, q))],
             "neighbours", found.neighbour_pairs, corners[a[neighbours]], corners[b[neighbours]])
     oriented = any("oriented" in str(stage.get("reason", "")) and stage["ran"] for stage in found.report.stages)
-    return {"by oriented boxes": oriented, "of them with a clearance": oriented and clearance > 0, "pairs": len(pairs), "pairs of neighbours": len(shared),
+    return {"by oriented boxes": oriented, "of them with a clearance": oriented and clearance > 0,
+            "pairs": len(pairs), "pairs of neighbours": len(shared),
             "of them at scales beyond 1e+-9": oriented and abs(power) > 30, "at 1e+-300": abs(power) > 900}

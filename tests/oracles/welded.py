@@ -1,17 +1,14 @@
 """--weld and --ignore of clash: parts in files, whose vertices are merged here by the rule of the documentation, and names with
 stars. The answer has to be that about the merged parts, in which the pairs that meet are counted exactly."""
-import os
 import re
-import tempfile
 
 import farcull
 import numpy as np
 
 from . import exact, solids
-from .lab import all_pairs, as_tuples, require, soup, starts_of, write_off
+from .lab import HERE, all_pairs, as_tuples, require, soup, starts_of, write_off
 
 FAULTS = ["a vertex that is not merged", "a row that is not ignored", "a pair of triangles not counted"]
-FOLDER = tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
 NAMES = ["base", "link1", "link2", "link-long", "hand", "a", "ab", "b+", "x y"]
 
 
@@ -58,10 +55,11 @@ def scene(rng, spoil):
         tolerance += 0.5
     files = []
     for name, (V, F) in zip(names, parts):
-        files.append(os.path.join(FOLDER.name, name + ".off"))
+        files.append(HERE + name + ".off")
         write_off(files[-1], V, F)
     merged = [(V, weld(V.tolist(), F, tolerance**2)) for V, F in parts]
-    patterns = [[rng.choice([*names, *names, "link*", "*a*", "*", "b+*"]) for _ in range(2)] for _ in range(rng.choice([0, 1, 1, 2]))]
+    words = [*names, *names, "link*", "*a*", "*", "b+*"]
+    patterns = [[rng.choice(words) for _ in range(2)] for _ in range(rng.choice([0, 1, 1, 2]))]
     ignored, unknown = set(), False
     for p, q in patterns:
         pairs = {(min(i, j), max(i, j)) for i in range(count) for j in range(count)
@@ -95,7 +93,8 @@ def scene(rng, spoil):
     for i, j in zip(owner[a[meeting]].tolist(), owner[b[meeting]].tolist()):
         counts[i, j] = counts.get((i, j), 0) + 1
     rows = answer["pairs"]
-    rows = spoil("a row that is not ignored", rows, lambda r: [{**r[0], "ignored": True}, *r[1:]] if r and not r[0]["ignored"] else None)
+    rows = spoil("a row that is not ignored", rows,
+                 lambda r: [{**r[0], "ignored": True}, *r[1:]] if r and not r[0]["ignored"] else None)
     rows = spoil("a pair of triangles not counted", rows,
                  lambda r: [{**r[0], "triangle_pairs": r[0]["triangle_pairs"] - 1}, *r[1:]] if r else None)
     say = names, patterns, rows
