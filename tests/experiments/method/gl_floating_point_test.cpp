@@ -2,12 +2,11 @@
 // it.
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "tests/lab/floating_point.h"
 
 // As epoxy declares it: an entry point that can be replaced.
-extern "C" void (*epoxy_glDispatchCompute)(unsigned, unsigned, unsigned);
+extern "C" void (*epoxy_glDrawArrays)(unsigned, int, int);
 
 namespace farcull {
 namespace {
@@ -62,35 +61,33 @@ TEST(GlFloatingPoint, AnEnvironmentThatADriverLeavesIsSeenAtTheEndOfItsStage) {
   }
 }
 
-void (*dispatch)(unsigned, unsigned, unsigned) = nullptr;
-void dispatch_and_round_upward(unsigned x, unsigned y, unsigned z) {
-  dispatch(x, y, z);
+void (*draw)(unsigned, int, int) = nullptr;
+void draw_and_round_upward(unsigned mode, int first, int count) {
+  draw(mode, first, count);
   std::fesetround(FE_UPWARD);
 }
 
 // No answer is given that was computed in such an environment; the caller's is as before.
-TEST(GlFloatingPoint, ADriverThatChangesItDuringACallEndsTheCall) {
+TEST(GlFloatingPoint, ADriverThatChangesItDuringARunEndsTheRun) {
   const Scene scene = lab::tiny_scene(8);
-  std::vector<double> vertices;
-  for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
-  std::vector<std::uint32_t> triangles;
-  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-  const std::vector<std::uint32_t> starts = {0, 8};
-  Collider collider({.device = Device::gl});
-  EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
+  RunOptions far{.method = Method::far};
+  far.resolution = 64;
+  Session session("software");
+  const auto pairs = [&] { return run(scene, far, session).collisions.pairs.size(); };
+  EXPECT_EQ(pairs(), 64u);
 
-  dispatch = epoxy_glDispatchCompute;
-  epoxy_glDispatchCompute = dispatch_and_round_upward;
+  draw = epoxy_glDrawArrays;
+  epoxy_glDrawArrays = draw_and_round_upward;
   std::string what = "no error";
   try {
-    collider.find({vertices, triangles, starts});
+    pairs();
   } catch (const Error& error) {
     what = error.what();
   }
-  epoxy_glDispatchCompute = dispatch;
+  epoxy_glDrawArrays = draw;
   EXPECT_TRUE(has_text(what, "this thread rounds upward"));
   EXPECT_EQ(floating_point(), kProved);
-  EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
+  EXPECT_EQ(pairs(), 64u);
 }
 
 }  // namespace
