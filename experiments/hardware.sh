@@ -230,7 +230,7 @@ section() {
     printf -- '- %s\n' "${missing[@]//"$farcull_root/"/}"
   fi
   section 'The assumptions' doctor
-  section 'Missed pairs' misses 'reliability-*' 'pairs-*' 'motion-*'
+  section 'Missed pairs' misses 'reliability-*' 'motion-*'
   section 'Times beside other libraries' 'bench-*'
   section 'Growth' 'field-*'
   section 'Moving scenes' 'family-*'

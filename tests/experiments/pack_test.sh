@@ -31,7 +31,7 @@ env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME="$work" bash "$work/there/hardwar
 (($? == 2)) || fail "hardware.sh: $(<"$work/said")"
 grep -q 'farcull doctor --device native has no result' "$work/said" || fail "hardware.sh: $(<"$work/said")"
 packed=$work/there/farcull
-env -i PATH=/usr/bin:/bin bash "$packed/build/farcull" run two-spheres --device native >"$work/said" 2>&1 ||
+env -i PATH=/usr/bin:/bin bash "$packed/build/farcull" run two-spheres --method far --device native >"$work/said" 2>&1 ||
   fail "the program: $(tail -n 1 "$work/said")"
 grep -q '^colliding  298 pairs' "$work/said" || fail "the program found something else"
 
@@ -42,7 +42,7 @@ hide='mount --bind "$1" /usr/lib/x86_64-linux-gnu && shift && exec "$@"'
 alone() {
   unshare -rm bash -c "$hide" bash "$work/empty" "$packed/build/fallback/ld-linux-x86-64.so.2" --inhibit-cache \
     --library-path "$packed/build/fallback:$packed/build/libraries" \
-    "$packed/build/program" run two-spheres --device native --no-verify >"$work/said" 2>&1
+    "$packed/build/program" run two-spheres --method far --device native --no-verify >"$work/said" 2>&1
 }
 if unshare -rm bash -c "$hide" bash "$work/empty" "$packed/build/fallback/ld-linux-x86-64.so.2" --inhibit-cache \
   --library-path "$packed/build/fallback" /bin/true 2>"$work/why"; then

@@ -37,7 +37,7 @@ missing=$(comm -23 <(labels "$root/docs/reliability.md" "$root/docs/budget.md") 
 for words in 'proxy' 'around c' 'entry' 'After the first pass' 'falling: miss'; do
   grep -q "$words" "$work/text" || fail "no figure has the words '$words'"
 done
-grep -q '^References' "$work/text" || fail "it has no references"
+grep -qE $'^\f?References' "$work/text" || fail "it has no references"
 if grep -q '?)\|(@' "$work/text"; then fail "a citation has no entry"; fi
 [[ -z $(off_page "$work/good/paper.log") ]] || fail "off the page: $(off_page "$work/good/paper.log" | tr '\n' ' ')"
 for figure in "$work"/good/figures/*.svg; do

@@ -13,14 +13,14 @@
 namespace farcull {
 namespace {
 
-// A session with a context of its own, in which CULLIDE draws.
+// A session with a context of its own, in which FAR draws.
 class Drawer {
  public:
   Drawer() : session_(std::make_unique<Session>("software")) { session_->context(); }
   // Whether the pairs are those that the first one of all found.
   bool right() {
     static const Scene scene = make_builtin_scene("two-spheres");
-    RunOptions options{.method = Method::cullide, .resolution = 32};
+    RunOptions options{.method = Method::far, .resolution = 32};
     options.verify = false;
     const std::vector<TrianglePair> found = run(scene, options, *session_).collisions.pairs;
     static const std::vector<TrianglePair> first = found;

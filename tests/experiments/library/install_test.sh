@@ -60,9 +60,9 @@ export PKG_CONFIG_PATH
 cmp "$work/cmake.txt" "$work/pkg_config.txt" || fail 'the two examples differ'
 expected="farcull $(pkg-config --modversion farcull)"$'
 pairs: 1
-frame 1, on cpu: 1\n  0 and 1
-frame 2, on cpu: 0
-frame 3, on cpu: 0
+frame 1: 1\n  0 and 1
+frame 2: 0
+frame 3: 0
 distance: 1.19'
 [[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
 
