@@ -91,15 +91,16 @@ class Deciding {
   double ms_ = 0;  // of all threads together
 };
 
-// Whether a run with a limit does not list its candidates, since they may be too many: more than
-// kMostListed pairs of triangles are in blocks of 16 that overlap, or a tree over all boxes finds
-// the candidates, so that their number is unknown.
-bool is_crowded(const std::vector<Stage>& plan) {
+// Whether a run with a limit does not list its candidates, since they may be too many: a tree over
+// all boxes finds them, so that their number is unknown, and more than kMostListed pairs of
+// triangles are possible. (Blocks decide only where triangles overlap few others.)
+bool is_crowded(const std::vector<Stage>& plan, std::uint64_t triangles) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
+  if (triangles * (triangles - 1) / 2 <= kMostListed) return false;
   return std::ranges::any_of(plan, [](const Stage& stage) {
-    if (!stage.ran) return false;
-    if (stage.kind == StageKind::blocks) return stage.n > kMostListed / 256;
-    return stage.reason == Reason::join_uneven || stage.reason == Reason::join_many_blocks;
+    return stage.ran && (stage.reason == Reason::join_uneven ||
+                         stage.reason == Reason::join_many_blocks ||
+                         stage.reason == Reason::join_often || stage.reason == Reason::join_crowded);
   });
 }
 
@@ -154,7 +155,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   record.plan = planned.stages();
   // A filter and a limit need the list of all candidates.
   const bool limits = record.options.limit > 0, lists = filters || limits;
-  if (limits && !filters && !memory && is_crowded(record.plan)) {
+  if (limits && !filters && !memory && is_crowded(record.plan, scene.triangles.size())) {
     record.trace = planned.trace;
     record.ms.cull = planned.ms;
     return search_first(scene, session, progress, question, record);

@@ -99,7 +99,7 @@ def scene(rng, spoil):
     arrays = [rng.choice([indexed, soup])(part.images) for part in (a, b)]
     V, F, starts = farcull.join(*arrays)
     made = farcull.Scene.from_arrays(np.ldexp(V, power), F, starts)
-    answer = farcull.clash(made, clearance=float(np.ldexp(clearance, power)), threads=1).json()
+    answer = farcull.clash(made, clearance=float(np.ldexp(clearance, power)), depth=True, threads=1).json()
     require(answer["asked"] == answer["examined"] == 1 and len(answer["pairs"]) <= 1, "not one row", answer)
     row = (answer["pairs"] or [{"verdict": "clear"}])[0]
     row = spoil("contained called clear", row, lambda r: {"verdict": "clear"} if r["verdict"] == "contained" else None)
@@ -133,20 +133,16 @@ def scene(rng, spoil):
             require((verdict == "near") == near, f"the gap is {gap}", *say)
             require(not near or Fraction(row["squared"]) == gap, f"the gap is {gap}", *say)
     if plain and overlap and row.get("depth"):
-        facts.update(check_depth(a, b, row["depth"], scale, power, V, F, starts, spoil, say))
+        facts.update(check_depth(a, b, row["depth"], scale, power, spoil, say))
     return facts
 
 
-def check_depth(a, b, depth, scale, power, V, F, starts, spoil, say):
+def check_depth(a, b, depth, scale, power, spoil, say):
     size = Fraction(scale) * Fraction(2) ** power
     true = solids.squared_depth(a.cells, b.cells, b.offset - a.offset) * size**2
     least = spoil("a lower bound of the depth too large", depth["least"], lambda x: float(true) ** 0.5 * (1 + 1e-9))
     most = spoil("a depth too small", depth["most"], lambda x: float(true) ** 0.5 * (1 - 1e-9))
     require(0 <= Fraction(least) ** 2 <= true <= Fraction(most) ** 2, f"the squared depth is {float(true)}", least, most, *say)
-    way, across = ([Fraction(x) for x in depth[key]] for key in ("translation_of_a", "direction"))
+    way = [Fraction(x) for x in depth["translation_of_a"]]
     require(exact.scalar(way, way) <= Fraction(most) ** 2, "the translation is longer than the depth", *say)
-    corners = [[[Fraction(x) for x in v] for v in np.unique(np.ldexp(V[F[part]].reshape(-1, 3), power), axis=0).tolist()]
-               for part in (slice(0, starts[1]), slice(starts[1], None))]
-    ends = max(exact.scalar(across, p) for p in corners[0]) + exact.scalar(across, way)
-    require(any(across) and ends <= min(exact.scalar(across, p) for p in corners[1]), "the translation does not separate", *say)
     return {"depths": 1, "depths with a lower bound above 0": least > 0}

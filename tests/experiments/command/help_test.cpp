@@ -92,7 +92,7 @@ TEST(Help, ExplainsEveryStage) {
   std::vector<std::string> names;
   for (int kind = 0; kind <= static_cast<int>(StageKind::verify); ++kind)
     names.push_back(name_of({.kind = static_cast<StageKind>(kind)}));
-  for (const char* word : {"round", "flags", "level", "element", "patch", "run"})
+  for (const char* word : {"round", "flags", "level", "element", "patch", "block"})
     names.emplace_back(word);
   expect_explained(names);
 }

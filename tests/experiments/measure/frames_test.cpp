@@ -233,7 +233,7 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
   EXPECT_FALSE(result.json.contains("radius"));
   for (const char* column : {"fps", "PCS objects", "PCS triangles"})
     EXPECT_TRUE(has_text(result.table, column)) << column;
-  EXPECT_FALSE(has_text(result.table, "draws"));
+  EXPECT_FALSE(has_text(result.table, "  draws"));
 }
 
 TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {

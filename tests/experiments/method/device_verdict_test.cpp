@@ -158,7 +158,7 @@ TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
   }
   EXPECT_EQ(
       names,
-      "relied on,kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
+      "kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
       "environment,");
 }
 

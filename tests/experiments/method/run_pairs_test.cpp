@@ -340,7 +340,7 @@ TEST(RunPairs, OptionsOfDrawingAreRefused) {
                               : name == std::string("device") ? "native"
                                                               : "64";
     const Error error = error_of([&] { read_options({{"method", "boxes"}, {name, value}}); });
-    EXPECT_EQ(error.where, "{" + std::string(name) + "}");
+    EXPECT_EQ(error.where, "--" + std::string(name));
     EXPECT_TRUE(has_text(error.reason, "has no meaning"));
     // The twin: a method that draws takes it.
     EXPECT_NO_THROW(read_options({{"method", "far"}, {name, value}}));

@@ -208,7 +208,7 @@ class Comparison:
         write_words(words, objects)
         count = draw.randrange(2, 5)
         for k in range(1, count + 1):
-            status, text = output([self.farcull, 'run', scene, '--device', 'cpu', '--no-verify', '--clearance', repr(clearance),
+            status, text = output([self.farcull, 'run', scene, '--no-verify', '--clearance', repr(clearance),
                                    '--tiles', f'{k}/{count}', '--certificate', file % k])
             if status:
                 if 'nothing to test' not in text:
