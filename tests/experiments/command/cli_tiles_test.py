@@ -31,7 +31,7 @@ if launch(['run', 'bunny', '--no-verify']) == 0:
 # Options that tiles take.
 for tiles, scene in (3, 'two-tori --clearance 0.05'), (4, 'cloth:1000 --self --contacts --faces'), \
         (2, 'two-spheres --self --clearance 0.01 --segments'), (3, 'degenerate --kinds crossing,coplanar'), \
-        (3, "crowd --ignore '*1:*2,*3:*4'"), (3, 'two-spheres --method far --views x,y'), (2, 'field:3000@seed9'):
+        (3, "crowd --ignore '*1:*2,*3:*4'"), (2, 'field:3000@seed9'):
     same(tiles, scene)
 
 # Scenes from files, with meshes that are named several times and divided; and one that ignores pairs of its objects, some

@@ -53,6 +53,10 @@ TEST_P(EveryStudy, HasTheSameGridTwice) {
 }
 
 TEST_P(EveryStudy, HasFewerPointsWhereQuick) {
+  if (study().name == "libraries") {  // the same questions to the small suite
+    EXPECT_EQ(study().grid({.quick = true}).size(), study().grid({.quick = false}).size());
+    return;
+  }
   EXPECT_LT(study().grid({.quick = true}).size(), study().grid({.quick = false}).size());
 }
 
