@@ -34,7 +34,7 @@ PARTS = {"boxes": "#e69f00", "views": "#0072b2", "pairs": "#56b4e9", "exact test
 def part_of(stage):
     """Which part a stage belongs to: "views" are fattening, drawing and what opens the canvas."""
     name = stage["name"].split()[0]
-    if name in ("boxes", "runs", "patches"):
+    if name in ("boxes", "blocks", "patches"):
         return "boxes"
     return {"join": "pairs", "exact": "exact tests"}.get(name, "views")
 
