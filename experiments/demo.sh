@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The main job in one command, on a machine with nothing but Debian and a checkout.
 # 1. Installs the packages that are missing, builds the command compare, fetches real meshes meanwhile.
-# 2. Compares FAR and CULLIDE as published, boxes and the method exact on two bunnies that
-#    interpenetrate, and prints a table. Exact predicates check every pair that a method culled.
+# 2. Compares FAR, CULLIDE, boxes and the method exact on two bunnies that interpenetrate, and
+#    prints a table. Exact predicates check every pair that a method culled.
 # 3. Builds the whole program (no tests), draws a picture of what CULLIDE misses and FAR finds,
 #    measures the small grids of all studies, and makes the report.
 # Exit status: that of the comparison, else that of the first step after it that failed; 2 if the

@@ -216,10 +216,10 @@ const Option kOptions[] = {
      .of_drawing = true},
     {.name = "broad_phase",
      .type = "objects|triangles",
-     .help = "whose boxes are compared before drawing. objects: a\n"
-             "triangle is drawn if its box meets that of another\n"
-             "object, as published; triangles: that of a triangle of\n"
-             "one; default objects",
+     .help = "which boxes are compared before drawing. objects: a\n"
+             "triangle is drawn if its box meets the box of another\n"
+             "object, as published; triangles: if it meets the box of\n"
+             "a triangle of another object; default objects",
      .serves = drawing_levels,
      .take =
          [](Given text, RunOptions& o) {

@@ -131,7 +131,7 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
   record.complete = whole && ordered.at_end();
   record.limited = true;
   record.found.count = record.decided;
-  record.found.device = {.gl = {}, .cpu = true, .note = "pairs in order: no view", .relies = {}};
+  record.found.device.note = "the method draws nothing";
   record.ms.cull += watch.ms();
   record.trace.push_back({.kind = StageKind::exact,
                           .ran = true,

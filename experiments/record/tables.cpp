@@ -345,7 +345,7 @@ std::string default_method_line(const RunOptions& options) {
 
 std::string faster_line(const RunOptions& options) {
   if (!draws(options.method) || !promises(options)) return "";
-  return fmt::format("hint       exact tests take less time than drawing on a CPU: {} {}\n",
+  return fmt::format("hint       on a CPU {} {} takes less time than drawing\n",
                      option_word("method"), to_string(kDefaultMethod));
 }
 
@@ -483,6 +483,10 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
               : ".\n";
   if (std::ranges::any_of(records, [](const Record& r) { return !not_drawn_text(r).empty(); }))
     out += "-: a method that draws had nothing left to draw, or no view that it could draw.\n";
+  if (std::ranges::any_of(records, [](const Record& r) {
+        return draws(r.options.method) && !fattens(r.options.method) && r.options.rounds == 0;
+      }))
+    out += "cullide: repeated until a round changes nothing; --rounds 1 is the form of 2003.\n";
   if (reference) {
     out +=
         "x exact: cull + exact ms over those of the method exact in this run\n"

@@ -8,8 +8,8 @@ import tempfile
 import numpy as np
 
 PROGRAM = os.environ.get("FARCULL_PROGRAM", "build/farcull")
-BOXES = "far-pairs"  # the method that the oracles are about
-BOXES_OPTION = "--boxes"  # which boxes come before pixels
+BOXES = "boxes"  # the method that the oracles are about
+BOXES_OPTION = "--broad-phase"  # which boxes are compared before drawing
 FOLDER = tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
 HERE = FOLDER.name + "/"
 

@@ -18,7 +18,7 @@ WORDS = {
     "--contacts": [], "--segments": [], "--kinds": ["crossing", "touch-vertex,coplanar,equal,apart"], "--verbose": [],
     "--certificate": [HERE + "c.json"], "--resolution": ["32", "auto"], "--radius": ["budget", "published", "2"],
     "--offset": ["obb", "exact"], "--depth": ["fragment", "fixed"], "--depth-format": ["32f", "24"],
-    "--query": ["flags", "occlusion"], BOXES_OPTION: ["objects", "triangles", "enough"], "--clusters": ["4", "8,2", "none"],
+    "--query": ["flags", "occlusion"], BOXES_OPTION: ["objects", "triangles"], "--clusters": ["4", "8,2", "none"],
     "--views": ["x", "z,-z", "1:1:0.5"], "--rounds": ["1", "2"], "--clear": ["any", "all"], "--level": ["objects", "triangles"],
     "--conservative": [], "--device": ["native", "cpu"]}
 DRAWING = set(list(WORDS)[list(WORDS).index("--resolution") :])
@@ -126,7 +126,7 @@ class Question:
 
 
 KEYS = {"--method": "method", "--resolution": "resolution", "--radius": None, "--offset": "offset", "--depth": "depth",
-        "--depth-format": "depth_format", BOXES_OPTION: "boxes", "--rounds": "rounds", "--clear": "clear", "--level": "level",
+        "--depth-format": "depth_format", BOXES_OPTION: "broad_phase", "--rounds": "rounds", "--clear": "clear", "--level": "level",
         "--clearance": "clearance", "--limit": "limit"}
 
 
