@@ -90,8 +90,8 @@ bool is_core(const ClosedObject& solid, const Near& near, const Vec3& seed,
   return solid.has(points.front());
 }
 
-/// Whether a triangle has points in all of the half spaces.
-bool meets(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes) {
+/// The part of a triangle that is in all of the half spaces, relative to the seed.
+std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes) {
   std::vector<Vec3> polygon = {t[0] - seed, t[1] - seed, t[2] - seed}, next;
   for (const auto& [normal, reach] : planes) {
     next.clear();
@@ -102,9 +102,18 @@ bool meets(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes
       if ((of_p < 0) != (of_q < 0)) next.push_back(p + of_p / (of_p - of_q) * (q - p));
     }
     std::swap(polygon, next);
-    if (polygon.empty()) return false;
   }
-  return true;
+  return polygon;
+}
+
+/// A box, moved inward, relative to the seed.
+std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward) {
+  std::vector<HalfSpace> out;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.push_back({Vec3::Unit(axis), box.hi[axis] - seed[axis] - inward});
+    out.push_back({-Vec3::Unit(axis), seed[axis] - box.lo[axis] - inward});
+  }
+  return out;
 }
 
 /// The corners of the common part of the half spaces, relative to the seed.
@@ -150,17 +159,13 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
                           const Box& region, const Vec3& seed, double pull) {
   const double size = (region.hi - region.lo).norm();
   const double inward = kCoreInward * size + 256 * kU * solid.largest();
-  Grown out{.seed = seed, .planes = {}, .points = {}};
-  for (int axis = 0; axis < 3; ++axis) {
-    out.planes.push_back({Vec3::Unit(axis), region.hi[axis] - seed[axis] - inward});
-    out.planes.push_back({-Vec3::Unit(axis), seed[axis] - region.lo[axis] - inward});
-  }
+  Grown out{.seed = seed, .planes = sides_of(region, seed, inward), .points = {}};
   for (const Corners& t : near) {
     const auto divides = [&](const HalfSpace& h) {
       return std::ranges::all_of(
           t, [&](const Vec3& v) { return h.normal.dot(v - seed) >= h.reach + 0.25 * inward; });
     };
-    if (std::ranges::any_of(out.planes, divides) || !meets(t, seed, out.planes)) continue;
+    if (std::ranges::any_of(out.planes, divides) || clipped(t, seed, out.planes).empty()) continue;
     Vec3 normal = nearest_on(t, seed) - seed;
     double reach = normal.norm();
     normal /= reach;
@@ -301,15 +306,24 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
     if (node.count == 0) stack.push_back(at + 1), stack.push_back(node.second);
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
-  // Close to the middle of a triangle, on either side, by a small part of its height.
+  // Close to the middle of what the region has of a triangle, on either side, by a small part of
+  // its height. That of a thin wall is the second one.
+  const Vec3 middle = 0.5 * (region.lo + region.hi);
+  const std::vector<HalfSpace> sides = sides_of(region, middle, 0);
   const std::size_t stride = near.size() / 96 + 1;
   for (std::size_t k = 0; k < near.size(); k += stride) {
-    const Corners& t = near[k];
-    const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double longest =
-        std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
-    for (const double part : {-2e-3, 2e-3})
-      tried.push_back((t[0] + t[1] + t[2]) / 3 + part / longest * across);
+    const std::vector<Vec3> polygon = clipped(near[k], middle, sides);
+    Vec3 sum = Vec3::Zero(), across = Vec3::Zero();
+    double longest = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3& next = polygon[(i + 1) % polygon.size()];
+      sum += polygon[i];
+      across += (polygon[i] - polygon[0]).cross(next - polygon[0]);
+      longest = std::max(longest, (next - polygon[i]).norm());
+    }
+    if (!(across.norm() > 0)) continue;
+    for (const double part : {-2e-3, 2e-3, -2e-5, 2e-5})
+      tried.push_back(middle + sum / double(polygon.size()) + part / longest * across);
   }
   std::vector<Grown> grown;
   double work = kWork;

@@ -138,9 +138,11 @@ class Polytope {
       const double distance = nearest->distance;
       const Vec3 normal = nearest->normal, next = support(normal);
       nearest->final = true;
-      if (normal.dot(next) - distance <= 4 * flat_ * scale_ ||
-          std::ranges::count(corners_, next) > 0)
+      if (normal.dot(next) - distance <= 4 * flat_ * scale_) continue;
+      if (std::ranges::count(corners_, next) > 0) {
+        convex_ = false;
         continue;
+      }
       add(next);
       --steps;
       // A convex surface has fewer faces than twice its corners.
@@ -151,6 +153,8 @@ class Polytope {
   const Vec3& direction() const { return direction_; }  // of the least overlap
   double overlap() const { return overlap_; }
   const std::vector<Face>& faces() const { return faces_; }
+  /// False if rounding of thin faces left a corner above a face, or kept one from being added.
+  bool convex() const { return convex_; }
   const Points& corners() const { return corners_; }
 
  private:
@@ -236,6 +240,7 @@ class Polytope {
   double flat_, scale_ = 0;
   double overlap_ = kInf;
   Vec3 direction_ = Vec3::UnitX();
+  bool convex_ = true;
 };
 
 /// The translations that a polytope holds for certain.
@@ -557,7 +562,9 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
       difference.expand(steps, true);
       covers[k] = cover_of(difference, axes);
       const auto certain = [](const Cover::Side& side) { return side.error < 1e-10; };
-      if (!covers[k].sides.empty() && std::ranges::all_of(covers[k].sides, certain)) break;
+      if (!covers[k].sides.empty() && difference.convex() &&
+          std::ranges::all_of(covers[k].sides, certain))
+        break;
     }
   });
   std::erase_if(covers, [&](const Cover& cover) {

@@ -223,21 +223,28 @@ TEST(Clash, OfSolidsOfCubesIsKnown) {
   }
 }
 
-// A peg that is 1 deep in the wall of a box with a cavity. The middle of what they share has the
-// diagonals of faces in front of it, where rays meet edges.
+// A peg in the wall of a box with a cavity, and through it. The middle of what they share has the
+// diagonals of faces in front of it, where rays meet edges. Some are turned, so that planes are
+// planes but for rounding.
 TEST(Clash, DepthOfAPegInAWallIsFound) {
-  Parts parts;
-  parts.box({0, 0, 0}, {100, 60, 40});
-  parts.box({5, 5, 5}, {95, 55, 35}, true);
-  parts.end("wall");
-  parts.add_box("peg", {99, 20, 10}, {135, 30, 20});
-  EXPECT_FALSE(clashes(parts.scene, {}).rows.at(0).depth) << "not asked for";
-  const ClashRecord record = clashes(parts.scene, {.depth = true});
-  ASSERT_EQ(record.trace.back().kind, StageKind::depth);
-  ASSERT_EQ(record.rows.size(), 1u);
-  ASSERT_TRUE(record.rows[0].depth);
-  EXPECT_GT(record.rows[0].depth->lo, 0.99);
-  EXPECT_LT(record.rows[0].depth->hi, 1.01);
+  for (const double depth : {0.01, 1.0, 10.0}) {
+    for (const Vec3& axis : {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 2, 3)}) {
+      Parts parts;
+      parts.box({0, 0, 0}, {100, 60, 40});
+      parts.box({5, 5, 5}, {95, 55, 35}, true);
+      parts.end("wall");
+      parts.add_box("peg", {100 - depth, 20, 10}, {135, 30, 20});
+      const Eigen::AngleAxisd turn(M_PI / 6, axis.normalized());
+      for (Vec3& p : parts.scene.vertices) p = axis.isZero() ? p : turn * p;
+      EXPECT_FALSE(clashes(parts.scene, {}).rows.at(0).depth) << "not asked for";
+      const ClashRecord record = clashes(parts.scene, {.depth = true});
+      ASSERT_EQ(record.trace.back().kind, StageKind::depth);
+      ASSERT_EQ(record.rows.size(), 1u);
+      ASSERT_TRUE(record.rows[0].depth);
+      EXPECT_GT(record.rows[0].depth->lo, 0.99 * depth);
+      EXPECT_LT(record.rows[0].depth->hi, 1.01 * depth);
+    }
+  }
 }
 
 TEST(Clash, PiecesOfAPartInsideAnotherAreFound) {
