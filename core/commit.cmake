@@ -18,7 +18,8 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${c
 
 # Writes PROBED as well: a hash of all sources that a verdict about a device depends on: kernels, probes, and what runs them.
 if(PROBED)
-  file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/*/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/view/budget.*
+  file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/*/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/base/random.h
+       ${SOURCE}/core/base/floating_point.* ${SOURCE}/core/view/budget.* ${SOURCE}/core/view/view.*
        ${SOURCE}/core/canvas/* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/solid_lines.h
        ${SOURCE}/verify/rational.h ${SOURCE}/experiments/method/device_verdict*)
   list(SORT probed)

@@ -306,7 +306,9 @@ std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
     for (std::size_t k = 0; k < solid->triangles().size(); k += stride) {
       const Corners& t = solid->triangles()[k];
       const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-      if (const double length = n.norm(); length > 0) normals.emplace_back(length, n / length);
+      // Squares of shorter ones may be subnormal.
+      if (const double length = n.norm(); length > 0x1p-500)
+        normals.emplace_back(length, n / length);
     }
   }
   const auto best = [&](const auto& allowed, Vec3 out) {
@@ -320,8 +322,9 @@ std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
     return out;
   };
   const Vec3 x = best([](const Vec3&) { return true; }, Vec3::UnitX());
-  const Vec3 y = best([&](const Vec3& n) { return std::abs(n.dot(x)) < 1e-9; }, x.unitOrthogonal());
-  return {x, y, x.cross(y)};
+  Vec3 y = best([&](const Vec3& n) { return std::abs(n.dot(x)) < 1e-9; }, x.unitOrthogonal());
+  y = (y - y.dot(x) * x).normalized();
+  return {x, y, x.cross(y).normalized()};
 }
 
 class Search {
@@ -530,6 +533,14 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
 
 }  // namespace
 
+// Whether products of four lengths are normal numbers, down to 2^-50 of the object's extent: the
+// squares of cross products, by whose roots normals get the length 1. Elsewhere the depth has no
+// lower bound.
+bool has_normal_products(const ClosedObject& solid) {
+  const Vec3 extent = solid.box().hi - solid.box().lo;
+  return extent.maxCoeff() > 0x1p-200 && solid.largest() < 0x1p200;
+}
+
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads) {
   // Work for each pair of objects. The larger ones get fewer cores, so that the time is about that
@@ -540,7 +551,7 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   const FloatingPointGuard guard;
   Penetration out;
   bound_by_hulls(a, b, out);
-  if (!(out.hi < kInf)) return out;
+  if (!(out.hi < kInf) || !has_normal_products(a) || !has_normal_products(b)) return out;
   const Points seeds = deep_points(a, b, starts, out.translation);
   std::array<std::vector<Points>, 2> cores;
   for_each_shared(2, threads, [&](std::size_t side) {

@@ -38,8 +38,9 @@ std::vector<std::string> keys_of_frame() {
 
 Json rate_json(double ms) { return json_of(per_second(ms)); }
 
-Json frame_json(const Scene& scene, const Record& record, long frame, double read_ms,
-                const FrameSource& source) {
+// head: what the first frame says of all. What this frame says otherwise stands in it again.
+Json frame_json(const Scene& scene, const Record& record, const Json& head, long frame,
+                double read_ms, const FrameSource& source) {
   const Json run = to_json(scene, record);
   Json out = {{"frame", frame},
               {"hash", run["scene"]["hash"]},
@@ -48,6 +49,8 @@ Json frame_json(const Scene& scene, const Record& record, long frame, double rea
               {"folded_polygons", scene.folded.size()},
               {"topology_changed", source.topology_changed()}};
   for (const std::string& key : keys_of_frame()) out[key] = run[key];
+  for (const char* key : {"promises", "promise_reason", "verdict", "device"})
+    if (run[key] != head[key]) out[key] = run[key];
   out["time_ms"]["read"] = read_ms;
   out["fps"] = rate_json(record.ms.cull + record.ms.exact);
   const Stage work = work_of(record.trace);
@@ -321,7 +324,7 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
       rows.insert(0, run_heading(scene, record) + "\n");
       if (question.pairs) csv.insert(0, "frame," + pairs_header(scene, question.columns));
     }
-    Json one = frame_json(scene, record, frame, read_ms, source);
+    Json one = frame_json(scene, record, out.json, frame, read_ms, source);
     if (sink) {
       std::string certificate;
       if (question.certificates) certificate = to_text(certificate_of(scene, record));

@@ -367,9 +367,10 @@ const Option kOptions[] = {
     {.name = "limit",
      .type = "N",
      .help = "only the first N colliding pairs, in the order of\n"
-             "{pairs}; the exact tests stop there. In a crowd the\n"
-             "search stops too, after some millions of candidates\n"
-             "at the latest, and nothing accounts for the pairs",
+             "{pairs}; the exact tests stop there. Of more than 4\n"
+             "million candidates that boxes finds by a tree the\n"
+             "search stops too, and nothing accounts for the pairs;\n"
+             "other methods and {frames} list all candidates",
      .serves = any,
      .take = [](Given text,
                 RunOptions& o) { return take_number_from<std::uint64_t>(1, text, o.limit); },

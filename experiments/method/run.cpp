@@ -91,17 +91,29 @@ class Deciding {
   double ms_ = 0;  // of all threads together
 };
 
-// Whether a run with a limit does not list its candidates, since they may be too many: a tree over
-// all boxes finds them, so that their number is unknown, and more than kMostListed pairs of
-// triangles are possible. (Blocks decide only where triangles overlap few others.)
-bool is_crowded(const std::vector<Stage>& plan, std::uint64_t triangles) {
+// Whether a run with a limit does not list its candidates, since a tree over all boxes finds them
+// and they are more than kMostListed. (Blocks decide only where triangles overlap few others.)
+bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& question,
+                unsigned threads) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
-  if (triangles * (triangles - 1) / 2 <= kMostListed) return false;
-  return std::ranges::any_of(plan, [](const Stage& stage) {
-    return stage.ran && (stage.reason == Reason::join_uneven ||
-                         stage.reason == Reason::join_many_blocks ||
-                         stage.reason == Reason::join_often || stage.reason == Reason::join_crowded);
-  });
+  const std::uint64_t triangles = scene.triangles.size();
+  const auto by_tree = [](const Stage& stage) {
+    return stage.ran &&
+           (stage.reason == Reason::join_uneven || stage.reason == Reason::join_many_blocks ||
+            stage.reason == Reason::join_often || stage.reason == Reason::join_crowded);
+  };
+  if (triangles * (triangles - 1) / 2 <= kMostListed ||
+      std::ranges::none_of(planned.stages(), by_tree))
+    return false;
+  OrderedPairs ordered(scene, planned.options.clearance, planned.options.ignored,
+                       question.neighbours, threads);
+  std::uint64_t listed = 0;
+  std::vector<TrianglePair> some;
+  while (listed <= kMostListed && !ordered.at_end()) {
+    ordered.next(std::size_t{1} << 16, some);
+    listed += some.size();
+  }
+  return listed > kMostListed;
 }
 
 // Searches in the order of pairs, and stops when so many collide as the limit says. Where hardly
@@ -155,7 +167,8 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   record.plan = planned.stages();
   // A filter and a limit need the list of all candidates.
   const bool limits = record.options.limit > 0, lists = filters || limits;
-  if (limits && !filters && !memory && is_crowded(record.plan, scene.triangles.size())) {
+  if (limits && !filters && !memory &&
+      is_crowded(scene, planned, question, session.cpu_threads())) {
     record.trace = planned.trace;
     record.ms.cull = planned.ms;
     return search_first(scene, session, progress, question, record);

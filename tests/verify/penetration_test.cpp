@@ -120,6 +120,7 @@ TEST(Penetration, OfConvexObjectsIsThatOfTheHullOfDifferences) {
   // FARCULL_PAIRS=10000 for the campaign.
   const char* const wish = std::getenv("FARCULL_PAIRS");
   const int count = wish != nullptr ? std::atoi(wish) : trials(100);
+  ASSERT_GT(count, 0);
   RandomNumbers random(test_seed(4));
   int tested = 0;
   double worst = 1;

@@ -354,6 +354,23 @@ TEST(Clash, DepthsOfTinyPartsAreBounded) {
   }
 }
 
+// Squares of products of such lengths are subnormal, so that normals would not have the length 1.
+TEST(Clash, DepthsAreNotAboveTheTruthWhereSquaresAreSubnormal) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const double unit : {1e-79, 1e-80, 3e-81, 1.0}) {
+    Parts parts;
+    parts.add_box("a", Vec3(0, 0, 0), Vec3(1, 1, 1));
+    parts.add_box("b", Vec3(0.7, -0.2, -0.3), Vec3(2, 1.2, 1.5));
+    for (Vec3& p : parts.scene.vertices) p = unit * (turn * p);
+    const ClashRecord record = clashes(parts.scene, {.depth = true});
+    ASSERT_TRUE(record.rows.at(0).depth) << unit;
+    EXPECT_LE(record.rows[0].depth->lo, 0.3 * unit * (1 + 1e-14)) << unit;
+    EXPECT_GE(record.rows[0].depth->hi, 0.3 * unit * (1 - 1e-14)) << unit;
+    EXPECT_EQ(record.rows[0].depth->lo > 0, unit == 1) << unit;
+  }
+}
+
 // Open surfaces have no inside: they touch only where a plane shows it.
 TEST(Clash, ATouchThatIsNotProvedCountsAsAClash) {
   Parts lid;
