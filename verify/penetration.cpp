@@ -1,6 +1,6 @@
 // The expanding polytope algorithm of all corners gives the first upper bound: a direction in which
-// the hulls are apart soonest. Then come the rays through all polytopes of cores, along the normals
-// of their faces, and then the search. All this is in plain doubles; what it finds is proved.
+// the hulls are apart soonest. Then comes the search. All this is in plain doubles; what it finds
+// is proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -355,41 +355,6 @@ class Search {
     return true;
   }
 
-  /// Tries the ends of what the covers hold along the normals of their faces; where that is not
-  /// far enough, something between it and the upper bound.
-  void try_rays() {
-    constexpr std::size_t kMostRays = 1000, kTried = 24;
-    constexpr double kWork = 2e6;  // sides of covers that are looked at
-    std::vector<std::pair<double, Vec3>> rays;
-    for (const Vec3& axis : axes_) {
-      for (const double sign : {1.0, -1.0}) rays.emplace_back(0, sign * axis);
-    }
-    std::vector<const Cover::Side*> sides;
-    for (const Cover& cover : covers_) {
-      for (const Cover::Side& side : cover.sides) sides.push_back(&side);
-    }
-    const auto most = static_cast<std::size_t>(kWork / static_cast<double>(sides.size() + 1));
-    std::ranges::sort(sides, {}, &Cover::Side::distance);
-    for (const Cover::Side* side : sides) {
-      const auto same = [&](const auto& ray) { return ray.second.dot(side->normal) > 1 - 1e-9; };
-      if (side->distance <= 0 || std::ranges::any_of(rays, same)) continue;
-      if (side->distance >= out_.hi || rays.size() >= std::min(kMostRays, most)) break;
-      rays.emplace_back(0, side->normal);
-    }
-    for (auto& [length, direction] : rays) length = held_along(covers_, direction);
-    std::ranges::sort(rays, {}, [](const auto& ray) { return ray.first; });
-    if (rays.size() > kTried) rays.resize(kTried);
-    for (const auto& [length, direction] : rays) {
-      double from = std::max(length, 1e-6 * out_.hi);
-      if (from >= 0.999 * out_.hi || try_translation(from * direction)) continue;
-      double to = out_.hi;
-      for (int step = 0; step < 5 && to > 1.02 * from; ++step) {
-        const double middle = 0.5 * (from + to);
-        (try_translation(middle * direction) ? to : from) = middle;
-      }
-    }
-  }
-
   /// Divides the ball of translations below the upper bound until all of it that is nearer than
   /// the lower bound is settled.
   void search() {
@@ -481,17 +446,15 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   Polytope hull(a.corners(), b.corners(), 1e-14);
   hull.expand(200, false);
   const Vec3 direction = hull.direction().normalized();
-  double length = std::max(hull.overlap(), 0.0);
+  const double length = std::max(hull.overlap(), 0.0);
   const double magnitude = a.largest() + b.largest() + length;
-  length += 1e-12 * length + 64 * kU * magnitude;
   out.hi = kInf;
   for (int k = 0; k < 60; ++k) {
-    out.translation = length * direction;
-    if (separates(a, b, out.translation)) {
-      out.hi = out.translation.stableNorm() * (1 + 8 * kU);
-      return;
-    }
-    length += std::ldexp(kU, k) * magnitude;
+    const double more = 1e-12 * length + std::ldexp(64 * kU, k) * magnitude;
+    out.translation = (length + more) * direction;
+    if (!separates(a, b, out.translation)) continue;
+    out.hi = out.translation.stableNorm() * (1 + 8 * kU);
+    return;
   }
 }
 
@@ -507,10 +470,13 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
     const Deep of_a{p, a.nearest(p)}, of_b{p, b.nearest(p)};
     return of_a.distance() < of_b.distance() ? of_a : of_b;
   };
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : starts) middle += p / double(starts.size());
   std::vector<Deep> found;
   for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
-    for (const double part : {-0.5, -0.25, -0.05, 0.0, 0.05, 0.25, 0.5}) {
-      const Vec3 p = starts[k] + part * translation;
+    for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5}) {
+      // Along the translation alone a common point of the surfaces may stay on one of them.
+      const Vec3 p = starts[k] + part * translation + std::abs(part) * (middle - starts[k]);
       if (a.has(p) && b.has(p)) found.push_back(deep(p));
     }
   }
@@ -593,7 +559,6 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   }
   if (covers.empty() || out.lo * 1.001 >= out.hi) return out;
   Search search(a, b, std::move(covers), axes, out);
-  search.try_rays();
   search.search();
   return out;
 }
