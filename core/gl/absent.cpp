@@ -35,7 +35,6 @@ std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgra
   refuse();
 }
 
-
 std::vector<ProbeResult> run_probes(const GlContext&, const ProbeOptions&,
                                     const std::function<void(const std::string&)>&) {
   refuse();

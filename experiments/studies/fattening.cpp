@@ -407,8 +407,7 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
     out.device = "native";
   } else {
     const bool native = lab.session().canvas_device().native;
-    if (counts.promises && !native && !lab.session().verdict().holds)
-      counts.revoked = true;
+    if (counts.promises && !native && !lab.session().verdict().holds) counts.revoked = true;
     canvas = &lab.session().canvas(
         fattener, {.depth_format = bits24 ? DepthFormat::fixed24 : DepthFormat::float32,
                    .query = bits24 ? QueryMode::occlusion : QueryMode::flags});

@@ -219,8 +219,8 @@ TEST(Penetration, OfSolidsOfCubesIsKnown) {
     above += found.lo > 0;
   }
   std::ranges::sort(ratios);
-  std::printf("%d pairs: lo is above 0 of %d; hi / lo is %.4g in the middle, %.4g at most\n",
-              count, above, ratios[count / 2], ratios.back());
+  std::printf("%d pairs: lo is above 0 of %d; hi / lo is %.4g in the middle, %.4g at most\n", count,
+              above, ratios[count / 2], ratios.back());
   EXPECT_GE(above, 0.95 * count);
   EXPECT_LE(ratios[count / 2], 1.5);
 }

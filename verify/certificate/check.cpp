@@ -115,7 +115,8 @@ std::vector<std::string> unattested_of(const Certificate::Run& run) {
     out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
     out.push_back("the offset and its radius");
   }
-  out.push_back(run.device ? "the device, " + run.device->renderer : "that no device of OpenGL was used");
+  out.push_back(run.device ? "the device, " + run.device->renderer
+                           : "that no device of OpenGL was used");
   out.push_back("the assumptions about the device, on which the proof does not rely");
   out.push_back("any time");
   return out;

@@ -156,10 +156,9 @@ TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
       EXPECT_FALSE(value.empty());
     }
   }
-  EXPECT_EQ(
-      names,
-      "kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
-      "environment,");
+  EXPECT_EQ(names,
+            "kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
+            "environment,");
 }
 
 // Every byte of the file flipped, one at a time, and every length: never believed, made anew.

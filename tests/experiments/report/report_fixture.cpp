@@ -156,7 +156,8 @@ Measurement made_up(const PointKey& point) {
                 {"other_object", 0},
                 {"largest_relative", asks_library(point) ? 1e-15 * unit(point, "error") : 0.0}};
   if (const std::size_t slash = point.scene.find('/'); slash != std::string::npos) {
-    // Of a contestant: one part of its scores, as experiments/report/chapters/libraries.py reads it.
+    // Of a contestant: one part of its scores, as experiments/report/chapters/libraries.py reads
+    // it.
     const std::string kind = point.scene.substr(slash + 1);
     nlohmann::json part = {kind == "pair"   ? "pairs/random"
                            : kind == "mesh" ? "meshes/some"
