@@ -69,19 +69,6 @@ Estimate median_estimate(std::vector<double> values) {
   return with_interval(middle_of(values), n, std::move(medians));
 }
 
-Estimate ratio_estimate(std::vector<double> over, std::vector<double> under) {
-  std::sort(over.begin(), over.end());
-  std::sort(under.begin(), under.end());
-  Draws draws;
-  std::vector<double> ratios(kResamples);
-  for (double& ratio : ratios) {
-    const double numerator = draws.median(over);
-    ratio = numerator / draws.median(under);
-  }
-  const std::size_t n = std::min(over.size(), under.size());
-  return with_interval(middle_of(over) / middle_of(under), n, std::move(ratios));
-}
-
 double student_t95(std::size_t degrees) {
   return boost::math::quantile(boost::math::students_t(static_cast<double>(degrees)), 0.975);
 }
