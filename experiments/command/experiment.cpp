@@ -56,8 +56,7 @@ class ExperimentCommand {
         "--pairs 100000");
     allow_one_command(*command);
     commands_ = add_studies(*command);
-    commands_.insert(commands_.end(),
-                     {add_lemma(*command), declare<OraclesCommand>(*command)});
+    commands_.insert(commands_.end(), {add_lemma(*command), declare<OraclesCommand>(*command)});
     return command;
   }
   int run() const {
@@ -66,8 +65,7 @@ class ExperimentCommand {
     }
     std::string known = "all";
     for (const Study& study : studies()) known += ", " + study.name;
-    throw Error("experiment", "no study is named",
-                "name one: " + known + ", lemma, oracles");
+    throw Error("experiment", "no study is named", "name one: " + known + ", lemma, oracles");
   }
 
  private:

@@ -1,10 +1,12 @@
-// Makes and writes a suite, and checks a suite that is read back by deciding every label anew.
+// Makes and writes a suite.
 // Pairs are decided on all cores; each result has its own place, so the order is that of the IDs.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
@@ -18,7 +20,6 @@
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/suite/questions.h"
-#include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -81,6 +82,12 @@ std::string colliding_text(const SuiteMesh& mesh) {
   return out;
 }
 
+/// The sum in the last line of suite.txt.
+std::string sum_of(const std::string& text) {
+  constexpr std::size_t kLine = 4 + 64 + 1;  // "sum ", SHA-256, newline
+  return text.size() > kLine ? text.substr(text.size() - 65, 64) : "";
+}
+
 /// Writes files below a folder and lists them.
 class Folder {
  public:
@@ -104,7 +111,7 @@ class Folder {
               [](const auto& x, const auto& y) { return x.path < y.path; });
     const std::string text = index_text(index_);
     write_output(path_ + "/suite.txt", text);
-    index_ = parse_suite(text, path_ + "/suite.txt");
+    index_.sum = sum_of(text);
   }
 
  private:
@@ -118,56 +125,6 @@ class Folder {
   std::string path_;
   SuiteIndex& index_;
 };
-
-constexpr const char* kCorrect = "correct the label, or write the suite again";
-
-void check_pair(const SuitePair& pair, const std::string& path) {
-  if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) {
-    throw Error(path, fmt::format("pair {} has equal corners that are not called shared", pair.id),
-                "call all of them shared, or none", pair.line);
-  }
-  const SuiteKind kind = decide(pair, path);
-  if (pair.kind == SuiteKind::unlabelled || pair.kind == kind) return;
-  throw Error(path,
-              fmt::format("pair {} is called {}, and it is {}", pair.id, to_string(pair.kind),
-                          to_string(kind)),
-              kCorrect, pair.line);
-}
-
-void check_pairs(const SuitePairs& pairs, const std::string& path) {
-  const std::size_t count = pairs.pairs.size();
-  for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) check_pair(pairs.pairs[i], path);
-  });
-}
-
-std::string named(const Scene& scene, const TrianglePair& pair) {
-  const std::vector<std::uint32_t> owner = owners(scene);
-  std::string out;
-  for (const std::uint32_t t : {pair.a, pair.b}) {
-    const Object& object = scene.objects[owner[t]];
-    out += fmt::format("{}{},{}", out.empty() ? "" : ",", object.name, t - object.first_triangle);
-  }
-  return out;
-}
-
-void check_mesh(const SuiteMesh& mesh, const std::string& path) {
-  const std::vector<SuiteMeshPair> right = decide_mesh(mesh.scene, path);
-  if (!mesh.labelled) return;
-  const auto [in_list, in_right] =
-      std::mismatch(mesh.pairs.begin(), mesh.pairs.end(), right.begin(), right.end());
-  if (in_list == mesh.pairs.end() && in_right == right.end()) return;
-  const bool missing =
-      in_right != right.end() && (in_list == mesh.pairs.end() || in_right->pair < in_list->pair);
-  // The header is line 1.
-  const long line = 2 + static_cast<long>(in_list - mesh.pairs.begin());
-  throw Error(
-      path + "/pairs.csv",
-      missing
-          ? fmt::format("the pair {} collides and is missing", named(mesh.scene, in_right->pair))
-          : fmt::format("the pair {} does not collide", named(mesh.scene, in_list->pair)),
-      kCorrect, line);
-}
 
 }  // namespace
 
@@ -299,7 +256,30 @@ std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
                   shortest(mesh.parameter), mesh.family);
   append_note(properties, mesh.note);
   out.push_back({"mesh.txt", std::move(properties), 0});
-  if (mesh.labelled) out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
+  out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
+  return out;
+}
+
+void append_hexadecimal(std::string& text, double value) {
+  std::array<char, 40> buffer;
+  if (std::signbit(value)) text += '-';
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                         std::abs(value), std::chars_format::hex);
+  text += "0x";
+  text.append(buffer.data(), end);
+}
+
+SuiteIndex read_suite(const std::string& folder) {
+  const std::string path = folder + "/suite.txt", text = read_file(path, UINT64_MAX);
+  SuiteIndex out;
+  out.sum = sum_of(text);
+  std::istringstream words(text);
+  std::string seed, size, head, version;
+  words >> head >> version >> seed >> out.seed >> size >> out.size;
+  if (!words || head + " " + version != "farcull-suite 1" || seed != "seed" || size != "size" ||
+      !text.ends_with("sum " + sha256(text.substr(0, text.size() - 69)) + "\n"))
+    throw Error(path, "is no list of a suite, or was changed",
+                "docs/suite.md has the format; write the suite again");
   return out;
 }
 
@@ -336,43 +316,6 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
     out.meshes.push_back(counts_of(mesh));
   }
   files.finish();
-  return out;
-}
-
-SuiteSummary check_suite(const std::string& folder, const Progress& progress) {
-  SuiteSummary out;
-  out.index = read_suite(folder);
-  check_files(folder, out.index);
-  const auto require_items = [&](const std::string& path, std::uint64_t items) {
-    for (const SuiteIndex::File& file : out.index.files) {
-      if (file.path != path || file.items == items) continue;
-      throw Error(folder + "/" + path,
-                  fmt::format("has {} items; suite.txt says {}", items, file.items), kCorrect);
-    }
-  };
-  for (const std::string& file : out.index.pair_files()) {
-    if (progress) progress(file);
-    const SuitePairs pairs = read_pairs(folder + "/" + file);
-    require_items(file, pairs.pairs.size());
-    check_pairs(pairs, folder + "/" + file);
-    out.families.push_back(counts_of(pairs));
-  }
-  for (const SuiteIndex::File& file : out.index.files) {
-    if (!file.path.starts_with("questions/") || !file.path.ends_with(".txt")) continue;
-    if (progress) progress(file.path);
-    const SuiteQuestions questions = read_questions(folder + "/" + file.path);
-    require_items(file.path, questions.questions.size());
-    check_questions(questions, folder, folder + "/" + file.path);
-  }
-  for (const std::string& name : out.index.mesh_folders()) {
-    if (progress) progress(name);
-    const SuiteMesh mesh = read_mesh(folder + "/" + name);
-    for (const Object& object : mesh.scene.objects)
-      require_items(name + "/" + object.name + ".obj", object.triangle_count);
-    require_items(name + "/pairs.csv", mesh.pairs.size());
-    check_mesh(mesh, folder + "/" + name);
-    out.meshes.push_back(counts_of(mesh));
-  }
   return out;
 }
 
