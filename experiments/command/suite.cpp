@@ -67,8 +67,8 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
       app, "suite", "labelled triangle pairs and meshes, to test any library with",
       {{"DIR", &folder_, "", "the folder to write, which must not exist or be empty", Need::must},
        {"--size", &size_, "small|full",
-        "small: 10,098 pairs and 118 meshes, seconds (default);\nfull: 1,007,028 pairs and "
-        "146 meshes, minutes"},
+        "small: 10,070 pairs and 59 meshes, seconds (default);\nfull: 1,007,000 pairs and "
+        "87 meshes, minutes"},
        {"--seed", &seed_, "N", "seed of all draws; default 1"},
        {"--ask", &ask_, "COMMAND",
         "ask the program that COMMAND starts about the suite in\nDIR, and print what it gets "

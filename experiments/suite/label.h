@@ -64,9 +64,8 @@ struct SuiteMesh {
   std::string name;  // of the folder
   std::string family;
   double parameter = 0;
-  bool self = false;      // every object is tested against itself too
-  std::string note = {};  // the comments of mesh.txt, without "# ", with newlines between them
-  Scene scene;            // objects "0", "1", ... in order; each is `self` where the mesh is
+  bool self = false;  // every object is tested against itself too
+  Scene scene;        // objects "0", "1", ... in order; each is `self` where the mesh is
   std::vector<SuiteMeshPair> pairs;  // all that collide, ascending, each once
 };
 

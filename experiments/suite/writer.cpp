@@ -27,20 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The 19 families of random pairs have 10070 together, or 1007000. A list of cases has each once.
-std::uint64_t pair_count(const PairFamily& family, SuiteSize size) {
-  if (!family.notes.empty()) return family.values.size();
-  return size == SuiteSize::small ? 530 : 53000;
-}
+/// Pairs of a family; the 19 families have 10070 together, or 1007000.
+std::uint64_t pair_count(SuiteSize size) { return size == SuiteSize::small ? 530 : 53000; }
 
 std::size_t members(const MeshFamily& family, SuiteSize size) {
   return size == SuiteSize::full ? family.members.size() : family.small;
-}
-
-/// Appends a comment line for each line of the note.
-void append_note(std::string& text, const std::string& note) {
-  std::istringstream lines(note);
-  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
 }
 
 std::string mesh_name(const MeshFamily& family, std::size_t index) {
@@ -168,7 +159,7 @@ SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings) 
   if (found == all.end()) throw std::logic_error("make_pairs: no family " + family);
   SuitePairs out;
   out.family = family;
-  out.pairs.resize(pair_count(*found, settings.size));
+  out.pairs.resize(pair_count(settings.size));
   const std::size_t count = out.pairs.size();
   for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -198,7 +189,6 @@ SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings) {
       out.family = family.name;
       out.parameter = family.members[i].parameter;
       out.self = family.self;
-      out.note = family.members[i].note;
       SceneBuilder builder(name, name);
       int number = 0;
       for (SuiteObject& object : make_suite_mesh(family, settings.seed, i)) {
@@ -233,17 +223,12 @@ std::string pair_line(const SuitePair& pair) {
 
 std::string pairs_text(const SuitePairs& pairs) {
   std::string out = "farcull-pairs 1 " + pairs.family + "\n";
-  const std::vector<std::string>* notes = nullptr;
   for (const PairFamily& family : pair_families()) {
     if (family.name != pairs.family) continue;
     out += "# " + family.description + "\n";
     if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
-    notes = &family.notes;
   }
-  for (const SuitePair& pair : pairs.pairs) {
-    if (notes != nullptr && pair.id < notes->size()) append_note(out, (*notes)[pair.id]);
-    out += pair_line(pair) + "\n";
-  }
+  for (const SuitePair& pair : pairs.pairs) out += pair_line(pair) + "\n";
   return out;
 }
 
@@ -254,7 +239,6 @@ std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
   std::string properties =
       fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
                   shortest(mesh.parameter), mesh.family);
-  append_note(properties, mesh.note);
   out.push_back({"mesh.txt", std::move(properties), 0});
   out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
   return out;
