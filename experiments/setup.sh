@@ -38,7 +38,7 @@ farcull_packages=(
   # the Python module; the build works without
   python3-dev pybind11-dev python3-numpy
   # libraries that farcull bench compares with; the build works without
-  libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev
+  libfcl-dev libembree-dev libbullet-dev libode-dev
 )
 # Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
 # Python module take pytest and hypothesis, and install it into a virtual environment.

@@ -25,7 +25,7 @@ std::string peers_text() {
   std::string with = "Peers here:";
   std::string without;
   std::size_t column = with.size();
-  for (const Peer& peer : all_peers(usable_cores())) {
+  for (const Peer& peer : all_peers()) {
     if (!peer.missing.empty()) {
       without += "Left out: " + peer.name + ": " + peer.missing + ".\n";
       continue;
@@ -81,7 +81,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
       [] {
         return "Examples:\n"
                "  farcull bench two-bunnies\n"
-               "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
+               "  farcull bench needles-layers --threads 1 --peers fcl-obb,embree-low\n"
                "  farcull bench field:1000000 --peers none --methods boxes --json field.json\n"
                "  farcull bench bunnies-far-apart --distances objects\n\n" +
                peers_text() +

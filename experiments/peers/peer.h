@@ -41,8 +41,7 @@ using BenchRun = std::function<BenchAnswer(const Scene&)>;
 struct Peer {
   std::string name;     // as in --peers
   std::string library;  // with its version, such as "CGAL 5.5.1"
-  std::string
-      missing;  // why it cannot run in this build or with this number of threads; empty: it can
+  std::string missing;  // why it cannot run in this build; empty: it can
   std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
   std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on this scene;
                                                           // empty: it is. Null: exact on all
@@ -85,12 +84,11 @@ struct DistancePeer {
                                                           // scene; empty: it can. Null: about all
 };
 
-/// Broad phases, each followed by the exact decisions of verify/exact.h, except CGAL's
-/// self_intersections(), which decides exactly by itself. They run at their best settings. All work
-/// that can be divided runs on the threads of the bench. Candidates are decided in bounded parts,
-/// so that tens of millions of overlapping boxes are never stored. The list includes peers that
-/// this build does not have. `threads` >= 1.
-std::vector<Peer> all_peers(unsigned threads);
+/// Broad phases, each followed by the exact decisions of verify/exact.h. They run at their best
+/// settings. All work that can be divided runs on the threads of the bench. Candidates are decided
+/// in bounded parts, so that tens of millions of overlapping boxes are never stored. The list
+/// includes peers that this build does not have.
+std::vector<Peer> all_peers();
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
 /// may be missed or wrong. fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
@@ -117,15 +115,11 @@ struct LibraryPeers {
   std::vector<Peer> broad = {}, narrow = {};
   std::vector<DistancePeer> distances = {};
 };
-LibraryPeers cgal_library(unsigned threads);
+LibraryPeers cgal_library();
 LibraryPeers fcl_library();
 LibraryPeers embree_library();
 LibraryPeers bullet_library();
 LibraryPeers ode_library();
-
-/// CGAL's exact predicate by itself, as its users call it. decide() calls it if its filter does not
-/// know the answer. Precondition: neither triangle is degenerate.
-bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 // For the files that adapt a library: which triangles are tested with which, the exact decision of
 // candidates, the search of two trees, and the distances that a task asks for.

@@ -47,13 +47,6 @@ Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
   return lab::scene_of(objects);
 }
 
-// Whether CGAL's self_intersections() takes the scene, but for degenerate triangles.
-bool is_one_self_object(const Scene& scene) {
-  std::vector<Object> objects = scene.objects;
-  std::erase_if(objects, [](const Object& object) { return object.triangle_count == 0; });
-  return objects.size() == 1 && objects[0].self;
-}
-
 // All contestants that there are agree, and those that must be there are. `degenerate`: the scene
 // has triangles that not all peers take.
 BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
@@ -67,15 +60,12 @@ BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
     EXPECT_GE(row.candidate_pairs, row.pairs) << row.name;
     EXPECT_EQ(row.repeats, 1);
   }
-  for (const Peer& peer : all_peers(options.threads)) {
-    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
-    const bool one_mesh = peer.name.starts_with("cgal-self-intersections");
-    const bool refuses =
-        (degenerate && (oriented || one_mesh)) || (one_mesh && !is_one_self_object(scene));
+  for (const Peer& peer : all_peers()) {
+    const bool refuses = degenerate && peer.name == "fcl-obb";
     EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
-  for (const char* name : {"boxes", "exact", "cgal-boxes", "cgal-boxes-2000", "cgal-object-pairs",
-                           "cgal-aabb", "cgal-aabb-triangles"})
+  for (const char* name :
+       {"boxes", "exact", "cgal-boxes", "cgal-boxes-2000", "cgal-object-pairs", "cgal-aabb"})
     EXPECT_TRUE(ran.contains(name)) << name;
   EXPECT_TRUE(result.fastest_peer);
   return result;
@@ -110,8 +100,8 @@ TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
   EXPECT_EQ(expect_agreement(some).rows[0].pairs, 0u) << "an object that is not self has no pairs";
 }
 
-// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a mesh takes
-// none of these, and self_intersections() must report their pairs all the same, no neighbour.
+// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a
+// manifold has none of these.
 TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
   Scene scene;
   scene.name = "book";
@@ -139,9 +129,9 @@ TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
   const Scene scene = lab::scene_of(objects);
   const std::vector<TrianglePair> all = brute_force(scene);
   ASSERT_EQ(all.size(), pairs);
-  for (const Peer& peer : all_peers(2)) {
-    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
-    if (!peer.missing.empty() || oriented || (peer.refuses && !peer.refuses(scene).empty()))
+  for (const Peer& peer : all_peers()) {
+    if (!peer.missing.empty() || peer.name == "fcl-obb" ||
+        (peer.refuses && !peer.refuses(scene).empty()))
       continue;
     EXPECT_EQ(peer.set_up(2)(scene).pairs, all) << peer.name;
   }
@@ -323,8 +313,7 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
         has_text(bench_table(scene, options, result), "left out: " + contestant.name + ": "));
   }
   EXPECT_FALSE(out.contains("far")) << "the native canvas draws on the CPU";
-  EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";
-  EXPECT_TRUE(out.contains("cgal-self-intersections")) << "of several objects";
+  EXPECT_TRUE(out.contains("fcl-obb")) << "not exact here, or not in this build";
   options.methods = "far";
   EXPECT_NO_THROW(contestants(scene, options));
   Scene with_self = scene;
@@ -335,9 +324,6 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   options = quick();
   options.peers = "fcl-obb,cgal-aabb";
   EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--peers");
-  options.peers = "cgal-self-intersections";
-  EXPECT_EQ(error_of([&] { contestants(make_builtin_scene("crowd"), options); }).reason,
-            "cgal-self-intersections: it takes one object, tested against itself");
 }
 
 TEST(Bench, RefusesWhatItDoesNotKnow) {
