@@ -35,7 +35,7 @@ bad plan without a scene | SCENE: | plan
 bad plan of nothing known | nope: | plan nope
 bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
-bad an unknown study | nope: .*oracles | experiment nope
+bad an unknown study | nope: .*lemma | experiment nope
 """, quick=['quick-cullide', 's-cullide'], sizes=['', '1', '0', 'x', '32,32', '16,32', '32,', '1e3'],
      objects=['i-collide', 'boxes', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
      form=['--rounds 1', '--clear all', '--level objects', '--conservative'], phase=['enough', 'boxes', ''])
