@@ -74,7 +74,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
                 "times of distance queries instead: objects, every two\nobjects; or nearest, each "
                 "with "
                 "the nearest other one.\nPeers are then "
-                "fcl-double,fcl-float,cgal-aabb,embree-points"},
+                "fcl-double,fcl-float,cgal-aabb"},
                {"--within", &within_, "DISTANCE",
                 "with --distances: farther ones need not be found;\nin world units, default all"},
                {"--json", &outputs_.json, "FILE", kJsonHelp}},

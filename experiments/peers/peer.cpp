@@ -30,8 +30,7 @@ constexpr Known kNarrow[] = {{"fcl-float", "FCL", "libfcl-dev"},
                              {"ode-trimesh", "ODE", "libode-dev"}};
 constexpr Known kDistances[] = {{"fcl-double", "FCL", "libfcl-dev"},
                                 {"fcl-float", "FCL", "libfcl-dev"},
-                                {"cgal-aabb", "CGAL", "libcgal-dev"},
-                                {"embree-points", "Embree 3", "libembree-dev"}};
+                                {"cgal-aabb", "CGAL", "libcgal-dev"}};
 
 std::vector<LibraryPeers> libraries_of_build() {
   std::vector<LibraryPeers> all;

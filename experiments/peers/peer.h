@@ -76,8 +76,8 @@ struct DistancePeer {
   std::string name;          // as in --peers
   std::string library;       // with its version
   std::string missing = {};  // why it cannot run in this build; empty: it can
-  /// False: the library answers in floats, or gives only upper bounds, so its time does not tell
-  /// how fast distances can be computed.
+  /// False: the library answers in floats, so its time does not tell how fast distances can be
+  /// computed.
   bool comparable = true;
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about this
@@ -105,9 +105,6 @@ std::vector<Peer> narrow_peers();
 ///                          that its dynamic tree of boxes finds
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
 ///                          squared_distance() of two triangles in doubles
-///   embree-points          Embree's rtcPointQuery from every vertex of each object to the other
-///                          object's triangles, in floats. Edges are not compared with edges, so
-///                          it gives an upper bound, and the bound of objects that cross is not 0
 std::vector<DistancePeer> distance_peers();
 
 /// The peers that the adapter of one library adds to the three lists above.

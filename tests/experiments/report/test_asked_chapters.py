@@ -91,12 +91,6 @@ def test_proximity_says_what_is_not_known():
     assert any("64 cells leave too many pairs" in limit for limit in chapter.limits)
 
 
-@pytest.mark.parametrize("more", [[], [row("field", "embree-points nearest", asked(3, 0.25), 5)]])
-def test_proximity_says_what_distances_from_vertices_are(more):
-    limits = chapter_of("proximity", proximity_rows() + more).limits
-    assert any(limit.startswith("Embree has no query") for limit in limits) == bool(more)
-
-
 # ---- libraries
 
 def counts_of(family, kind, card, counts, parameter="0"):
