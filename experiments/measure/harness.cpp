@@ -3,7 +3,6 @@
 #include "experiments/measure/harness.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cstdint>
 #include <iterator>
 #include <numeric>
@@ -67,10 +66,6 @@ Estimate median_estimate(std::vector<double> values) {
   for (double& median : medians) median = draws.median(values);
   const std::size_t n = values.size();
   return with_interval(middle_of(values), n, std::move(medians));
-}
-
-double student_t95(std::size_t degrees) {
-  return boost::math::quantile(boost::math::students_t(static_cast<double>(degrees)), 0.975);
 }
 
 Spread spread_of(const std::vector<double>& values) {

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 
 #include "core/base/error.h"
@@ -209,6 +211,15 @@ std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
     out += !repeated && std::find(b.begin(), b.end(), a[i]) != b.end();
   }
   return out;
+}
+
+void append_hexadecimal(std::string& text, double value) {
+  std::array<char, 40> buffer;
+  if (std::signbit(value)) text += '-';
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                         std::abs(value), std::chars_format::hex);
+  text += "0x";
+  text.append(buffer.data(), end);
 }
 
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,

@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
-#include "experiments/suite/writer.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/closest.h"

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
@@ -19,6 +17,7 @@
 #include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/suite/questions.h"
 #include "experiments/system/output_file.h"
 
@@ -242,15 +241,6 @@ std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
   out.push_back({"mesh.txt", std::move(properties), 0});
   out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
   return out;
-}
-
-void append_hexadecimal(std::string& text, double value) {
-  std::array<char, 40> buffer;
-  if (std::signbit(value)) text += '-';
-  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
-                                         std::abs(value), std::chars_format::hex);
-  text += "0x";
-  text.append(buffer.data(), end);
 }
 
 SuiteIndex read_suite(const std::string& folder) {

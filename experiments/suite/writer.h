@@ -35,9 +35,6 @@ struct SuiteIndex {
 /// ask.py compares the files.
 SuiteIndex read_suite(const std::string& folder);
 
-/// Appends a finite double as C's %a prints it, such as 0x1.8p+1, whatever the locale.
-void append_hexadecimal(std::string& text, double value);
-
 struct SuiteSettings {
   SuiteSize size = SuiteSize::small;
   std::uint64_t seed = 1;
