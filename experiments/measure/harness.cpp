@@ -1,5 +1,5 @@
 // Runs the contestants in rounds and summarizes their times. The bootstrap draws from a generator
-// whose numbers the C++ standard fixes; the quantiles of Student's t are Boost's.
+// whose numbers the C++ standard fixes.
 #include "experiments/measure/harness.h"
 
 #include <algorithm>
