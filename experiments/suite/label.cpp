@@ -213,13 +213,12 @@ std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
   return out;
 }
 
-void append_hexadecimal(std::string& text, double value) {
+std::string hexadecimal(double value) {
+  std::string text = std::signbit(value) ? "-0x" : "0x";
   std::array<char, 40> buffer;
-  if (std::signbit(value)) text += '-';
   const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
                                          std::abs(value), std::chars_format::hex);
-  text += "0x";
-  text.append(buffer.data(), end);
+  return text.append(buffer.data(), end);
 }
 
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,

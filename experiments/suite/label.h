@@ -69,8 +69,8 @@ struct SuiteMesh {
   std::vector<SuiteMeshPair> pairs;  // all that collide, ascending, each once
 };
 
-/// Appends a finite double as C's %a prints it, such as 0x1.8p+1, whatever the locale.
-void append_hexadecimal(std::string& text, double value);
+/// A finite double as C's %a prints it, such as 0x1.8p+1, whatever the locale.
+std::string hexadecimal(double value);
 
 /// How many vertices two triangles of one object share: indices in both triangles, each once.
 std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair);

@@ -23,12 +23,6 @@ constexpr std::array<const char*, 4> kKinds = {"distance", "self", "inside", "cl
 
 std::size_t number_of(SuiteQuestionKind kind) { return static_cast<std::size_t>(kind); }
 
-std::string hexadecimal(double value) {
-  std::string out;
-  append_hexadecimal(out, value);
-  return out;
-}
-
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 
 /// The objects with these numbers as a scene of their own.

@@ -72,6 +72,44 @@ std::string colliding_text(const SuiteMesh& mesh) {
   return out;
 }
 
+/// The line of one pair, without its newline.
+std::string pair_line(const SuitePair& pair) {
+  std::string shared;
+  for (const auto& [i, j] : pair.shared)
+    shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
+  if (shared.empty()) shared = "-";
+  std::string out =
+      fmt::format("{} {} {} {}", pair.id, shortest(pair.parameter), shared, to_string(pair.kind));
+  for (const auto* t : {&pair.a, &pair.b}) {
+    for (const Vec3& p : *t) {
+      for (int k = 0; k < 3; ++k) out += " " + hexadecimal(p[k]);
+    }
+  }
+  return out;
+}
+
+std::string pairs_text(const SuitePairs& pairs) {
+  std::string out = "farcull-pairs 1 " + pairs.family + "\n";
+  for (const PairFamily& family : pair_families()) {
+    if (family.name != pairs.family) continue;
+    out += "# " + family.description + "\n";
+    if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
+  }
+  for (const SuitePair& pair : pairs.pairs) out += pair_line(pair) + "\n";
+  return out;
+}
+
+/// The text of suite.txt; `index.sum` is not used.
+std::string index_text(const SuiteIndex& index) {
+  std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
+                                index.size, index.licence);
+  for (const SuiteIndex::File& file : index.files) {
+    fmt::format_to(std::back_inserter(out), "file {} {} {} {}\n", file.path, file.bytes,
+                   file.sha256, file.items);
+  }
+  return out + "sum " + sha256(out) + "\n";
+}
+
 /// The sum in the last line of suite.txt.
 std::string sum_of(const std::string& text) {
   constexpr std::size_t kLine = 4 + 64 + 1;  // "sum ", SHA-256, newline
@@ -95,6 +133,16 @@ class Folder {
   void write(const std::string& name, const SuiteQuestions& questions) {
     const std::size_t count = questions.questions.size();
     if (count > 0) write("questions/" + name + ".txt", questions_text(questions), count);
+  }
+  void write(const SuiteMesh& mesh) {
+    const std::string folder = "meshes/" + mesh.name + "/";
+    for (const Object& object : mesh.scene.objects)
+      write(folder + object.name + ".obj", obj_text(mesh.scene, object), object.triangle_count);
+    write(folder + "mesh.txt",
+          fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
+                      shortest(mesh.parameter), mesh.family),
+          0);
+    write(folder + "pairs.csv", colliding_text(mesh), mesh.pairs.size());
   }
   void finish() {
     std::sort(index_.files.begin(), index_.files.end(),
@@ -202,47 +250,6 @@ SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings) {
   throw std::logic_error("make_mesh: no mesh " + name);
 }
 
-std::string pair_line(const SuitePair& pair) {
-  std::string shared;
-  for (const auto& [i, j] : pair.shared)
-    shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
-  if (shared.empty()) shared = "-";
-  std::string out =
-      fmt::format("{} {} {} {}", pair.id, shortest(pair.parameter), shared, to_string(pair.kind));
-  for (const auto* t : {&pair.a, &pair.b}) {
-    for (const Vec3& p : *t) {
-      for (int k = 0; k < 3; ++k) {
-        out += ' ';
-        append_hexadecimal(out, p[k]);
-      }
-    }
-  }
-  return out;
-}
-
-std::string pairs_text(const SuitePairs& pairs) {
-  std::string out = "farcull-pairs 1 " + pairs.family + "\n";
-  for (const PairFamily& family : pair_families()) {
-    if (family.name != pairs.family) continue;
-    out += "# " + family.description + "\n";
-    if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
-  }
-  for (const SuitePair& pair : pairs.pairs) out += pair_line(pair) + "\n";
-  return out;
-}
-
-std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
-  std::vector<SuiteText> out;
-  for (const Object& object : mesh.scene.objects)
-    out.push_back({object.name + ".obj", obj_text(mesh.scene, object), object.triangle_count});
-  std::string properties =
-      fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
-                  shortest(mesh.parameter), mesh.family);
-  out.push_back({"mesh.txt", std::move(properties), 0});
-  out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
-  return out;
-}
-
 SuiteIndex read_suite(const std::string& folder) {
   const std::string path = folder + "/suite.txt", text = read_file(path, UINT64_MAX);
   SuiteIndex out;
@@ -255,16 +262,6 @@ SuiteIndex read_suite(const std::string& folder) {
     throw Error(path, "is no list of a suite, or was changed",
                 "docs/suite.md has the format; write the suite again");
   return out;
-}
-
-std::string index_text(const SuiteIndex& index) {
-  std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
-                                index.size, index.licence);
-  for (const SuiteIndex::File& file : index.files) {
-    fmt::format_to(std::back_inserter(out), "file {} {} {} {}\n", file.path, file.bytes,
-                   file.sha256, file.items);
-  }
-  return out + "sum " + sha256(out) + "\n";
 }
 
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
@@ -284,8 +281,7 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
   for (const std::string& name : mesh_names(settings.size)) {
     if (progress) progress("mesh " + name);
     const SuiteMesh mesh = make_mesh(name, settings);
-    for (const SuiteText& file : mesh_texts(mesh))
-      files.write("meshes/" + name + "/" + file.name, file.text, file.items);
+    files.write(mesh);
     files.write(name, questions_of(mesh, settings.seed));
     out.meshes.push_back(counts_of(mesh));
   }

@@ -73,19 +73,6 @@ std::vector<std::string> mesh_names(SuiteSize size);
 /// A mesh of this suite with its colliding pairs. Throws as make_pairs().
 SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
 
-/// The text of a file of pairs, and of the files of a mesh by their names in its folder, ascending.
-std::string pairs_text(const SuitePairs& pairs);
-/// The line of one pair in such a file, without its newline.
-std::string pair_line(const SuitePair& pair);
-struct SuiteText {
-  std::string name;
-  std::string text;
-  std::uint64_t items = 0;  // as SuiteIndex::File::items
-};
-std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh);
-/// The text of suite.txt; `index.sum` is not used.
-std::string index_text(const SuiteIndex& index);
-
 /// Makes the suite in `folder`, which must not exist or be empty. suite.txt comes last, so a folder
 /// without it is not whole. Throws Error naming a path that the system refuses, and as
 /// make_pairs().
