@@ -82,7 +82,6 @@ Frame turned_frame(RandomDraws& draws);
 
 struct PairGenerator {
   std::string name;
-  std::string description;  // one line
   DrawnPair (*make)(RandomDraws&);
 };
 
@@ -122,13 +121,11 @@ struct SuiteObject {
 /// fans, duplicates).
 struct MeshFamily {
   std::string name;
-  std::string description;  // one line
-  std::string parameter;    // the meaning of its number
-  bool self = false;        // its objects are tested against themselves too
+  bool self = false;  // its objects are tested against themselves too
   /// Makes the objects. detail: how fine they are, in a unit that each family chooses.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
-    double parameter = 0;
+    double parameter = 0;  // docs/suite.md says of each family what it is
     int detail = 0;
   };
   std::vector<Member> members;
