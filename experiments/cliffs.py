@@ -43,7 +43,7 @@ import numpy as np
 LIMITS = {"pairs": 3, "memory": 2, "distance": 10, "far": None}
 # Built-in scenes; of those that take a number: triangles for each, the least and the greatest number.
 STARTS = {
-    **{name: (1, 5000, 10**7) for name in ("field", "crumpled", "rope", "spheres", "fans", "cad-cut", "funnel")},
+    **{name: (1, 5000, 10**7) for name in ("field", "crumpled", "spheres", "cad-cut", "funnel")},
     **{"needles": (2.6, 8, 10**6), "slivers": (2, 1, 10**5), "mixed": (10, 1, 10**4), "stack": (128, 2, 1000)},
     **{"shells": (700, 4, 10**4), "crowd": (23, 2, 10**6), "cylinders": (200, 2, 10**5), "torii": (6, 72, 10**6)},
     **{"tree-leaves": (220, 1, 10**5), "cloth": (2, 8, 10**5)},

@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-SCENES = "two-bunnies armadillo-elephant crumpled rope spheres field:1000000 funnel needles-crossed cad-cut".split()
+SCENES = "two-bunnies armadillo-elephant crumpled spheres field:1000000 funnel needles-crossed cad-cut".split()
 DISTANCES = {"crowd": "nearest", "bunnies-far-apart": "objects", "field:100000": "nearest"}
 THREADS = (1, 2)
 PEERS = "embree-low,embree-medium,cgal-object-pairs,fcl-obb,bullet-gimpact"  # as in stages.py

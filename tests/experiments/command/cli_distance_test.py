@@ -82,7 +82,7 @@ point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
 0 that meet | distance small.obj small.obj --csv - | ^0,0,1,0,0,0/1,
 0 nearest | distance small.obj right.obj large.obj --pairs nearest --k 4000000000 --verify | ^0 small +1  1 right +1[ ]
 0 all | distance crowd --pairs all --within 0.01 --verify --csv all.csv --json all.json | ^verified:
-0 self | distance rope:2000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
+0 self | distance crumpled:1000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
 0 threads | distance crowd --pairs nearest --k 2 --threads 1 --csv one.csv
 0 threads | distance crowd --pairs nearest --k 2 --threads 3 --csv three.csv | $ cmp -s one.csv three.csv
 moves_{i}.obj << v {i} 0 0; v 9 0 0; v 9 1 0; f 1 2 3

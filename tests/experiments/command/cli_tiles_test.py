@@ -22,7 +22,7 @@ def same(tiles, scene):
 
 # The built-in scenes, the large ones of a smaller size, in 1 to 5 tiles; those of packaged meshes, where they are.
 for number, scene in enumerate('''two-spheres two-tori random-soup needles degenerate ground crowd:60 far-apart field:3000
-    crumpled:2000 rope:3000 spheres:2000 fans:2000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000
+    crumpled:2000 spheres:2000 cad-cut:2000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000
     slivers stack mixed gap'''.split()):
     same(number % 5 + 1, scene)
 if launch(['run', 'bunny', '--no-verify']) == 0:
