@@ -87,8 +87,8 @@ class KeptFinder {
             const py::array& poses) {
     require_process(process_, name_);
     const Turn turn(used_, name_);
-    const Given given(vertices, triangles, starts, poses);
-    return answer_beside([&] { return finder_->find(given.input(copies_)); });
+    const MeshArrays given(vertices, triangles, starts, poses);
+    return without_gil([&] { return finder_->find(given.input()); });
   }
 
   const Asked options;
@@ -96,7 +96,6 @@ class KeptFinder {
  private:
   const char* name_;
   pid_t process_;
-  Copies copies_;
   std::atomic_flag used_;
   std::unique_ptr<Finder> finder_;
 };
@@ -222,11 +221,8 @@ class KeptStream {
   KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
              const py::array& poses, const Options& options)
       : process_(::getpid()), contacts_(options.contacts) {
-    const Given given(vertices, triangles, starts, poses);
-    beside([&] {
-      Copies copies;
-      stream_ = std::make_unique<Stream>(given.input(copies), options);
-    });
+    const MeshArrays given(vertices, triangles, starts, poses);
+    beside([&] { stream_ = std::make_unique<Stream>(given.input(), options); });
   }
 
   // The next part of the pairs, perhaps empty; None after the last part.
@@ -238,7 +234,7 @@ class KeptStream {
             "make a new stream; one for each thread", false);
     }
     given_ = true;
-    const bool more = answer_beside([&] { return stream_->next(found_); });
+    const bool more = without_gil([&] { return stream_->next(found_); });
     decided_ = stream_->decided();
     complete_ = stream_->complete();
     if (!more) {

@@ -347,14 +347,8 @@ def join(
     first_vertex = first_triangle = 0
     for mesh in meshes:
         V, F = _arguments.mesh(mesh)
-        for name, given, kinds in (("V", V, "fiu"), ("F", F, "iu")):
-            if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in kinds:
-                raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
         if not F.size:
             raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
-        if V.dtype.kind in "iu" and V.size and max(-int(V.min()), int(V.max())) > 2**53:
-            # Beside another type numpy would round them.
-            raise InputError("V", "hold what a double may not hold exactly", "give doubles")
         if not (0 <= F.min() and F.max() < len(V)):
             raise InputError(
                 "F", "names a vertex that the mesh does not have", "correct the index"

@@ -205,9 +205,7 @@ Header read_header(TextReader& in) {
 
 }  // namespace
 
-namespace {
-
-Mesh parse_off_lines(std::string_view bytes, const std::string& name) {
+Mesh parse_off(std::string_view bytes, const std::string& name) {
   TextReader in(bytes, name, {.comment = '#'});
   const Header header = read_header(in);
   MeshBuilder mesh(name);
@@ -243,61 +241,6 @@ Mesh parse_off_lines(std::string_view bytes, const std::string& name) {
   }
   if (in.next_line()) in.fail("more follows than the counts of the header promise", kDamaged);
   return mesh.finish();
-}
-
-// Reads plain OFF without colours, whose numbers may stand on any lines: three counts, then
-// vertices and faces, and nothing else.
-Mesh parse_off_numbers(std::string_view bytes, const std::string& name) {
-  TextReader in(bytes, name, {.comment = '#'});
-  const auto go_on = [&] {
-    if (!in.seek()) in.fail("the file ends too early", kDamaged);
-  };
-  go_on();
-  if (in.token() != "OFF") in.fail("is not plain OFF", kDamaged);
-  go_on();
-  const std::uint64_t vertices = count(in, "vertices", 6);
-  go_on();
-  const std::uint64_t faces = count(in, "faces", 8);
-  go_on();
-  in.integer("the number of edges");
-  MeshBuilder mesh(name);
-  for (std::uint64_t i = 0; i < vertices; ++i) {
-    Vec3 p;
-    for (int axis = 0; axis < 3; ++axis) {
-      go_on();
-      p[axis] = in.coordinate("a coordinate");
-    }
-    mesh.add_vertex(p, in.line());
-  }
-  std::vector<std::uint32_t> corners;
-  for (std::uint64_t i = 0; i < faces; ++i) {
-    go_on();
-    corners.resize(count(in, "corners", 2));
-    for (std::uint32_t& corner : corners) {
-      go_on();
-      const std::int64_t index = in.integer("a vertex index of the face");
-      if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
-        in.fail(fmt::format("vertex index {} of {} vertices", index, vertices), kDamaged);
-      corner = static_cast<std::uint32_t>(index);
-    }
-    mesh.add_face(corners, in.line());
-  }
-  if (in.seek()) in.fail("more follows than the counts promise", kDamaged);
-  return mesh.finish();
-}
-
-}  // namespace
-
-Mesh parse_off(std::string_view bytes, const std::string& name) {
-  try {
-    return parse_off_lines(bytes, name);
-  } catch (const Error& of_lines) {
-    try {
-      return parse_off_numbers(bytes, name);
-    } catch (const Error&) {
-      throw of_lines;
-    }
-  }
 }
 
 namespace {

@@ -61,16 +61,6 @@ def test_an_index_that_does_not_fit_is_named_with_its_row(row, value):
         assert error.where == "F" and error.reason == as_read
 
 
-def test_half_precision_is_read_exactly():
-    # Every finite number of half precision, subnormal ones too, as the x of a point.
-    halves = np.arange(1 << 16, dtype=np.uint16).view(np.float16)
-    halves = halves[np.isfinite(halves)]
-    points = np.zeros((len(halves), 3), np.float16)
-    points[:, 0] = halves
-    scene = farcull.Scene.from_arrays(points, [[0, 0, 0]])
-    assert np.array_equal(scene.vertices[:, 0], halves.astype(float))
-
-
 def layouts(array):
     wide = np.zeros((2 * len(array), 7), array.dtype)
     wide[::2, 1:6:2] = array
