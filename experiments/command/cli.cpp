@@ -163,7 +163,7 @@ std::string tag(const DeclaredOption& option) {
   for (const std::string& name : option.names) out += (out.empty() ? "" : ", ") + bold(name);
   if (option.names.empty()) return italic(option.type) + (option.many ? " ..." : "");
   if (option.flag) return out;
-  return out + (option.bare ? " [" + italic(option.type) + "]" : " " + italic(option.type));
+  return out + " " + italic(option.type);
 }
 
 std::string usage(const DeclaredCommand& command) {

@@ -38,19 +38,13 @@ int command_line(int argc, char** argv);
 
 using Text = std::optional<std::string>;  // value of an option; empty if it was not given
 
-/// An option whose value may be left out.
-struct BareOption {
-  bool given = false;
-  std::string value;
-};
-
 enum class Need : std::uint8_t { may, must };
 
 /// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
 /// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
   const char* name;
-  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*, BareOption*>
+  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*>
       value;
   const char* type = "";
   std::string help;
@@ -80,7 +74,6 @@ struct DeclaredOption {
   std::string type;  // stands for the value; empty for a flag. The name of an argument
   std::string help;  // lines as in the help
   bool flag = false;
-  bool bare = false;      // its value may be left out
   bool many = false;      // an argument that may be given several times
   bool required = false;  // an argument that has to be given
 };
@@ -359,7 +352,6 @@ class PictureCommand {
   SceneArguments scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
       up_, size_, output_, html_, resolutions_;
-  BareOption depth_view_;
   bool self_ = false, zoom_ = false;
 };
 

@@ -112,7 +112,7 @@ std::string table_of_values(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
     for (const DeclaredOption& option : command.options) {
-      if (option.flag || option.bare) continue;
+      if (option.flag) continue;
       std::vector<std::string> patterns;
       for (const std::string& name : option.names)
         patterns.push_back(quoted(command.name + " " + name));
@@ -247,7 +247,7 @@ std::string fish_script(const DeclaredCommand& program) {
   visit(program, [&](const DeclaredCommand& command) {
     std::vector<std::string> names;
     for (const DeclaredOption& option : command.options) {
-      if (!option.flag && !option.bare)
+      if (!option.flag)
         names.insert(names.end(), option.names.begin(), option.names.end());
     }
     std::vector<std::string> commands;
@@ -297,7 +297,7 @@ complete -c farcull -f
       out += at;
       for (const std::string& name : option.names)
         out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (!option.flag && !option.bare) out += " -r" + values_of(option.type);
+      if (!option.flag) out += " -r" + values_of(option.type);
       out += " -d " + quoted(line_of(option.help)) + "\n";
     }
     for (const DeclaredOption& argument : command.arguments) {

@@ -115,10 +115,6 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
                 "-0.45:-0.35:-0.82"},
                {"--up", &up_, "AXIS", "upwards in the picture; default y"},
                {"--zoom", &zoom_, "", "show only where something collides"},
-               {"--view-depth", &depth_view_, "[VIEW]",
-                "instead: the depth that the method stores in one of\nits "
-                "views (default z; --view-depth=-z for -z), and\n"
-                "what that view culls"},
                {"--html", &html_, "FILE",
                 "a page to look into the answers: one file that opens in\nany browser and needs no "
                 "network"},
@@ -132,7 +128,6 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
       "  farcull picture two-bunnies --compare cullide:128,cullide:512,far:128 --zoom -o c.png\n"
       "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
-      "  farcull picture two-tori --method far --resolution 64 --view-depth x -o depth.png\n"
       "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n"
       "  farcull picture two-bunnies --compare cullide,far --html bunnies.html\n"
       "  farcull picture two-spheres --frames 20 --html motion.html\n\n"
@@ -166,7 +161,6 @@ PictureArguments PictureCommand::arguments() const {
   }
   out.view = view_.value_or("");
   out.up = up_.value_or("");
-  if (depth_view_.given) out.depth_view = depth_view_.value.empty() ? "z" : depth_view_.value;
 
   RunOptions usual = usual_options();
   if (method_ && compare_)
@@ -206,8 +200,6 @@ PictureArguments PictureCommand::arguments() const {
 }
 
 PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
-  if (picture.depth_view)
-    throw Error("--html", "a page shows no stored depth", "leave --view-depth out");
   PageArguments out;
   out.picture = picture;
   if (frames_ && !frame_) out.frames = picture.frames;

@@ -338,8 +338,8 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
 // The pixels, what the panels say, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom,
-                     const std::optional<std::string>& depth_view, int width, int height,
-                     const std::string& device, unsigned threads, bool page) {
+                     int width, int height, const std::string& device, unsigned threads,
+                     bool page) {
   std::string html;
   const PictureResult result = without_gil([&] {
     if (page) require_three();
@@ -348,7 +348,6 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     arguments.view = view;
     arguments.up = up;
     arguments.zoom = zoom;
-    arguments.depth_view = depth_view;
     arguments.width = width;
     arguments.height = height;
     for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));

@@ -228,13 +228,4 @@ struct WrittenScene {
 /// files that are new. Precondition: every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
-/// The same for frames, for `farcull run FOLDER/scene.json --frames`: NAME_%04d.off with the number
-/// of the frame, or NAME.off for an object that stands still while others move. If objects come and
-/// go (`objects_change`), all objects of a frame are groups of one OBJ instead, in their order.
-/// `at` gives the frames of the range in order. Throws Error as write_scene(), and if objects come
-/// and go but only some are tested against themselves, which no scene file can express.
-WrittenScene write_frames(const std::function<const Scene&(long)>& at, FrameRange range,
-                          bool objects_change, const std::string& folder,
-                          const Progress& progress = {});
-
 }  // namespace farcull

@@ -146,7 +146,6 @@ def picture(
     view: str,
     up: str,
     zoom: bool,
-    depth_view: Optional[str],
     width: int,
     height: int,
     device: str,

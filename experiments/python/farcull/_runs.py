@@ -226,14 +226,14 @@ class Picture:
 
 def picture(
     scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("boxes",), *,
-    view: str = "", up: str = "", zoom: bool = False, depth_view: Optional[str] = None,
+    view: str = "", up: str = "", zoom: bool = False,
     width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
     """Draws which triangles collide, which of them a method missed, and which it kept in vain.
 
     - ``methods``: a panel each: a name, or options as of :meth:`Scene.run` with ``method`` among them.
     - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and what is upwards.
-    - ``zoom``: only what collides. ``depth_view``: instead, the depth stored in this view.
+    - ``zoom``: only what collides.
     - ``width``, ``height``: px of a panel.
     - ``page``: True: also write a page in which the scene can be turned, as of ``farcull picture --html``;
       :func:`show` opens it.
@@ -249,7 +249,6 @@ def picture(
     pixels, shown, html = _farcull.picture(
         scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
         _arguments.flag("zoom", zoom),
-        None if depth_view is None else _arguments.text("depth_view", depth_view),
         _arguments.integer("width", width, 1, 10**6),
         _arguments.integer("height", height, 1, 10**6), _arguments.text("device", device),
         _arguments.threads(threads), _arguments.flag("page", page),

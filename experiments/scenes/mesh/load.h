@@ -1,5 +1,5 @@
-// Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip; OBJ and OFF are written
-// as well. Coordinates are the doubles of the file, never rounded through float: text is converted
+// Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip; OFF is written as
+// well. Coordinates are the doubles of the file, never rounded through float: text is converted
 // with correct rounding, binary floats widen exactly. Indices, finiteness and sizes are checked,
 // whatever the file claims; nothing is allocated because a header says so.
 #pragma once
@@ -77,9 +77,6 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
 
 /// The part as OFF, each number with 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
-/// The part as an object of an OBJ file. first: number of its first vertex in the file, from 1.
-std::string obj_object(const MeshPart& part, const std::string& name, std::uint64_t first);
-
 /// Whether a name holds one place for a number: %d, or %0Nd for N digits (1 to 9) with leading
 /// zeros.
 bool is_numbered(const std::string& name);

@@ -264,15 +264,6 @@ std::string off_text(const MeshPart& part) {
   return fmt::to_string(out);
 }
 
-std::string obj_object(const MeshPart& part, const std::string& name, std::uint64_t first) {
-  fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "o {}\n", name);
-  add_vertices(part, "v ", out);
-  for (const auto& [a, b, c] : part.triangles)
-    fmt::format_to(std::back_inserter(out), "f {} {} {}\n", first + a, first + b, first + c);
-  return fmt::to_string(out);
-}
-
 namespace {
 
 constexpr std::size_t kHeaderBytes = 84;  // 80 arbitrary bytes, then the number of triangles
