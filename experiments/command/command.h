@@ -44,8 +44,7 @@ enum class Need : std::uint8_t { may, must };
 /// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
   const char* name;
-  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*>
-      value;
+  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
   Need need = Need::may;

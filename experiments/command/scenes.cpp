@@ -138,9 +138,8 @@ void ScenesCommand::list(const Outputs& outputs) const {
 
 void ScenesCommand::write() const {
   const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
-  write_output("-",
-               fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
-                           counted(written.bytes, "byte", "bytes"), written.scene_file));
+  write_output("-", fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
+                                counted(written.bytes, "byte", "bytes"), written.scene_file));
 }
 
 }  // namespace

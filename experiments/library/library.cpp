@@ -233,7 +233,6 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
   DistanceOptions out{.pairs = pairs_of(options.kind),
                       .k = options.k,
                       .inside = options.inside,
-                      .parity = options.parity,
                       .threads = options.threads};
   if (options.threads > kMostThreads)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
@@ -252,8 +251,6 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
     throw Error("self", "has no meaning with nearest", "leave it out, or give another kind");
   if (!nearest && options.k != 1)
     throw Error("k", "has no meaning without nearest", "leave it out, or give nearest");
-  if (out.pairs == DistancePairs::all && options.parity)
-    throw Error("parity", "has no meaning with all", "leave it out");
   return out;
 }
 

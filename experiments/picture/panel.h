@@ -30,7 +30,7 @@ struct PictureArguments {
                                    // obliquely down on the side that +z points to
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
   bool zoom = false;               // only the colliding triangles
-  int width = 900, height = 760;  // px of a panel's picture, 64 to kMostPicture
+  int width = 900, height = 760;   // px of a panel's picture, 64 to kMostPicture
 };
 
 /// The largest number of panels.
@@ -137,16 +137,16 @@ constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
 
 /// The counts and texts of a panel. `colliding` and `missed` include pairs of neighbours.
 struct PanelResult {
-  std::string title;                   // "cullide at 128 px"
-  std::string headline;                // "missed 12 of 4,268 colliding pairs"
-  std::uint64_t colliding = 0;         // pairs, by the exact method
-  std::uint64_t neighbours = 0;        // of these, pairs of neighbours
-  std::uint64_t missed = 0;            // of `colliding`, not found by the method
-  std::uint64_t missed_triangles = 0;  // triangles in a missed pair
-  std::uint64_t kept = 0;              // triangles; 0 for exact, which culls none
-  std::uint64_t idle = 0;              // of `kept`, in no collision
-  std::uint64_t rings = 0;             // around misses that are too small to see
-  bool drew = false;                                          // it drew in views at a resolution
+  std::string title;                             // "cullide at 128 px"
+  std::string headline;                          // "missed 12 of 4,268 colliding pairs"
+  std::uint64_t colliding = 0;                   // pairs, by the exact method
+  std::uint64_t neighbours = 0;                  // of these, pairs of neighbours
+  std::uint64_t missed = 0;                      // of `colliding`, not found by the method
+  std::uint64_t missed_triangles = 0;            // triangles in a missed pair
+  std::uint64_t kept = 0;                        // triangles; 0 for exact, which culls none
+  std::uint64_t idle = 0;                        // of `kept`, in no collision
+  std::uint64_t rings = 0;                       // around misses that are too small to see
+  bool drew = false;                             // it drew in views at a resolution
   bool broken = false;                           // the method promises, and missed a pair
   std::string device;                            // what answered: a renderer, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px

@@ -188,7 +188,7 @@ void add_collider(py::module_& module) {
 void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
       .def(py::init([](const std::string& kind, std::size_t k, std::optional<double> within,
-                       bool self, const std::vector<bool>& self_objects, bool inside, bool parity,
+                       bool self, const std::vector<bool>& self_objects, bool inside,
                        const std::vector<std::array<std::uint32_t, 2>>& ignore, unsigned threads) {
         return std::make_unique<KeptDistances>("DistanceFinder",
                                                DistanceFinderOptions{.kind = kind_of(kind),
@@ -197,7 +197,6 @@ void add_distances(py::module_& module) {
                                                                      .self = self,
                                                                      .self_objects = self_objects,
                                                                      .inside = inside,
-                                                                     .parity = parity,
                                                                      .ignore = ignore,
                                                                      .threads = threads});
       }))

@@ -337,9 +337,8 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
 
 // The pixels, what the panels say, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
-                     const std::string& view, const std::string& up, bool zoom,
-                     int width, int height, const std::string& device, unsigned threads,
-                     bool page) {
+                     const std::string& view, const std::string& up, bool zoom, int width,
+                     int height, const std::string& device, unsigned threads, bool page) {
   std::string html;
   const PictureResult result = without_gil([&] {
     if (page) require_three();
@@ -356,8 +355,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     lab.scene(kept.scene->name, [&] { return *kept.scene; });
     PictureResult flat = make_picture(arguments, lab);
     if (page) {
-      html = make_page({.picture = arguments, .steps = arguments.panels, .frames = {}}, flat, lab)
-                 .html;
+      html = make_page({.picture = arguments, .steps = arguments.panels}, flat, lab).html;
     }
     return flat;
   });

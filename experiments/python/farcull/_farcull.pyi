@@ -62,7 +62,6 @@ class DistanceFinder:
         all_objects: bool,
         self_objects: Sequence[bool],
         inside: bool,
-        parity: bool,
         ignore: Sequence[Sequence[int]],
         threads: int,
     ) -> None: ...

@@ -1,4 +1,4 @@
-"""Completion and the manual, against the help of every command; in bash, zsh and fish, and by the readers of manuals, where
+"""Completion and the manual, against the help of every command; in bash, and by the readers of manuals, where
 these are installed."""
 import functools
 import os
@@ -30,12 +30,6 @@ def has_in_table(script, command, option):
     return re.search(f"[' =]{option}( |'|$)", '\n'.join(branches), re.MULTILINE)
 
 
-def has_in_fish(script, command, option):
-    lines = re.findall(rf".*__farcull_at (?:'\\'')?{command}(?:'\\'')?'.*", script)
-    flag = f' -l {option[2:]} ' if option.startswith('--') else f' -s {option[1:]} '
-    return any(flag in line for line in lines)
-
-
 def has_in_manual(page, command, option):
     head = 'SS ' + command if ' ' in command else 'SH DESCRIPTION'
     sections = re.split(r'^\.(?=S[SH] )', page.replace('\\-', '-'), flags=re.MULTILINE)
@@ -52,16 +46,15 @@ def missing(has, text):
 commands = commands_below()
 case('commands', len(commands) > 20, f'only {commands} are found in the help')
 rows(r"""
-0 completion {shell} | completion {shell} >script.{shell}
+0 completion | completion bash >script.bash
 0 the manual | man >farcull.1
-""", shell=['bash', 'zsh', 'fish'])
-for has, file in (has_in_table, 'script.bash'), (has_in_table, 'script.zsh'), (has_in_fish, 'script.fish'), \
-        (has_in_manual, 'farcull.1'):
+""")
+for has, file in (has_in_table, 'script.bash'), (has_in_manual, 'farcull.1'):
     lost = missing(has, read(file))
     case(file, not lost, f'it lacks {lost}')
 # The twins: one option is taken out, and noticed.
 for has, file, option in (has_in_table, 'script.bash', ' --clearance(?= )'), \
-        (has_in_fish, 'script.fish', '.* -l clearance .*\n'), (has_in_manual, 'farcull.1', '.*clearance.*\n'):
+        (has_in_manual, 'farcull.1', '.*clearance.*\n'):
     lost = missing(has, re.sub(option, '', read(file)))
     case(f'{file} without an option', any('--clearance' in text for text in lost), 'it is not noticed')
 
@@ -88,21 +81,10 @@ OFFER = {
         COMP_LINE=$1 COMP_POINT=${#1}
         _farcull
         echo "${COMPREPLY[*]-}"''', 'bash'],
-    'zsh': ['zsh', '-f', '-c', '''compdef() { : }
-        compadd() { shift; offered+=("$@") }
-        compset() { current=${current#*=} }
-        _files() { offered+=(FILES) }
-        offered=()
-        source ./script.zsh
-        words=(${(z)1}) CURRENT=${#words}
-        [[ $1 == *" " ]] && { words+=(""); CURRENT=${#words} }
-        _farcull
-        print -r -- "${(@M)offered:#${words[CURRENT]#*=}*}" ${(M)offered:#FILES}''', 'zsh'],
-    'fish': ['fish', '--no-config', '-c',
-             'source script.fish; complete -C $argv[1] | string replace -r "\\t.*" ""; true', '--']}
+}
 rows(r"""
 mesh.obj << {T}; f 1 2 3
-$ gzip -k mesh.obj && echo text >notes.txt && mkdir meshes fish
+$ gzip -k mesh.obj && echo text >notes.txt && mkdir meshes
 """)
 
 
@@ -114,16 +96,16 @@ def offered(shell, line):
 
 
 for shells, line, wanted, unwanted in (
-        ('bash zsh fish', 'farcull ru', 'run', 'compare'),
-        ('bash zsh fish', 'farcull run --me', '--method', '--resolution'),
-        ('bash zsh fish', 'farcull run --method ', 'far cullide boxes exact', 'native two-spheres'),
-        ('bash zsh fish', 'farcull run --depth f', 'fragment fixed', 'far'),
-        ('bash zsh fish', 'farcull run two-spheres --device n', 'native', 'software'),
-        ('bash zsh fish', 'farcull run --self two-sph', 'two-spheres', 'run'),
-        ('bash zsh fish', 'farcull experiment ', 'accuracy all lemma', 'run two-spheres'),
-        ('bash zsh fish', 'farcull experiment lemma --canvas w', 'worst', 'native'),
-        ('bash zsh fish', 'farcull experiment all --qui', '--quick', '--query'),
-        ('bash zsh fish', 'farcull completion ', 'bash zsh fish', ''),
+        ('bash', 'farcull ru', 'run', 'compare'),
+        ('bash', 'farcull run --me', '--method', '--resolution'),
+        ('bash', 'farcull run --method ', 'far cullide boxes exact', 'native two-spheres'),
+        ('bash', 'farcull run --depth f', 'fragment fixed', 'far'),
+        ('bash', 'farcull run two-spheres --device n', 'native', 'software'),
+        ('bash', 'farcull run --self two-sph', 'two-spheres', 'run'),
+        ('bash', 'farcull experiment ', 'accuracy all lemma', 'run two-spheres'),
+        ('bash', 'farcull experiment lemma --canvas w', 'worst', 'native'),
+        ('bash', 'farcull experiment all --qui', '--quick', '--query'),
+        ('bash', 'farcull completion ', 'bash', ''),
         ('bash', 'farcull run --query=o', 'occlusion', 'flags'),
         ('bash', 'farcull run me', 'mesh.obj mesh.obj.gz meshes', 'notes.txt'),
         ('bash', 'farcull run a.obj me', 'mesh.obj', ''),

@@ -31,8 +31,7 @@ share=$work/prefix/share
 # The report finds its Python program beside it.
 [[ -e $share/farcull/report/__main__.py && -e $share/farcull/report/chapters/accuracy.py ]] ||
   fail "the program that writes reports is not installed"
-for file in man/man1/farcull.1 bash-completion/completions/farcull zsh/site-functions/_farcull \
-  fish/vendor_completions.d/farcull.fish; do
+for file in man/man1/farcull.1 bash-completion/completions/farcull; do
   grep -q farcull "$share/$file" || fail "share/$file is not installed, or empty"
 done
 grep -q LGPL-3.0-or-later "$share/doc/farcull/LICENSE" || fail 'the licence is not installed'

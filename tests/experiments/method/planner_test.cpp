@@ -99,6 +99,19 @@ TEST(Planner, ABroadPhaseOfTrianglesLeavesLessToDraw) {
   EXPECT_LT(drawn.found.views()[0].pixel_size, published.found.views()[0].pixel_size);
 }
 
+// Where slivers overlap, boxes of triangles settle little, and those of objects are compared.
+TEST(Planner, TheRecordNamesTheBoxesThatWereCompared) {
+  const auto phase_of = [](const char* name) {
+    return run(make_builtin_scene(name), {.method = Method::far,
+                                          .resolution = 64,
+                                          .broad_phase = BroadPhase::triangles,
+                                          .device = "native"})
+        .options.broad_phase;
+  };
+  EXPECT_EQ(phase_of("cad-cut:2000"), BroadPhase::objects);
+  EXPECT_EQ(phase_of("two-spheres"), BroadPhase::triangles);
+}
+
 // A record names only what drew.
 TEST(Planner, OptionsOfDrawingAreNullWhereNothingIsLeftToDraw) {
   for (const Method method : {Method::far, Method::cullide}) {

@@ -146,19 +146,17 @@ def box_of(low, high):
     return V, np.array([[a, b, c] for q in quads for a, b, c in (q[:3], (q[0], q[2], q[3]))])
 
 
-def test_inside_is_by_winding_numbers_or_by_parity():
-    # Two shells that overlap, as one object: where both are, the winding number is 2 and the parity even.
+def test_inside_is_by_winding_numbers():
+    # Two shells that overlap, as one object: where both are, the winding number is 2.
     shells = farcull.join(box_of((0, 0, 0), (2, 2, 2)), box_of((1, 0.5, 0.5), (3, 1.5, 1.5)))
     V, F, starts = farcull.join(shells[:2], box_of((1.4, 0.9, 0.9), (1.6, 1.1, 1.1)))
     def said(**options):
         (found,) = farcull.distances(V, F, starts, **options)
         return found.inside
 
-    assert said() == said(inside=True) == "b" and said(inside="parity") == "none" and said(inside=False) == "unknown"
-    assert said(kind="nearest", inside="parity") == "none"
-    for wrong in ("yes", 1, None):
+    assert said() == said(inside=True) == "b" and said(inside=False) == "unknown"
+    for wrong in ("yes", "parity", 1, None):
         assert refused(farcull.distances, V, F, starts, inside=wrong) == "inside"
-    assert refused(farcull.distances, V, F, starts, kind="all", within=1, inside="parity") == "inside"
 
 
 # ---- poses
