@@ -278,11 +278,11 @@ function onKey(event) {
   if ("xyz".includes(key) && key.length === 1) {
     state.axis = state.axis === key ? "" : key;
     showControls();
-    } else if (Object.hasOwn(KEYS, key)) {
+  } else if (Object.hasOwn(KEYS, key)) {
     KEYS[key]();
   } else if (view && Object.hasOwn(VIEW_KEYS, key)) {
     VIEW_KEYS[key](event.shiftKey);
-    } else {
+  } else {
     return;
   }
   event.preventDefault();
