@@ -132,13 +132,12 @@ struct KeptScene {
   explicit KeptScene(Scene given) : scene(std::make_shared<const Scene>(std::move(given))) {}
 };
 
-/// The question to a collider or a stream, from the dictionary of _collide.py.
+/// The question to a collider, from the dictionary of _collide.py.
 Options options_of(const py::dict& question);
 
 void add_collider(py::module_& module);
 void add_distances(py::module_& module);
 void add_scenes(py::module_& module);
 void add_runs(py::module_& module);
-void add_stream(py::module_& module);
 
 }  // namespace farcull::python

@@ -13,7 +13,7 @@ options: Mapping[str, bool]
 def require_main_interpreter() -> None: ...
 
 class Question(TypedDict):
-    """What a collider or a stream is asked. For annotations alone: the module has no such name."""
+    """What a collider is asked. For annotations alone: the module has no such name."""
 
     all_objects: bool
     self_objects: Sequence[bool]
@@ -32,26 +32,6 @@ class Collider:
         self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64],
         poses: NDArray[float64],
     ) -> dict[str, Any]: ...
-
-class Stream:
-    taken: bool
-    decided: int
-    complete: bool
-    def __init__(
-        self,
-        vertices: NDArray[Any],
-        triangles: NDArray[Any],
-        starts: NDArray[int64],
-        poses: NDArray[float64],
-        question: Question,
-    ) -> None: ...
-    def next(
-        self,
-    ) -> Optional[
-        Tuple[
-            NDArray[int64], NDArray[bool_], Optional[NDArray[uint8]], Optional[NDArray[float64]]
-        ]
-    ]: ...
 
 class DistanceFinder:
     def __init__(
