@@ -40,16 +40,11 @@ namespace {
 DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
   out.name = parents.empty() ? app.get_name() : parents + " " + app.get_name();
-  out.title = app.get_description();
-  out.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options()) {
     DeclaredOption one;
     for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) one.names.push_back("--" + name);
     one.flag = !option->get_positional() && option->get_items_expected_max() == 0;
-    one.many = option->get_items_expected_max() > 1;
-    one.required = option->get_required();
-    one.help = option->get_description();
     one.type = option->get_positional() ? option->get_name(true)
                : one.flag               ? ""
                                         : option->get_type_name();

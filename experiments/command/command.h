@@ -71,16 +71,11 @@ bool given(const CLI::App& command);
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
   std::string type;  // stands for the value; empty for a flag. The name of an argument
-  std::string help;  // lines as in the help
   bool flag = false;
-  bool many = false;      // an argument that may be given several times
-  bool required = false;  // an argument that has to be given
 };
-/// A declared command with all its subcommands; completion scripts and the manual are made from it.
+/// A declared command with all its subcommands; completion is made from it.
 struct DeclaredCommand {
   std::string name;  // with the names of its parents, as in "farcull experiment all"
-  std::string title;
-  std::string footer;
   std::vector<DeclaredOption> options;    // in the order of the help
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
@@ -135,7 +130,6 @@ Command add_scenes(CLI::App& app);
 Command add_suite(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
-Command add_manual(CLI::App& app);
 
 // The commands of `farcull experiment`. lemma exits with 1 if it finds a violation at the budget
 // radius or more.
