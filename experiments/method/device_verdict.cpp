@@ -254,10 +254,11 @@ std::optional<DeviceVerdict> read(const std::string& file, const std::string& in
   std::ifstream in(file, std::ios::binary);
   std::string hash;
   std::getline(in, hash);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text(std::istreambuf_iterator<char>(in), {});
   if (hash != hash_of(text) || !text.starts_with(inputs)) return std::nullopt;
   std::istringstream found(text.substr(inputs.size()));
-  DeviceVerdict out{.file = file};
+  DeviceVerdict out;
+  out.file = file;
   found >> out.made >> out.probes >> out.ms;
   if (!found || found.get() != '\n' || out.probes == 0) return std::nullopt;
   for (std::string line; std::getline(found, line);) out.failed.push_back(line);

@@ -124,7 +124,6 @@ Scene parse_scene_file(const std::string& text, const std::string& path);
 /// An object in a scene file to be written, without a placement.
 struct SceneFileObject {
   std::string name, mesh;
-  bool groups = false;  // split: groups
   bool self = false;
 };
 /// The text of a scene file; ignored: pairs of names.
