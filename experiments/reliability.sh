@@ -27,7 +27,7 @@ esac
 boxes_runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"
-  "crumpled:20000" "rope:20000" "spheres:40000" "fans:8000" "funnel"
+  "crumpled:20000" "spheres:40000" "cad-cut:8000" "funnel"
   "mannequin-devil --self" "armadillo --self" "bunny --self" "degenerate --self" "two-spheres --clearance 0.01"
 )
 if [[ $form == boxes && ${1-} == --list ]]; then

@@ -44,9 +44,8 @@ farcull_packages=(
 # Python module take pytest and hypothesis, and install it into a virtual environment.
 farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
 # Packages of tests that are labelled "rare", 300 MB: the report and pages of pictures in a browser, their PDF and LaTeX; the
-# paper as a PDF; the manual, and completion in other shells.
-farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin mandoc
-  groff-base man-db zsh fish)
+# paper as a PDF.
+farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

@@ -4,7 +4,7 @@
 # median over the turns of the time of HEAD over that of BASE in the same turn, with the least and the greatest of these ratios.
 #
 #   bash experiments/speed_guard.sh BASE HEAD                          all scenes
-#   bash experiments/speed_guard.sh HEAD~1 HEAD rope 'funnel --self'   these scenes
+#   bash experiments/speed_guard.sh HEAD~1 HEAD spheres 'funnel --self'   these scenes
 #
 # BASE and HEAD are commits as git names them; what is not committed is not measured. A scene that BASE does not have
 # is skipped and named. Settings are variables of the environment:
@@ -44,7 +44,7 @@ for side in "${sides[@]}"; do
 done
 scenes=("$@")
 if ((${#scenes[@]} == 0)); then
-  scenes=(crumpled rope spheres fans funnel two-bunnies armadillo-elephant 'mannequin-devil --self' field:100000 needles-crossed)
+  scenes=(crumpled spheres cad-cut funnel two-bunnies armadillo-elephant 'mannequin-devil --self' field:100000 needles-crossed)
 fi
 out=$farcull_root/build/speed-guard
 times=$out/times.tsv       # a measured time per line: row, side, turn, nanoseconds

@@ -63,18 +63,6 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   return cells;
 }
 
-// Refuses a choice that none of the methods has.
-void require_used(const RunOptions& asked, const std::vector<RunOptions>& cells) {
-  for (const Option& option : run_options()) {
-    if (!option.copy || !option.unusual(asked)) continue;
-    if (std::ranges::any_of(cells,
-                            [&](const RunOptions& o) { return option.unusual(o).has_value(); }))
-      continue;
-    throw Error("{" + std::string(option.name) + "}", "has no meaning for any of the methods",
-                "leave it out, or add cullide to --methods");
-  }
-}
-
 // Refuses a resolution beyond the device before the first run, not after an hour of smaller ones.
 // Every OpenGL 4.3 takes 8192 px, half of its 16384, so the device is asked only beyond that.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
@@ -105,7 +93,7 @@ std::vector<Record> Comparison::median_records() const {
 
 void validate(const CompareArguments& arguments) {
   parse_repeat(arguments.repeat);
-  require_used(arguments.options, cells_of(arguments, arguments.self));
+  cells_of(arguments, arguments.self);
 }
 
 Comparison compare(const Scene& scene, const CompareArguments& arguments,

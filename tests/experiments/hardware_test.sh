@@ -105,7 +105,7 @@ holds "goes on" "$page" '[1-9] failed: .*reliability-dragon-bunny'
 holds "goes on" "$page" '^# A Device \(R\) 1.0$'
 holds "goes on" "$page" 'suite \(the test suite\): left out'
 for part in doctor misses bench-two-bunnies field-10000000 reliability-near-copy motion-one \
-  bench-fans studies report; do
+  bench-spheres studies report; do
   compgen -G "$out/steps/$part*" >/dev/null || fail "goes on: $part is not done"
 done
 holds "goes on" "$CALLS" 'experiment all --devices software,native --resume --out .*/out/results$'

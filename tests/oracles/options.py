@@ -28,7 +28,7 @@ COMMANDS = {
     "clash": {"--clearance": ["1", "2", "0"], "--ignore": PAIRS_OF_OBJECTS, "--ignore-file": [HERE + "ignored"],
               "--fail-on": ["none", "touch", "near,clash"], "--unit": ["mm"]},
     "distance": {"--pairs": ["objects", "nearest", "all"], "--k": ["1", "2"], "--within": ["0", "1", "2"], "--self": [],
-                 "--ignore": PAIRS_OF_OBJECTS, "--inside": ["yes", "parity", "no"], "--threads": ["1", "2"], "--verify": []},
+                 "--ignore": PAIRS_OF_OBJECTS, "--inside": ["yes", "no"], "--threads": ["1", "2"], "--verify": []},
     "compare": {"--methods": [f"{BOXES},exact", "far,cullide", "i-collide,s-cullide"], "--resolutions": ["32", "16,64"],
                 "--offsets": ["obb,exact"], "--repeat": ["2"], "--self": [], "--clearance": ["1"],
                 BOXES_OPTION: ["objects", "triangles"],
@@ -252,7 +252,7 @@ def ask_distance(rng, files, words, question, spoil):
         wanted = sorted((a, b, f"{s.numerator}/{s.denominator}") for (a, b), s in expected.items())
         require(found == wanted and len(table) == len(record["pairs"]), "answers", found, wanted, *say)
         if "--inside" in given:
-            by = {"yes": "winding number", "parity": "parity", "no": None}[given["--inside"]]
+            by = {"yes": "winding number", "no": None}[given["--inside"]]
             require(record["inside_by"] == by, "inside", record["inside_by"], *say)
         require((record["verification"] is not None) == ("--verify" in given) and status == 0, "verification", *say)
 

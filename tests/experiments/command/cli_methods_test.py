@@ -20,6 +20,8 @@ bad clusters '{sizes}' | --clusters: | run two-spheres --method far --clusters {
 bad rounds '{rounds}' | --rounds: | run two-spheres --method cullide --rounds {rounds}
 bad boxes with {form} | {form0}: .*cullide | run two-spheres --method boxes {*form}
 bad compare without a use for {form} | {form0}: | compare two-spheres --methods boxes,exact {*form}
+each {0}: .*methods | compare two-spheres --methods boxes,exact | --resolutions 64 | --views x | --device native | --offsets exact
+bad compare s-cullide without self | --methods: .*--self | compare two-spheres --methods s-cullide,exact
 bad the old name of an option | --boxes: .*--broad-phase | run two-spheres --method far --boxes objects
 bad a broad phase '{phase}' | --broad-phase: .*objects or triangles | run two-spheres --method far --broad-phase {phase}
 bad a broad phase of what does not draw | --broad-phase: .*cullide | run two-spheres --broad-phase triangles
