@@ -37,8 +37,8 @@ farcull_packages=(
   libjs-three
   # the Python module; the build works without
   python3-dev pybind11-dev python3-numpy
-  # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
-  libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
+  # libraries that farcull bench compares with; the build works without
+  libfcl-dev libembree-dev libbullet-dev libode-dev
 )
 # Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
 # Python module take pytest and hypothesis, and install it into a virtual environment.

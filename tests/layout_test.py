@@ -270,7 +270,7 @@ verify:<CGAL/Exact_predicates_inexact_constructions_kernel.h>:. | core/scene:cor
 core/scene core/canvas:core/base/error.h:. | core/view:core/scene/scene.h core/boxes/join.h:. | offsets:core/view/budget.h:.
 core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:. | verify/certificate:<gmpxx.h>:.
 verify:core/canvas/canvas.h verify/certificate/certificate.h <gmpxx.h>:. | experiments/method:core/gl/canvas/canvas.h:.
-experiments/suite:verify/certificate/integer_pair.h:. | experiments/peers:experiments/suite/reader.h:.
+experiments/suite:verify/certificate/integer_pair.h:. | experiments/peers:experiments/suite/label.h:.
 experiments/picture:experiments/measure/compare.h:. | experiments/command:experiments/studies/store.h:. | experiments/command:experiments/library/farcull.h:.
 experiments/peers/cgal.cpp experiments/peers/contest_cgal.cpp:<CGAL/Kernel.h>:.
 tests/verify:offsets/obb.glsl <CGAL/Kernel.h>:. | tests/faults:<epoxy/gl.h>:.

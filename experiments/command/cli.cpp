@@ -234,8 +234,7 @@ int command_line(int argc, char** argv) {
   // environment may be changed.
   ::setenv("LP_NUM_THREADS", "0", 0);
   try {
-    // For this thread; core/base/parallel.h sets the threads that it starts. oneTBB's threads copy
-    // the environment of the thread that first uses it, which is this one.
+    // For this thread; core/base/parallel.h sets the threads that it starts.
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {

@@ -1,10 +1,8 @@
 // Runs the lemma experiment at one radius; prints a table, writes JSON.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <string_view>
 
 #include "commit.h"
 #include "core/base/error.h"
@@ -161,8 +159,8 @@ std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double sec
                                                   : "no device";
   const std::string heading =
       fmt::format("canvas {}, offset {}, {}\n\n", on.name, arguments.offset, where);
-  const std::string took = fmt::format("\ntook {:.1f} s\n", seconds);
-  return heading + "radius " + radius_name(result.rule) + "\n" + result_table(result) + took;
+  return heading + "radius " + radius_name(result.rule) + "\n" + result_table(result) +
+         fmt::format("\ntook {:.1f} s\n", seconds);
 }
 
 class LemmaCommand {
@@ -191,7 +189,7 @@ CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
       "Examples:\n"
       "  farcull experiment lemma --points 1000000 --radius budget\n"
       "  farcull experiment lemma --radius published\n"
-      "  farcull experiment lemma --canvas worst --radius 0.9\n\n"
+      "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
       "Exit status 1: a violation at the budget radius or beyond.");
 }
 
@@ -208,11 +206,11 @@ int LemmaCommand::run() {
   LemmaCanvas on(arguments, fattener);
   const Stopwatch watch;
   const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
+  const bool promises = !rule.published && rule.factor >= 1;
   const double seconds = watch.ms() / 1000;
   terminal.clear();
   if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, result));
-  const bool promises = !rule.published && rule.factor >= 1;
   return promises && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
 }
 

@@ -52,8 +52,7 @@ each {0}: | scenes far-apart | --json - --write new
 bad writing into a missing folder | missing/new: the folder cannot be made: No such | scenes far-apart --write missing/new
 bad writing into a file | good\.obj: the folder cannot be made | scenes far-apart --write good.obj
 bad a suite into a folder with files | \.: is there already | suite .
-bad a suite that is not there | new/suite\.txt: | suite new --check
-each {0}: | suite new | --size large | --seed one | --check --seed 2
+each {0}: | suite new | --size large | --seed one | --ask cat --seed 2
 each {0}: | run | crowd:1 | crowd:400:nan | crowd:400:0.2:1 | crowd::1 | field:1e6 | two-tori:5 | shells:10:1
 each {0}: | doctor | extra | --device nope | --device 99
 bad help of nothing known | nope: no such .*terms | help nope
