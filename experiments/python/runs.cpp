@@ -1,4 +1,4 @@
-// Runs of any method, with their record, plan, check, picture and clashes, like the commands of the
+// Runs of any method, with their record, check, picture and clashes, like the commands of the
 // same names.
 #include <pybind11/stl.h>
 
@@ -281,20 +281,6 @@ py::list views_of(const Candidates& found) {
   return out;
 }
 
-py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned threads,
-                  const Ignored& ignore, std::uint64_t limit) {
-  const auto [json, table] = without_gil([&] {
-    const RunOptions options = options_of(given, ignore, limit);
-    require_pairs(*kept.scene);
-    require_asked(*kept.scene, options.ignored, "ignore", "make the scene with self=True");
-    const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
-    const MissesOfPlan misses = misses_of(*kept.scene, planned);
-    return std::pair(plan_json(*kept.scene, planned, misses.predicted).dump(),
-                     plan_table(*kept.scene, planned) + misses_line(misses));
-  });
-  return py::make_tuple(json, table);
-}
-
 // The list as a file of the program would hold it.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -448,7 +434,6 @@ void add_runs(py::module_& module) {
   }
   module.attr("options") = options;
   module.def("run", &run_of);
-  module.def("plan", &plan_of);
   module.def("check", &check_of);
   module.def("picture", &picture_of);
   py::class_<KeptClash> clash(module, "Clash");

@@ -110,9 +110,6 @@ def run(
     ignore: Sequence[Sequence[int]],
     limit: int,
 ) -> Record: ...
-def plan(
-    scene: Scene, given: Mapping[str, str], threads: int, ignore: Sequence[Sequence[int]], limit: int
-) -> Tuple[str, str]: ...
 def check(
     scene: Scene,
     certificate: Optional[str],

@@ -1,4 +1,4 @@
-"""Runs of any method with their records, plans, checks and pictures."""
+"""Runs of any method with their records, checks and pictures."""
 
 import json
 from dataclasses import dataclass
@@ -96,32 +96,6 @@ def run(
     )
     usual = ignore is None and limit is None and not options.get("clearance")
     return Record(made, scene, method, {"method": method, **options} if usual else None)
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a run would do, what it would leave out, and why."""
-
-    stages: Dict[str, Any]  # as ``farcull plan --json`` writes it
-    text: str  # as ``farcull plan`` prints it
-
-    def __str__(self) -> str:
-        return self.text
-
-
-def plan(
-    scene: "Scene", /, method: str = "boxes", *, threads: int = 0, ignore: Optional[Any] = None,
-    limit: Optional[int] = None, **options: Any,
-) -> Plan:
-    """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
-    since it stops what comes behind the culling; ``contacts`` is no part of one."""
-    given = _options(method, options)
-    made = scene_of(scene)
-    text, table = _farcull.plan(
-        made, given, _arguments.threads(threads), _arguments.ignored(ignore, made),
-        _arguments.limit(limit),
-    )
-    return Plan(json.loads(text), table)
 
 
 @dataclass(frozen=True, eq=False)

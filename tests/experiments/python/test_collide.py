@@ -57,7 +57,8 @@ def test_an_index_that_does_not_fit_is_named_with_its_row(row, value):
     assert error.where == "F" and error.reason == f"{said} of {len(V)}"
     for other in (np.asfortranarray(given), given.astype(np.uint64)):
         error = error_of(farcull.collide, V, other, self=True)
-        as_read = said if other.dtype == np.int64 else f"triangle {row} names vertex {value % 2**64}"
+        wraps = value < 0 and other.dtype == np.uint64
+        as_read = f"triangle {row} names vertex {value % 2**64}" if wraps else f"{said} of {len(V)}"
         assert error.where == "F" and error.reason == as_read
 
 
