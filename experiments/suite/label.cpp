@@ -228,7 +228,7 @@ SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
   require_equal(meets, !integers.separating_direction(),
                 "CGAL's predicates and the directions in integers", where);
   require_equal(meets, integers.has_common_point(), "CGAL's predicates and the points in integers",
-                where, line);
+                where);
   if (!meets) return SuiteKind::apart;
   bool found = false;
   const SuiteKind kind = kind_of_meeting(a, b, found);

@@ -14,7 +14,7 @@ namespace {
 // The small suite of seed 1, as it was published. Where this changes, so do the answers of everyone
 // who measures with it.
 constexpr const char* kSmallSuite =
-    "48b36291bfd9e66f7a0cf868bdc3e965653da4bfa3348cdf64adebe9dce22713";
+    "1b76c4219b612434cdde447621e97b7108df8b3202df21bec7b20570c005f58b";
 
 TEST(Suite, TheSmallOneHasItsChecksum) {
   const ScratchFolder folder;
