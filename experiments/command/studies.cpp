@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -97,9 +96,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
         {"--no-times", &no_times_, "",
          "counts alone: run timed points once and keep no time, as\nfor shards side by side on one "
          "machine"},
-        {"--shard", &shard_, "K/N",
-         "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
-         "Open MPI, else everything"},
+        {"--shard", &shard_, "K/N", "measure the Kth of N parts"},
         {"--device", &device_, "DEVICE", kDeviceHelp},
         {"--devices", &devices_, "LIST|all",
          "measure on each of these devices, as in\nnative,software, or on all that answer; "
@@ -178,8 +175,7 @@ int StudiesCommand::run() {
   }
   request.resume = resume_;
   request.times = !no_times_;
-  request.shard = shard_ ? parse_shard(*shard_)
-                         : shard_from_environment([](const char* v) { return std::getenv(v); });
+  if (shard_) request.shard = parse_shard(*shard_);
   int status = 0;
   bool first = true;
   for (const std::string& device : devices()) {
@@ -211,9 +207,6 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
        request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   // The device comes first: without it nothing can be measured, and no file is created.
   request.provenance = provenance_now(request.device, options);
-  if (!shard.from.empty()) {
-    write_output("-", fmt::format("shard {} of {}, by {}\n", shard.index, shard.of, shard.from));
-  }
 
   TerminalProgress terminal;
   const Progress line = terminal.callback();
