@@ -48,22 +48,6 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   return out;
 }
 
-/// The fields of a struct, with commas between; numbers with all digits, an empty cell for an empty
-/// value.
-template <HasFields Value>
-std::string csv_of(const Value& row) {
-  std::string out;
-  row.fields([&](std::string_view, const auto& value) {
-    if constexpr (requires { value.has_value(); }) {
-      out += value ? fmt::format("{},", *value) : ",";
-    } else {
-      out += fmt::format("{},", value);
-    }
-  });
-  out.pop_back();
-  return out;
-}
-
 /// A JSON object with these members of a struct, by their names and in this order.
 #define FARCULL_JSON(value, ...)                                                \
   [&] {                                                                         \

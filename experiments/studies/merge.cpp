@@ -29,17 +29,6 @@ std::string library_of(const Row& row) {
   return at != row.measurement.counts->end() && at->is_string() ? at->get<std::string>() : "";
 }
 
-// The command that deletes all rows of these contestants.
-std::string deletion(const std::string& path, const std::string& study,
-                     const std::vector<std::string>& contestants) {
-  std::string names;
-  for (const std::string& name : contestants) names += (names.empty() ? "'" : ", '") + name + "'";
-  return fmt::format(
-      "sqlite3 {} \"DELETE FROM rows WHERE study = '{}' AND position IN (SELECT position FROM "
-      "points WHERE study = '{}' AND method IN ({}))\"",
-      quoted(path), study, study, names);
-}
-
 struct Source {
   std::string path;
   std::vector<std::pair<std::int64_t, Provenance>> runs;
@@ -179,24 +168,17 @@ void require_same_versions(const std::string& path, const StoredStudy& stored, c
       then[row.point.method] = library;
   }
   std::string reason;
-  std::vector<std::string> contestants;
   for (const std::size_t position : open) {
     const std::string& name = stored.declaration.points[position].method;
     const auto at = then.find(name);
     if (at == then.end()) continue;
     const std::string now = study.library(points[position]);
-    if (!now.empty() && now != at->second) {
+    if (!now.empty() && now != at->second)
       reason += fmt::format("{}its rows of {} are of {}, and {} is here now",
                             reason.empty() ? "" : "; ", name, at->second, now);
-      contestants.push_back(name);
-    }
     then.erase(at);  // each contestant is asked once
   }
-  if (contestants.empty()) return;
-  throw Error(path, reason,
-              "start anew in another folder (--out), or delete these rows, which are then measured "
-              "again: " +
-                  deletion(path, study.name, contestants));
+  if (!reason.empty()) throw Error(path, reason, "start anew in another folder (--out)");
 }
 
 void require_one_version(const std::vector<StudyOfFile>& files) {
@@ -211,17 +193,12 @@ void require_one_version(const std::vector<StudyOfFile>& files) {
       const auto [known, fresh] = first.try_emplace(name, First{library, file.path});
       if (known->second.library == library) continue;
       const bool one_file = known->second.path == file.path;
-      throw Error(
-          file.path,
-          fmt::format("its rows of {} are of {}, and {} of {}", name, library,
-                      one_file ? "others" : "those of " + known->second.path,
-                      known->second.library),
-          (one_file
-               ? "start anew in another folder, or delete these rows and measure them again with "
-                 "--resume: "
-               : "measure one of the two again in another folder, or delete these rows there "
-                 "and measure them again with --resume: ") +
-              deletion(file.path, file.stored->declaration.study, {name}));
+      throw Error(file.path,
+                  fmt::format("its rows of {} are of {}, and {} of {}", name, library,
+                              one_file ? "others" : "those of " + known->second.path,
+                              known->second.library),
+                  one_file ? "start anew in another folder"
+                           : "measure one of the two again in another folder");
     }
   }
 }
