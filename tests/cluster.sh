@@ -390,6 +390,7 @@ disturbed parallel 2 4 PARALLEL_SEQ=2 parallel --lb -j 2 \
 say "Open MPI: $(mpirun --version | head -n 1)"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 disturbed openmpi 2 4 OMPI_COMM_WORLD_RANK=1 mpirun --oversubscribe -n 4 \
+  bash -c 'exec "$@" --shard "$((OMPI_COMM_WORLD_RANK + 1))/$OMPI_COMM_WORLD_SIZE"' one \
   build/farcull experiment "$study" "${options[@]}" --out "$folder/openmpi" --resume
 unset "${!OMPI_@}"
 

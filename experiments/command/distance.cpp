@@ -1,5 +1,4 @@
-// Reads the options of `farcull distance`, then measures one scene or frame after frame. With
-// --voronoi it finds potential neighbours by a discrete Voronoi diagram instead.
+// Reads the options of `farcull distance`, then measures one scene or frame after frame.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,7 +15,6 @@
 #include "experiments/command/command.h"
 #include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
-#include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/mesh/load.h"
@@ -38,15 +36,12 @@ constexpr const char* kDistanceExamples =
     "  farcull distance a.obj b.obj --pairs all --within 0.01 --csv near.csv\n"
     "  farcull distance cloth.obj --self --pairs all --within 0.001\n"
     "  farcull distance far-apart --verify\n"
-    "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n"
-    "  farcull distance crowd --voronoi published --resolution 128\n\n"
+    "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n\n"
     "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
     "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
     "docs/proximity.md has the columns and the proof.\n\n"
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
-    "answer, or a wrong answer; or --voronoi reliable lost a nearest object. 2: the input or "
-    "an\n"
-    "option is wrong.";
+    "answer, or a wrong answer. 2: the input or an option is wrong.";
 
 // The keys of a record that differ between frames; the others hold for all frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
@@ -131,69 +126,6 @@ class Frames {
   DistanceAccounting sum_;
 };
 
-// --voronoi, and the option that needs it.
-class DiagramArguments {
- public:
-  Rows rows() {
-    return {{"--voronoi", &diagram_, "FORM",
-             "which objects may be nearest by a discrete Voronoi\n"
-             "diagram, and which nearest ones it loses, instead of\n"
-             "distances: published or reliable (docs/voronoi.md)"},
-            {"--resolution", &resolution_, "N",
-             "with --voronoi: cells of the diagram along the\n"
-             "longest side of the scene; default 64"}};
-  }
-  // Whether --voronoi was given. Throws Error if --resolution was given without it.
-  bool asked() const {
-    if (diagram_) return true;
-    refuse_given({{"--resolution", resolution_.has_value()}}, "has no meaning without --voronoi",
-                 "add --voronoi published or reliable, or leave it out");
-    return false;
-  }
-  // threads: 0 for one per core. Throws Error naming the option that is bad.
-  NeighbourOptions parse(unsigned threads) const {
-    NeighbourOptions out{.method = NeighbourMethod::voronoi,
-                         .threads = threads,
-                         .most_pairs = VoronoiOptions{}.most_pairs};
-    const bool reliable = word_of("--voronoi", diagram_, {"published", "reliable"}, "no choice",
-                                  "give published or reliable") == 1;
-    if (reliable) out.method = NeighbourMethod::voronoi_reliable;
-    if (resolution_) {
-      out.resolution =
-          number_of<int>("--resolution", *resolution_, "no number of cells", 1, kVoronoiLargest,
-                         fmt::format("give 1 to {}", kVoronoiLargest));
-    }
-    return out;
-  }
-
- private:
-  Text diagram_, resolution_;
-};
-
-// Writes the record of the scene to the outputs. Returns the exit status; 1: the reliable form lost
-// a nearest object.
-int run_diagram(const SceneArguments& arguments, const NeighbourOptions& options,
-                const Outputs& outputs) {
-  TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
-  const Scene scene = read_scene(arguments);
-  require_nothing_ignored(scene, "farcull distance");
-  const std::string nothing = nothing_asked(scene, {.pairs = DistancePairs::nearest});
-  if (!nothing.empty()) throw Error("SCENE", nothing, "name two objects or more");
-  const DiagramRecord record = potential_neighbours(scene, options, progress);
-  terminal.clear();
-  if (outputs.csv) write_output(*outputs.csv, diagram_csv(scene, record));
-  if (outputs.json)
-    write_json(diagram_json(scene, record, seed_of(arguments.names)), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", diagram_table(scene, record));
-  const DiagramTotals totals = totals_of(record);
-  if (options.method == NeighbourMethod::voronoi || totals.lost == 0) return kExitDone;
-  complain_broken("the reliable diagram lost " +
-                  counted(totals.lost, "nearest object", "nearest objects"));
-  return kExitBroken;
-}
-
 class DistanceCommand {
  public:
   CLI::App* add_to(CLI::App& app);
@@ -209,7 +141,6 @@ class DistanceCommand {
   SceneArguments scene_;
   Text pairs_, k_, within_, inside_, threads_, frames_;
   bool self_ = false, verify_ = false;
-  DiagramArguments diagram_;
   Outputs outputs_;
 };
 
@@ -237,8 +168,7 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
                {"--frames", &frames_, "N|A:B", "as for farcull run: of a scene that moves"},
                {"--json", &outputs_.json, "FILE", kJsonHelp},
                {"--csv", &outputs_.csv, "FILE",
-                "write the pairs as CSV to this file; - for standard\noutput, without the table"}} +
-          diagram_.rows(),
+                "write the pairs as CSV to this file; - for standard\noutput, without the table"}},
       kDistanceExamples);
 }
 
@@ -292,20 +222,6 @@ void DistanceCommand::require_question(const Scene& scene, const DistanceOptions
 }
 
 int DistanceCommand::run() const {
-  if (diagram_.asked()) {
-    refuse_given({{"--pairs", pairs_.has_value()},
-                  {"--k", k_.has_value()},
-                  {"--within", within_.has_value()},
-                  {"--ignore", scene_.ignore.has_value()},
-                  {"--self", self_},
-                  {"--inside", inside_.has_value()},
-                  {"--verify", verify_},
-                  {"--frames", frames_.has_value()}},
-                 "has no meaning with --voronoi", "leave one of the two out");
-    const NeighbourOptions options = diagram_.parse(threads());
-    check_scene(scene_.names);
-    return run_diagram(scene_, options, checked(outputs_, scene_files(scene_.names)));
-  }
   const DistanceOptions options = parse();
   check_scene(scene_.names);
   std::optional<FrameRange> range;

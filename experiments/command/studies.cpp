@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -97,9 +96,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
         {"--no-times", &no_times_, "",
          "counts alone: run timed points once and keep no time, as\nfor shards side by side on one "
          "machine"},
-        {"--shard", &shard_, "K/N",
-         "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
-         "Open MPI, else everything"},
+        {"--shard", &shard_, "K/N", "measure the Kth of N parts"},
         {"--device", &device_, "DEVICE", kDeviceHelp},
         {"--devices", &devices_, "LIST|all",
          "measure on each of these devices, as in\nnative,software, or on all that answer; "
@@ -178,8 +175,7 @@ int StudiesCommand::run() {
   }
   request.resume = resume_;
   request.times = !no_times_;
-  request.shard = shard_ ? parse_shard(*shard_)
-                         : shard_from_environment([](const char* v) { return std::getenv(v); });
+  if (shard_) request.shard = parse_shard(*shard_);
   int status = 0;
   bool first = true;
   for (const std::string& device : devices()) {
@@ -211,9 +207,6 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
        request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   // The device comes first: without it nothing can be measured, and no file is created.
   request.provenance = provenance_now(request.device, options);
-  if (!shard.from.empty()) {
-    write_output("-", fmt::format("shard {} of {}, by {}\n", shard.index, shard.of, shard.from));
-  }
 
   TerminalProgress terminal;
   const Progress line = terminal.callback();
@@ -254,7 +247,7 @@ class MergeCommand {
   int run_tiles() const;
 
   std::vector<std::string> sources_;
-  Text out_, json_;
+  Text out_;
 };
 
 CLI::App* MergeCommand::add_to(CLI::App& app) {
@@ -266,13 +259,12 @@ CLI::App* MergeCommand::add_to(CLI::App& app) {
                     kResultsFolder)},
        {"-o,--out", &out_, "FILE",
         "the file to write; default results.sqlite, or of tiles\npairs.csv, in the folder of "
-        "the first file"},
-       {"--json", &json_, "FILE", "of tiles: write the record of the whole"}},
+        "the first file"}},
       "Examples:\n"
       "  farcull merge results\n"
       "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
       "results.sqlite\n"
-      "  farcull merge tile-*.json -o pairs.csv --json whole.json\n\n"
+      "  farcull merge tile-*.json -o pairs.csv\n\n"
       "Refuses shards that are there twice, points without a row, and shards of different\n"
       "commits, grids, seeds or versions of a library. Of tiles: refuses a tile that is\n"
       "missing or there twice, other scenes, cuts, options or commits, and a list that was\n"
@@ -288,21 +280,15 @@ int MergeCommand::run_tiles() const {
   const std::string out = out_ ? *out_ : (folder.empty() ? "." : folder) + "/pairs.csv";
   std::vector<NamedFile> inputs;
   for (const std::string& file : sources_) inputs.push_back({"SHARDS", file});
-  std::vector<NamedFile> outputs = {{"-o", out}};
-  if (json_) outputs.push_back({"--json", *json_});
-  require_apart(inputs, outputs);
-  if (json_) check_output(*json_);
-  const MergedTiles merged = merge_tiles(sources_, out, json_.value_or(""));
-  if (json_) write_output(*json_, merged.json);
-  if (json_ != "-") {
-    write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
-                                  counted(merged.tiles, "tile", "tiles"), out));
-    if (!merged.verified) write_output("-", "not verified: a tile was run with --no-verify\n");
-    if (!merged.promises) {
-      write_output("-",
-                   "no promise: a tile was run on a device that may miss pairs; its record has the "
-                   "reason\n");
-    }
+  require_apart(inputs, {{"-o", out}});
+  const MergedTiles merged = merge_tiles(sources_, out);
+  write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
+                                counted(merged.tiles, "tile", "tiles"), out));
+  if (!merged.verified) write_output("-", "not verified: a tile was run with --no-verify\n");
+  if (!merged.promises) {
+    write_output("-",
+                 "no promise: a tile was run on a device that may miss pairs; its record has the "
+                 "reason\n");
   }
   if (merged.false_negatives == 0) return kExitDone;
   complain_broken(fmt::format("culled pairs that collide: {}", grouped(merged.false_negatives)));
@@ -311,8 +297,6 @@ int MergeCommand::run_tiles() const {
 
 int MergeCommand::run() {
   if (std::ranges::any_of(sources_, is_tile_record)) return run_tiles();
-  if (json_)
-    throw Error("--json", "is about tiles of a scene", "leave it out, or name records of tiles");
   std::vector<std::string> files = sources_;
   if (files.empty()) files = {kResultsFolder};
   std::string folder = std::filesystem::path(files.front()).parent_path().string();

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +55,6 @@ struct NeighbourSets {
   std::vector<std::array<std::uint64_t, 2>> left = {};
   /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Else empty.
   std::string left_out = {};
-  VoronoiCounts work = {};  // of the diagrams
 };
 
 /// The sets of a scene that satisfies validate(). Throws Error for options that are out of range.
@@ -106,55 +103,5 @@ struct NeighbourSizes {
 /// truth: nearest_objects() of the scene. Precondition: there are sets.
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth);
-
-// Compares the potential neighbours of each object by a discrete Voronoi diagram (docs/voronoi.md)
-// with its nearest objects by exact arithmetic: how many the diagram leaves, and how many it loses.
-
-/// The sets of one object.
-struct PotentialNeighbours {
-  std::vector<std::uint32_t> nearest;  // its nearest objects; empty if no other object has
-                                       // triangles
-  double distance = 0;                 // to them, in world units, rounded once
-  /// How many objects the diagram leaves, and how many of their triangles: all triangles with the
-  /// published form, those that may be nearest with the reliable form.
-  std::uint64_t objects = 0, triangles = 0;
-  /// How many of `nearest` the diagram does not leave. With the reliable form, an object is also
-  /// lost if its first nearest pair of triangles is not left.
-  std::uint64_t lost = 0;
-};
-
-struct DiagramRecord {
-  NeighbourOptions options;
-  std::string scene_hash;
-  std::uint64_t degenerate_triangles = 0;
-  std::vector<PotentialNeighbours> objects;  // one for each object of the scene
-  std::uint64_t object_pairs = 0;            // that the diagram leaves, each once
-  std::uint64_t triangle_pairs = 0;          // likewise; published form: all of these objects
-  VoronoiCounts work = {};
-  double diagram_ms = 0, exact_ms = 0;
-};
-
-/// Throws Error as voronoi_neighbours() and reliable_neighbours() do. Preconditions: the scene
-/// satisfies validate(); has_cells(options.method).
-DiagramRecord potential_neighbours(const Scene& scene, const NeighbourOptions& options,
-                                   const Progress& progress = {});
-
-/// Sums over all objects.
-struct DiagramTotals {
-  std::uint64_t objects = 0;       // that have a nearest object
-  std::uint64_t nearest = 0;       // their nearest objects
-  std::uint64_t lost = 0;          // nearest objects that the diagram lost
-  std::uint64_t objects_lost = 0;  // objects of which all nearest objects are lost
-  std::uint64_t potential_objects = 0, potential_triangles = 0;
-  FARCULL_FIELDS(objects, nearest, lost, objects_lost, potential_objects, potential_triangles)
-};
-DiagramTotals totals_of(const DiagramRecord& record);
-
-/// The record for programs, for spreadsheets (a row for each object) and for people (of many
-/// objects the first ones). seed: what the scene was drawn with, where it is random.
-nlohmann::ordered_json diagram_json(const Scene& scene, const DiagramRecord& record,
-                                    std::optional<std::uint64_t> seed = {});
-std::string diagram_csv(const Scene& scene, const DiagramRecord& record);
-std::string diagram_table(const Scene& scene, const DiagramRecord& record);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Reads which shard a process measures. Decides which rows fit together in one store: those with
+// Decides which rows fit together in one store: those with
 // one version of each library. Reads shards, refuses those that do not fit, and writes one store.
 #include "experiments/studies/run_studies.h"
 
@@ -23,25 +23,10 @@ namespace fs = std::filesystem;
 
 constexpr long kMostShards = 100'000;
 
-bool is_shard(long index, long of) {
-  return of >= 1 && of <= kMostShards && index >= 1 && index <= of;
-}
-
 // The row's library with its version; empty if the row names none.
 std::string library_of(const Row& row) {
   const auto at = row.measurement.counts->find("library");
   return at != row.measurement.counts->end() && at->is_string() ? at->get<std::string>() : "";
-}
-
-// The command that deletes all rows of these contestants.
-std::string deletion(const std::string& path, const std::string& study,
-                     const std::vector<std::string>& contestants) {
-  std::string names;
-  for (const std::string& name : contestants) names += (names.empty() ? "'" : ", '") + name + "'";
-  return fmt::format(
-      "sqlite3 {} \"DELETE FROM rows WHERE study = '{}' AND position IN (SELECT position FROM "
-      "points WHERE study = '{}' AND method IN ({}))\"",
-      quoted(path), study, study, names);
 }
 
 struct Source {
@@ -167,55 +152,11 @@ Shard parse_shard(const std::string& text) {
   const std::optional<long> index = parse_number<long>(text.substr(0, slash));
   const std::optional<long> of =
       slash == std::string::npos ? std::nullopt : parse_number<long>(text.substr(slash + 1));
-  if (!index || !of || !is_shard(*index, *of)) {
+  if (!index || !of || *of < 1 || *of > kMostShards || *index < 1 || *index > *of) {
     throw Error("--shard", "'" + text + "' is no shard",
                 fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostShards));
   }
-  return {static_cast<int>(*index), static_cast<int>(*of), "--shard"};
-}
-
-Shard shard_from_environment(const std::function<const char*(const char*)>& variable) {
-  const char* const remedy = "give --shard K/N, or 1/1 for the whole";
-  const auto number = [&](const char* name) -> std::optional<long> {
-    const char* const text = variable(name);
-    if (text == nullptr) return std::nullopt;
-    const std::optional<long> out = parse_number<long>(text);
-    if (!out) throw Error(name, fmt::format("'{}' is no number", text), remedy);
-    return out;
-  };
-  const auto made = [&](const char* name, long index, long of) -> Shard {
-    if (!is_shard(index, of))
-      throw Error(name, fmt::format("makes this part {} of {}, which is none", index, of), remedy);
-    return {static_cast<int>(index), static_cast<int>(of), name};
-  };
-
-  const std::optional<long> task = number("SLURM_ARRAY_TASK_ID");
-  const std::optional<long> rank = number("OMPI_COMM_WORLD_RANK");
-  const std::optional<long> size = number("OMPI_COMM_WORLD_SIZE");
-  // A single process under mpirun or srun does not divide the work.
-  const bool ranks = rank && size && *size != 1;
-  if (task && ranks) {
-    throw Error("SLURM_ARRAY_TASK_ID", "and OMPI_COMM_WORLD_RANK both say which part this is",
-                remedy);
-  }
-  if (task) {
-    const long least = number("SLURM_ARRAY_TASK_MIN").value_or(0);
-    const std::optional<long> most = number("SLURM_ARRAY_TASK_MAX");
-    const std::optional<long> count = number("SLURM_ARRAY_TASK_COUNT");
-    if (!most || !count || *most - least + 1 != *count) {
-      throw Error("SLURM_ARRAY_TASK_COUNT", "the array has gaps, or does not say where it ends",
-                  "submit it as --array=1-N, or give --shard K/N");
-    }
-    // A resubmitted part of an array would appear to be the whole.
-    if (least != 0 && least != 1) {
-      throw Error("SLURM_ARRAY_TASK_MIN", fmt::format("the array begins at {}", least),
-                  "submit it as --array=1-N, all of it (what is done is not measured again), or "
-                  "give --shard K/N");
-    }
-    return made("SLURM_ARRAY_TASK_ID", *task - least + 1, *count);
-  }
-  if (ranks) return made("OMPI_COMM_WORLD_RANK", *rank + 1, *size);
-  return {};
+  return {static_cast<int>(*index), static_cast<int>(*of)};
 }
 
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
@@ -227,24 +168,17 @@ void require_same_versions(const std::string& path, const StoredStudy& stored, c
       then[row.point.method] = library;
   }
   std::string reason;
-  std::vector<std::string> contestants;
   for (const std::size_t position : open) {
     const std::string& name = stored.declaration.points[position].method;
     const auto at = then.find(name);
     if (at == then.end()) continue;
     const std::string now = study.library(points[position]);
-    if (!now.empty() && now != at->second) {
+    if (!now.empty() && now != at->second)
       reason += fmt::format("{}its rows of {} are of {}, and {} is here now",
                             reason.empty() ? "" : "; ", name, at->second, now);
-      contestants.push_back(name);
-    }
     then.erase(at);  // each contestant is asked once
   }
-  if (contestants.empty()) return;
-  throw Error(path, reason,
-              "start anew in another folder (--out), or delete these rows, which are then measured "
-              "again: " +
-                  deletion(path, study.name, contestants));
+  if (!reason.empty()) throw Error(path, reason, "start anew in another folder (--out)");
 }
 
 void require_one_version(const std::vector<StudyOfFile>& files) {
@@ -259,17 +193,12 @@ void require_one_version(const std::vector<StudyOfFile>& files) {
       const auto [known, fresh] = first.try_emplace(name, First{library, file.path});
       if (known->second.library == library) continue;
       const bool one_file = known->second.path == file.path;
-      throw Error(
-          file.path,
-          fmt::format("its rows of {} are of {}, and {} of {}", name, library,
-                      one_file ? "others" : "those of " + known->second.path,
-                      known->second.library),
-          (one_file
-               ? "start anew in another folder, or delete these rows and measure them again with "
-                 "--resume: "
-               : "measure one of the two again in another folder, or delete these rows there "
-                 "and measure them again with --resume: ") +
-              deletion(file.path, file.stored->declaration.study, {name}));
+      throw Error(file.path,
+                  fmt::format("its rows of {} are of {}, and {} of {}", name, library,
+                              one_file ? "others" : "those of " + known->second.path,
+                              known->second.library),
+                  one_file ? "start anew in another folder"
+                           : "measure one of the two again in another folder");
     }
   }
 }

@@ -58,7 +58,6 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
 
 struct Shard {
   int index = 1, of = 1;  // 1 <= index <= of
-  std::string from;       // where it was read, for people; empty if nothing was divided
 
   /// Takes every of-th point, so that each shard gets both cheap and costly ones.
   bool holds(std::size_t position) const {
@@ -68,12 +67,6 @@ struct Shard {
 
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
-
-/// The shard of this process in an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT;
-/// steps of one from 0 or 1) or of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE); the whole study if
-/// neither is set. `variable` returns an environment variable or null. Throws Error naming the
-/// variable if it is no number, the array has gaps, or both are set.
-Shard shard_from_environment(const std::function<const char*(const char*)>& variable);
 
 /// If other programs take more of the processors than this, times are measured again, and in the
 /// end void.

@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <queue>
@@ -96,7 +95,6 @@ void require_alike(const Source& first, const Source& other) {
       {"/method", "is of another method"},
       {"/tile/options", "was run with other options"},
       {"/tile/list/columns", "has other columns in its list"},
-      {"/tile/list/kinds", "has other kinds of contact in its list"},
       {"/commit", "is of another version of farcull"}};
   for (const auto& [place, what] : places) {
     if (at<Json>(first, place) == at<Json>(other, place)) continue;
@@ -208,14 +206,11 @@ void open_many_files() {
   ::setrlimit(RLIMIT_NOFILE, &files);
 }
 
-// Writes all rows in order; returns how many, and the SHA-256 of the list.
-std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sources,
-                                                  const std::string& out) {
+// Writes all rows in order; returns how many.
+std::uint64_t merge_lists(const std::vector<Source>& sources, const std::string& out) {
   StreamedOutput file(out);
-  Sha256 hash;
   std::string piece = sources.front().columns + "\n";
   const auto flush = [&] {
-    hash.add(piece);
     file.add(piece);
     piece.clear();
   };
@@ -242,27 +237,7 @@ std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sou
   }
   flush();
   file.put();
-  return {rows, hash.digest()};
-}
-
-// Joins the values at a place of all records, such as their sum.
-template <class Value, class Join>
-Value joined(const std::vector<Source>& sources, const std::string& place, const Join& join) {
-  Value out{};
-  for (const Source& source : sources) out = join(out, at<Value>(source, place.c_str()));
-  return out;
-}
-
-std::uint64_t sum_of(const std::vector<Source>& sources, const std::string& place) {
-  return joined<std::uint64_t>(sources, place, std::plus());
-}
-
-// Sums of the kinds of contact, or null if they were not asked for.
-Json contacts_of(const std::vector<Source>& sources) {
-  Json sum = at<Json>(sources.front(), "/contacts");
-  if (!sum.is_object()) return nullptr;
-  for (const auto& kind : sum.items()) kind.value() = sum_of(sources, "/contacts/" + kind.key());
-  return sum;
+  return rows;
 }
 
 void require_other_files(const std::vector<Source>& sources, const std::string& out) {
@@ -281,8 +256,7 @@ void require_other_files(const std::vector<Source>& sources, const std::string& 
 
 bool is_tile_record(const std::string& path) { return fs::path(path).extension() == ".json"; }
 
-MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
-                        const std::string& other) {
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out) {
   std::vector<Source> sources;
   for (const std::string& record : records) {
     sources.push_back(read_record(record));
@@ -291,38 +265,15 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
   if (sources.empty()) throw Error("SHARDS", "no record is named", kRecordRemedy);
   require_whole(sources);
   require_other_files(sources, out);
-  require_other_files(sources, other);
-  std::ranges::sort(sources, {}, &Source::k);
-  MergedTiles merged;
-  merged.tiles = sources.size();
-  merged.verified = true;
+  MergedTiles merged{.tiles = sources.size(), .verified = true};
   for (const Source& source : sources) {
-    merged.verified = merged.verified && at<Json>(source, "/verification").is_object();
     merged.promises = merged.promises && at<bool>(source, "/promises");
+    if (at<Json>(source, "/verification").is_object())
+      merged.false_negatives += at<std::uint64_t>(source, "/verification/false_negatives");
+    else
+      merged.verified = false;
   }
-  Json json = {{"scene", at<Json>(sources.front(), "/scene")},
-               {"method", at<Json>(sources.front(), "/method")},
-               {"tiles", merged.tiles},
-               {"axis", at<Json>(sources.front(), "/tile/axis")},
-               {"cuts", at<Json>(sources.front(), "/tile/cuts")},
-               {"options", at<Json>(sources.front(), "/tile/options")}};
-  for (const char* count :
-       {"candidate_pairs", "colliding_pairs", "neighbour_pairs", "all_colliding_pairs"})
-    json[count] = sum_of(sources, std::string("/") + count);
-  json["contacts"] = contacts_of(sources);
-  if (merged.verified) merged.false_negatives = sum_of(sources, "/verification/false_negatives");
-  json["promises"] = merged.promises;
-  json["false_negatives"] = merged.verified ? Json(merged.false_negatives) : Json(nullptr);
-  const auto larger = [](auto a, auto b) { return std::max(a, b); };
-  json["triangles_of_largest_tile"] = joined<std::uint64_t>(sources, "/tile/triangles", larger);
-  json["peak_memory_mib"] = joined<double>(sources, "/tile/peak_memory_mib", larger);
-  json["time_ms"] = joined<double>(sources, "/time_ms/total", std::plus()) +
-                    joined<double>(sources, "/tile/read_ms", std::plus());
-  const auto [rows, sha256] = merge_lists(sources, out);
-  merged.rows = rows;
-  json["list"] = {{"rows", rows}, {"sha256", sha256}};
-  json["commit"] = at<Json>(sources.front(), "/commit");
-  merged.json = json.dump(2) + "\n";
+  merged.rows = merge_lists(sources, out);
   return merged;
 }
 

@@ -173,7 +173,6 @@ struct MergedTiles {
   std::uint64_t false_negatives = 0;  // of all accountings
   bool verified = false;              // every tile has an accounting
   bool promises = true;               // every tile promises to miss nothing (docs/record.md)
-  std::string json;                   // the record of the whole: counts and times, docs/tiles.md
 };
 
 /// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists
@@ -183,9 +182,7 @@ struct MergedTiles {
 /// Throws Error naming the file if a record or a list is missing, is no such file, or was cut short
 /// or changed since; if a tile is given twice or not at all; if two records differ in scene, number
 /// of tiles, cuts, options, columns or commit; if the tiles do not hold all triangles of the scene;
-/// and if `out` cannot be written or is a file that is read. other: a path to which the caller will
-/// write, which must not be a file that is read either.
-MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
-                        const std::string& other = "");
+/// and if `out` cannot be written or is a file that is read.
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out);
 
 }  // namespace farcull

@@ -15,7 +15,7 @@ large.obj << {open}; f 3 1 4
 right.obj << v 2 0 0; v 3 0 0; v 2 1 0; f 1 2 3
 bad no scene | SCENE: none is named | distance
 bad one object | SCENE: only one object .*farcull distance small\.obj --self | distance small.obj
-each SCENE: only one object | distance small.obj | --pairs nearest | --voronoi published
+each SCENE: only one object | distance small.obj | --pairs nearest
 bad no such pairs | --pairs: 'some' is no choice; give objects, nearest or all | {two} --pairs some
 bad all without a distance | --within: is missing | {two} --pairs all
 bad within '{within}' | --within: | {two} --within {within}
@@ -33,11 +33,6 @@ bad no such file | none\.obj: | distance small.obj none.obj --json old.json
 each {0}: | {two} | --inside yes --pairs all --within 1 | --csv right.obj
 bad one file twice | --csv: .*--json | {two} --csv a.out --json a.out
 bad frames of what stands still | --frames: nothing .*%d | {two} --frames 3
-bad no such diagram | --voronoi: 'some' is no choice; give published or reliable | {two} --voronoi some
-bad cells '{cells}' | --resolution: | {two} --voronoi reliable --resolution {cells}
-bad cells without a diagram | --resolution: has no meaning without --voronoi | {two} --resolution 64
-each {0}: has no meaning with --voronoi | {two} --voronoi published | --pairs nearest | --k 2 | --within 1 | --self | --inside no
-  | --verify | --frames 3
 many.json << {"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}
 bad more pairs of objects than are answered
   | scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest | distance many.json
@@ -45,7 +40,7 @@ bad a full disk for {output} | /dev/full: cannot be written: No space left | {tw
 bad no certificate | --certificate: farcull distance has no such option | {two} --certificate c.json
 """, open=OPEN, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj',
      output=['--json', '--csv'],
-     within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS, cells=[*NUMBERS, '16385'],
+     within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS,
      threads=['0', '-1', '1025', 'x', ''])
 rows(r"""
 bad more pairs than are answered | within: has (more than )?[0-9]+ pairs .*; give a smaller distance
@@ -101,11 +96,6 @@ right_end.obj << v 1.7e308 0 0; v 1.6e308 0 0; v 1.7e308 1 0; f 1 2 3
 left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
 0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - | ^ +"distance": null,$
 0 frames of a built-in scene | distance two-spheres --frames 2 --inside no
-0 a diagram | {three} --voronoi published | ^0 small +1 right +1 +
-  | ^nearest +[3-6] nearest objects of 3 objects; the diagram lost [0-9]+$
-0 a diagram that loses | distance ground@tiny --voronoi published --csv lost.csv --json lost.json
-  | @lost.csv ^object,nearest,nearest_objects,distance, | @lost.json ^    "lost": [1-9]
-0 a reliable diagram | distance crowd --voronoi reliable --resolution 32 --threads 1 --json - | ^    "lost": 0,$
 """, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'],
      closed='f 1 3 2; f 1 2 4; f 1 4 3; f 2 3 4; f 5 7 6; f 5 6 8; f 5 8 7; f 6 7 8',
      pairs=['objects', 'nearest'], frame=['1', '2', '3', '4'])

@@ -48,8 +48,7 @@ os.chdir(here)
 # What the caller has set must not decide; few malloc arenas, since each thread's takes address space that is
 # counted below. Verdicts about devices lie beside the program, made once, since a run says so when it makes one.
 for name in '''FARCULL_MESHES EGL_LOG_LEVEL LIBGL_ALWAYS_SOFTWARE GALLIUM_DRIVER MESA_GL_VERSION_OVERRIDE NO_COLOR
-    MESA_GLSL_VERSION_OVERRIDE __EGL_VENDOR_LIBRARY_DIRS __EGL_VENDOR_LIBRARY_FILENAMES LP_NUM_THREADS
-    SLURM_ARRAY_TASK_ID OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE'''.split():
+    MESA_GLSL_VERSION_OVERRIDE __EGL_VENDOR_LIBRARY_DIRS __EGL_VENDOR_LIBRARY_FILENAMES LP_NUM_THREADS'''.split():
     os.environ.pop(name, None)
 os.environ.update(LC_ALL='C', MALLOC_ARENA_MAX='2', farcull=program, out=OUT, err=ERR,
                   XDG_CACHE_HOME=os.path.dirname(program) + '/test-cache')

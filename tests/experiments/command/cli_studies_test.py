@@ -23,8 +23,8 @@ def rows_of(folder):
     return query(folder, 'SELECT study, position, device, counts, left_out FROM rows ORDER BY study, position')
 
 
-def measure(name, options, *checks, prefix=()):
-    good(name, 0, [*prefix, *STUDY.split(), *options.split()], checks, seconds=240, memory=None)
+def measure(name, options, *checks):
+    good(name, 0, [*STUDY.split(), *options.split()], checks, seconds=240, memory=None)
 
 
 def same(name, folder):
@@ -110,12 +110,8 @@ def full_disk():
 
 
 def shards():
-    """By the option and by the variables of Slurm and Open MPI."""
-    slurm = [f'SLURM_ARRAY_TASK_{name}' for name in ('ID=3', 'MIN=1', 'MAX=4', 'COUNT=4')]
-    measure('shards', 'shards', '^shard 3 of 4, by SLURM_ARRAY_TASK_ID$', prefix=slurm)
-    measure('shards', 'shards', '^shard 2 of 4, by OMPI_COMM_WORLD_RANK$',
-            prefix=['OMPI_COMM_WORLD_RANK=1', 'OMPI_COMM_WORLD_SIZE=4'])
-    measure('shards', 'shards --shard 1/4')
+    for shard in 3, 2, 1:
+        measure('shards', f'shards --shard {shard}/4')
     rows('bad a shard is missing | shard 4/4: of precision is missing | merge shards')
     measure('shards', 'shards --shard 4/4')
     rows(r"""
@@ -157,5 +153,4 @@ bad a device that is no name | --devices: 'a/b' is no device | experiment precis
 bad devices twice | --devices: says what --device says | experiment precision --device native --devices native
 bad no shards | empty: holds no shards | merge empty
 bad no folder | nowhere | merge nowhere
-bad half of Slurm | SLURM_ARRAY_TASK_COUNT | SLURM_ARRAY_TASK_ID=1 {study} new
 """, study=STUDY)

@@ -1,8 +1,6 @@
-// Potential neighbours and what is lost of them, against rationals and against the pairs that the
+// Sets of potential neighbours and what they lose, against rationals and against the pairs that the
 // diagrams leave, on small random scenes.
 #include "experiments/measure/neighbour_sets.h"
-
-#include <nlohmann/json.hpp>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/voronoi.h"
@@ -21,35 +19,28 @@ std::set<std::uint32_t> others_of(const std::vector<ObjectPair>& pairs, std::uin
   return out;
 }
 
-// The record of each object is what its own definition says.
+// The set of each object is what its own definition says.
 void check(const Scene& scene, const NeighbourOptions& options) {
-  const DiagramRecord record = potential_neighbours(scene, options);
+  const NeighbourSets sets = neighbour_sets(scene, options);
+  const std::vector<SetSize> sizes = set_sizes(scene, sets);
+  const std::vector<NearestObjects> found = nearest_objects(scene);
   const VoronoiOptions diagram{.resolution = options.resolution, .widening = options.widening};
   const bool reliable = options.method == NeighbourMethod::voronoi_reliable;
   const VoronoiNeighbours kept = reliable_neighbours(scene, diagram);
   const std::vector<ObjectPair> pairs =
       reliable ? kept.objects : voronoi_neighbours(scene, diagram).objects;
-  EXPECT_EQ(record.object_pairs, pairs.size());
+  EXPECT_EQ(sets.objects.size(), pairs.size());
   const std::vector<std::uint32_t> owner = owners(scene);
   const std::vector<exact_distance::Nearest> truth = exact_distance::nearest_neighbours(scene);
-  ASSERT_EQ(record.objects.size(), truth.size());
+  ASSERT_EQ(found.size(), truth.size());
+  ASSERT_EQ(sizes.size(), truth.size());
   for (std::uint32_t o = 0; o < truth.size(); ++o) {
-    const PotentialNeighbours& of = record.objects[o];
     std::set<std::uint32_t> nearest, triangles;
     for (const TrianglePair& pair : truth[o].pairs)
       nearest.insert(owner[pair.a] == o ? owner[pair.b] : owner[pair.a]);
-    EXPECT_EQ(std::set(of.nearest.begin(), of.nearest.end()), nearest);
-    if (!nearest.empty()) {
-      EXPECT_NEAR(of.distance * of.distance, truth[o].squared.get_d(), 1e-14);
-    }
+    EXPECT_EQ(std::set(found[o].objects.begin(), found[o].objects.end()), nearest);
     const std::set<std::uint32_t> others = others_of(pairs, o);
-    EXPECT_EQ(of.objects, others.size());
-    std::uint64_t lost = 0;
-    for (const std::uint32_t other : nearest) lost += !others.contains(other);
-    if (reliable) {
-      EXPECT_GE(of.lost, lost);
-    } else
-      EXPECT_EQ(of.lost, lost);
+    EXPECT_EQ(sizes[o].objects, others.size());
     for (std::uint32_t t = 0; t < owner.size(); ++t)
       if (owner[t] != o && others.contains(owner[t]) && !reliable) triangles.insert(t);
     for (const TrianglePair& pair : kept.triangles) {
@@ -57,11 +48,11 @@ void check(const Scene& scene, const NeighbourOptions& options) {
       if (owner[pair.a] == o) triangles.insert(pair.b);
       if (owner[pair.b] == o) triangles.insert(pair.a);
     }
-    EXPECT_EQ(of.triangles, triangles.size());
+    EXPECT_EQ(sizes[o].triangles, triangles.size());
   }
 }
 
-TEST(PotentialNeighbours, AreWhatTheDiagramLeaves) {
+TEST(NeighbourSets, AreWhatTheDiagramLeaves) {
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(120)); ++seed) {
     SCOPED_TRACE(seed);
     const int resolution = 1 + static_cast<int>(seed * 7 % 40);
@@ -74,50 +65,36 @@ TEST(PotentialNeighbours, AreWhatTheDiagramLeaves) {
 // Nearest objects that are lost in all scenes.
 std::uint64_t lost_by(const NeighbourOptions& options, int scenes) {
   std::uint64_t out = 0;
-  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(scenes)); ++seed)
-    out += totals_of(potential_neighbours(neighbours_scene(seed), options)).lost;
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(scenes)); ++seed) {
+    const Scene scene = neighbours_scene(seed);
+    out += sizes_of(scene, neighbour_sets(scene, options), nearest_objects(scene)).missed_pairs;
+  }
   return out;
 }
 
-TEST(PotentialNeighbours, ReliableOnesLoseNone) {
+TEST(NeighbourSets, OfTheReliableDiagramLoseNone) {
   EXPECT_EQ(lost_by({.method = NeighbourMethod::voronoi_reliable, .resolution = 8}, 800), 0u);
 }
 
 // Twins: the published form, and the reliable one without its widening.
-TEST(PotentialNeighbours, PublishedOnesLoseSome) {
+TEST(NeighbourSets, OfThePublishedDiagramLoseSome) {
   EXPECT_GT(lost_by({.method = NeighbourMethod::voronoi, .resolution = 8}, 400), 0u);
 }
-TEST(PotentialNeighbours, LoseSomeWithoutTheWidening) {
+TEST(NeighbourSets, LoseSomeWithoutTheWidening) {
   EXPECT_GT(
       lost_by({.method = NeighbourMethod::voronoi_reliable, .resolution = 8, .widening = 0}, 800),
       0u);
 }
 
-TEST(PotentialNeighbours, RecordsAddUp) {
-  const Scene scene = neighbours_scene(4, lab::kClusterKind);
-  const DiagramRecord record =
-      potential_neighbours(scene, {.method = NeighbourMethod::voronoi, .resolution = 16});
-  const DiagramTotals totals = totals_of(record);
-  EXPECT_EQ(totals.potential_objects, 2 * record.object_pairs);
-  const nlohmann::ordered_json json = diagram_json(scene, record);
-  std::uint64_t lost = 0;
-  for (const auto& of : json["objects"]) lost += of["lost"].get<std::uint64_t>();
-  EXPECT_EQ(lost, totals.lost);
-  EXPECT_EQ(json["totals"]["lost"], totals.lost);
-  EXPECT_EQ(json["objects"].size(), scene.objects.size());
-  const std::string csv = diagram_csv(scene, record);
-  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), scene.objects.size() + 1);
-}
-
-TEST(PotentialNeighbours, ObjectsWithoutTrianglesHaveNone) {
+TEST(NeighbourSets, OfObjectsWithoutTrianglesAreEmpty) {
   const std::array<Vec3, 3> point = {Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3)};
   const Scene scene = lab::scene_of({{point}, {}, {point}});
-  const DiagramRecord record =
-      potential_neighbours(scene, {.method = NeighbourMethod::voronoi, .resolution = 16});
-  EXPECT_TRUE(record.objects[1].nearest.empty());
-  EXPECT_EQ(record.objects[1].objects, 0u);
-  EXPECT_EQ(record.objects[0].nearest, (std::vector<std::uint32_t>{2}));
-  EXPECT_TRUE(diagram_json(scene, record)["objects"][1]["distance"].is_null());
+  const std::vector<NearestObjects> found = nearest_objects(scene);
+  EXPECT_TRUE(found[1].objects.empty());
+  EXPECT_EQ(found[0].objects, (std::vector<std::uint32_t>{2}));
+  const NeighbourSets sets =
+      neighbour_sets(scene, {.method = NeighbourMethod::voronoi, .resolution = 16});
+  EXPECT_EQ(set_sizes(scene, sets)[1].objects, 0u);
 }
 
 // ---- Sets of neighbours: sizes that can be counted by hand, nothing lost by methods that promise

@@ -15,7 +15,7 @@ std::vector<Study> two_studies() { return {counting_study(23), counting_study(6,
 std::string measure_shard(const std::string& folder, int index, int of,
                           const Provenance& provenance = lab_provenance()) {
   StudiesRequest request = lab_request(folder, two_studies());
-  request.shard = {index, of, "test"};
+  request.shard = {index, of};
   request.provenance = provenance;
   return run_studies(request).store;
 }
@@ -46,7 +46,7 @@ TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
   // A shard that was not finished.
   const ScratchFolder other;
   StudiesRequest request = lab_request(other.folder(), two_studies());
-  request.shard = {2, 3, "test"};
+  request.shard = {2, 3};
   request.studies[0].measure = [right = request.studies[0].measure](const Point& p, Lab& lab) {
     if (number_of(p) == 5) throw Error("device", "is lost", "try again");
     return right(p, lab);
@@ -116,7 +116,7 @@ TEST(Merge, RefusesWhatWasMeasuredOtherwise) {
     merge_stores({first, other_commit}, folder.path("out"));
   }));
   StudiesRequest seeded = lab_request(third.folder(), two_studies());
-  seeded.shard = {2, 2, "test"};
+  seeded.shard = {2, 2};
   seeded.choice.seed = 2;
   const std::string other_seed = run_studies(seeded).store;
   EXPECT_TRUE(refuses("another grid or seed", [&] {
@@ -129,7 +129,7 @@ TEST(Shards, CoverEveryPointOnce) {
     const int of = *rc::gen::inRange(1, 50);
     const auto position = *rc::gen::inRange<std::size_t>(0, 100000);
     int held = 0;
-    for (int index = 1; index <= of; ++index) held += Shard{index, of, ""}.holds(position);
+    for (int index = 1; index <= of; ++index) held += Shard{index, of}.holds(position);
     RC_ASSERT(held == 1);
   });
 }
@@ -141,57 +141,6 @@ TEST(Shards, AreReadAsGiven) {
   for (const char* bad : {"", "2", "2/", "/4", "0/4", "5/4", "-1/4", "1/0", "1/4/2", "1.0/4", "a/b",
                           "1/100001", " 1/4", "99999999999999999999/4"})
     EXPECT_TRUE(refuses("--shard", [&] { parse_shard(bad); })) << bad;
-}
-
-Shard from(const std::map<std::string, std::string>& variables) {
-  return shard_from_environment([&](const char* name) -> const char* {
-    const auto found = variables.find(name);
-    return found == variables.end() ? nullptr : found->second.c_str();
-  });
-}
-
-TEST(Shards, ComeFromSlurmOrOpenMpi) {
-  EXPECT_EQ(from({}).of, 1);
-  const Shard slurm = from({{"SLURM_ARRAY_TASK_ID", "3"},
-                            {"SLURM_ARRAY_TASK_MIN", "1"},
-                            {"SLURM_ARRAY_TASK_MAX", "6"},
-                            {"SLURM_ARRAY_TASK_COUNT", "6"}});
-  EXPECT_EQ(slurm.index, 3);
-  EXPECT_EQ(slurm.of, 6);
-  const Shard mpi = from({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
-  EXPECT_EQ(mpi.index, 1);
-  EXPECT_EQ(mpi.of, 4);
-  // A single process under mpirun divides nothing.
-  EXPECT_EQ(from({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}}).of, 1);
-}
-
-TEST(Shards, RefuseAnEnvironmentThatDoesNotAddUp) {
-  // --array=1-7:2
-  EXPECT_TRUE(refuses("gaps", [] {
-    from({{"SLURM_ARRAY_TASK_ID", "3"},
-          {"SLURM_ARRAY_TASK_MIN", "1"},
-          {"SLURM_ARRAY_TASK_MAX", "7"},
-          {"SLURM_ARRAY_TASK_COUNT", "4"}});
-  }));
-  // --array=3: one task of an array, submitted again.
-  EXPECT_TRUE(refuses("begins at 3", [] {
-    from({{"SLURM_ARRAY_TASK_ID", "3"},
-          {"SLURM_ARRAY_TASK_MIN", "3"},
-          {"SLURM_ARRAY_TASK_MAX", "3"},
-          {"SLURM_ARRAY_TASK_COUNT", "1"}});
-  }));
-  EXPECT_TRUE(refuses("is no number", [] { from({{"SLURM_ARRAY_TASK_ID", "x"}}); }));
-  EXPECT_TRUE(refuses("part 5 of 4", [] {
-    from({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
-  }));
-  EXPECT_TRUE(refuses("both", [] {
-    from({{"SLURM_ARRAY_TASK_ID", "1"},
-          {"SLURM_ARRAY_TASK_MIN", "1"},
-          {"SLURM_ARRAY_TASK_MAX", "2"},
-          {"SLURM_ARRAY_TASK_COUNT", "2"},
-          {"OMPI_COMM_WORLD_RANK", "0"},
-          {"OMPI_COMM_WORLD_SIZE", "2"}});
-  }));
 }
 
 // ---- A library that is upgraded between two runs, or between two shards.
@@ -238,26 +187,6 @@ TEST(Versions, AResumeAfterAnUpgradeIsRefusedAndAddsNothing) {
   EXPECT_EQ(libraries_in(path), std::set<std::string>{"lib 1.0"});
 }
 
-TEST(Versions, TheCommandOfTheRemedyDeletesTheOldRowsAndNoOthers) {
-  const ScratchFolder folder;
-  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
-  const auto upgraded = [] {
-    Study study = asking("lib 1.1");
-    // One of the two contestants alone.
-    study.library = [](const Point& point) {
-      return number_of(point) % 2 == 1 ? "lib 1.1" : "lib 1.0";
-    };
-    return study;
-  };
-  const std::string remedy = error_of([&] { measure(folder.folder(), upgraded()); }).remedy;
-  const std::size_t at = remedy.find("sqlite3 ");
-  ASSERT_NE(at, std::string::npos) << remedy;
-  if (std::system("sqlite3 --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no sqlite3";
-  ASSERT_EQ(std::system(remedy.substr(at).c_str()), 0) << remedy;
-  EXPECT_EQ(rows_in(Store(path, Store::Access::read), "counting"), 3u);
-  EXPECT_EQ(measure(folder.folder(), upgraded()).studies.front().measured, 9u);
-}
-
 TEST(Versions, RowsOfAMissingProgramAreKept) {
   const ScratchFolder folder;
   const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
@@ -289,7 +218,7 @@ TEST(Versions, AStoreThatHoldsTwoIsNotGoneOnWith) {
 
 std::string measure_shard(const std::string& folder, int index, const std::string& version) {
   StudiesRequest request = lab_request(folder, {asking(version)});
-  request.shard = {index, 3, "test"};
+  request.shard = {index, 3};
   return run_studies(request).store;
 }
 
@@ -304,7 +233,7 @@ TEST(Versions, ShardsOfTwoAreNotMerged) {
   EXPECT_EQ(refused.where, newer);
   EXPECT_TRUE(has_text(refused.reason,
                        "its rows of lemma are of lib 1.1, and those of " + first + " of lib 1.0"));
-  EXPECT_TRUE(has_text(refused.remedy, "--resume"));
+  EXPECT_TRUE(has_text(refused.remedy, "another folder"));
   EXPECT_FALSE(std::filesystem::exists(out));
   // The twin.
   EXPECT_EQ(merge_stores({first, second, third}, out).rows, static_cast<std::size_t>(kPoints));

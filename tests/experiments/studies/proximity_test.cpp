@@ -165,7 +165,7 @@ TEST(Proximity, ShardsMakeTheUndividedResult) {
   run_studies(lab_request(whole.folder(), {few_points()}));
   for (int shard = 1; shard <= 2; ++shard) {
     StudiesRequest request = lab_request(parts.folder(), {few_points()});
-    request.shard = {shard, 2, "test"};
+    request.shard = {shard, 2};
     run_studies(request);
   }
   merge_stores(shard_files(parts.folder()), store_path(parts.folder()));

@@ -129,7 +129,7 @@ TEST(Times, OfShardsAgreeBetweenStudiesOnceTheyAreMerged) {
                   .measure = even.measure};
   for (int shard = 1; shard <= 2; ++shard) {
     StudiesRequest request = lab_request(folder.folder(), {even, odd});
-    request.shard = {shard, 2, "test"};
+    request.shard = {shard, 2};
     run_studies(request);
   }
   EXPECT_EQ(std::ranges::count(runs, "b exact"), 2 * 2 * kRounds) << "else there is nothing to do";
