@@ -74,6 +74,8 @@ inline constexpr std::array kContactKinds = {ContactKind::apart,        ContactK
 
 /// "touch-vertex" and so on, as in the labels of a suite.
 std::string_view name_of(ContactKind kind);
+/// The inverse of name_of(); empty if no kind has this name.
+std::optional<ContactKind> parse_contact_kind(std::string_view name);
 
 /// The kind, and the points in common. These are a convex set.
 struct ContactShape {

@@ -150,6 +150,13 @@ auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned t
 
 std::string_view name_of(ContactKind kind) { return kNames.at(static_cast<std::size_t>(kind)); }
 
+std::optional<ContactKind> parse_contact_kind(std::string_view name) {
+  for (const ContactKind kind : kContactKinds) {
+    if (name_of(kind) == name) return kind;
+  }
+  return std::nullopt;
+}
+
 ContactKind contact_kind(const Corners& a, const Corners& b) {
   const std::optional<Meeting> meeting = meeting_of(a, b, false);
   return meeting ? meeting->kind : contact_shape_of_segments(a, b).kind;

@@ -82,7 +82,7 @@ class ClashCommand {
 
   SceneArguments scene_;
   bool depth_ = false;
-  Text clearance_, ignore_, unit_, fail_on_;
+  Text clearance_, ignore_, ignore_file_, unit_, fail_on_;
   Outputs outputs_;
 };
 
@@ -100,6 +100,7 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
               {"--ignore", &ignore_, "LIST",
                "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
                "listed\nlast where they meet"},
+              {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
               {"--fail-on", &fail_on_, "LIST",
                "verdicts for which the exit status is 1, or none;\n"
                "with touch, pairs that touch are listed as well;\ndefault clash,contained,unknown"},
@@ -168,14 +169,16 @@ int ClashCommand::run() const {
   const std::vector<ClashVerdict> failing = this->failing();
   check_scene(scene_.names);
   const SceneArguments files = parts();
-  const Outputs outputs = checked(outputs_, scene_files(files.names));
+  std::vector<NamedFile> inputs = scene_files(files.names);
+  if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
+  const Outputs outputs = checked(outputs_, inputs);
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
   const Stopwatch reading;
   Scene scene = read_parts(files);
   for (Object& object : scene.objects) object.self = false;
-  options.ignored = ignored_objects(scene, parse_ignored(ignore_));
+  options.ignored = ignored_objects(scene, ignored_names(ignore_, ignore_file_));
   options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
   options.ignored = in_order(std::move(options.ignored));
   require_asked(scene, options.ignored, "SCENE", "");

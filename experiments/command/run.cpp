@@ -31,6 +31,21 @@ void require_asked(const Census& census, const std::vector<ObjectPair>& ignored)
                          "test objects against themselves with --self");
 }
 
+std::vector<ContactKind> parse_kinds(const std::string& list) {
+  std::vector<ContactKind> out;
+  for (const std::string& name : split_list(list)) {
+    const std::optional<ContactKind> kind = parse_contact_kind(name);
+    if (!kind) {
+      std::string known;
+      for (const ContactKind one : kContactKinds)
+        known.append(known.empty() ? "" : ", ").append(name_of(one));
+      throw Error("--kinds", "'" + name + "' is no kind of contact", "give some of " + known);
+    }
+    out.push_back(*kind);
+  }
+  return out;
+}
+
 // Name, title and end of the help of each command, by RunCommand::Kind.
 constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
     {{"run", "cull a scene, test what is left, account for every pair",
@@ -39,7 +54,7 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
       "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
       "  farcull run cloth.obj --self --pairs pairs.csv\n"
       "  farcull run a.obj b.obj --clearance 0.001\n"
-      "  farcull run a.obj b.obj --pairs pairs.csv --segments\n"
+      "  farcull run a.obj b.obj --pairs pairs.csv --kinds crossing,coplanar --segments\n"
       "  farcull run robot.json --ignore 'link*:base,hand:cup' --limit 100\n"
       "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
       "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
@@ -107,7 +122,9 @@ class RunCommand {
   // Throws Error if an output cannot express what another option asks for.
   void refuse_outputs() const;
   PairColumns columns() const;
-  std::vector<IgnoredNames> ignored() const { return parse_ignored(options_.text("ignore")); }
+  std::vector<IgnoredNames> ignored() const {
+    return ignored_names(options_.text("ignore"), options_.text("ignore_file"));
+  }
   bool leaves_out() const { return options_.has("only") || !ignored().empty(); }
   // The pairs of objects that are not tested: those of --ignore, and all but those of --only.
   std::vector<ObjectPair> left_out(const Scene& scene, Lacking lacking = Lacking::refused) const;
@@ -128,7 +145,7 @@ class RunCommand {
   Kind kind_;
   SceneArguments scene_;
   MethodOptions options_;
-  Text frames_, tiles_;
+  Text frames_, kinds_, tiles_;
   Outputs outputs_;
   bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false, names_ = false,
        verbose_ = false;
@@ -168,6 +185,9 @@ Rows RunCommand::output_rows() {
                {"--segments", &segments_, "",
                 "with --pairs: the same, and the ends or the corners of\n"
                 "what the two triangles have in common"},
+               {"--kinds", &kinds_, "LIST",
+                "with --pairs: the same, and pairs of these kinds alone,\n"
+                "as in crossing,coplanar"},
                {"-v,--verbose", &verbose_, "",
                 "print the stages as well: what each took and left, and\n"
                 "what was left out and why"},
@@ -187,7 +207,7 @@ Rows RunCommand::output_rows() {
 
 RunOptions RunCommand::parse() const {
   RunOptions out{.verify = !no_verify_, .seed = seed_of(scene_.names)};
-  if (contacts_) out.contacts = ContactDetail::kinds;
+  if (contacts_ || kinds_) out.contacts = ContactDetail::kinds;
   if (segments_) out.contacts = ContactDetail::segments;
   return read_options(options_.given(), out);
 }
@@ -201,19 +221,23 @@ void RunCommand::refuse_outputs() const {
   needs_pairs("--faces", faces_, "adds columns to");
   needs_pairs("--names", names_, "adds columns to");
   needs_pairs("--segments", segments_, "adds columns to");
+  needs_pairs("--kinds", kinds_.has_value(), "chooses the rows of");
   if (!outputs_.certificate) return;
   const auto refuse = [](const std::string& option, bool given) {
     if (!given) return;
     throw Error(option, "a certificate is about all colliding pairs of all objects",
                 "leave " + option + " or --certificate out");
   };
-  for (const char* name : {"ignore", "only", "limit"})
+  for (const char* name : {"ignore", "ignore_file", "only", "limit"})
     refuse(option_word(name), options_.has(name));
 }
 
 PairColumns RunCommand::columns() const {
-  return {
-      .faces = faces_, .contacts = contacts_ || segments_, .segments = segments_, .names = names_};
+  return {.faces = faces_,
+          .contacts = contacts_ || segments_ || kinds_,
+          .segments = segments_,
+          .names = names_,
+          .kinds = kinds_ ? parse_kinds(*kinds_) : std::vector<ContactKind>()};
 }
 
 std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking) const {
@@ -238,7 +262,9 @@ std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking
 }
 
 std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& range) const {
-  return scene_files(scene_.names, range);
+  std::vector<NamedFile> out = scene_files(scene_.names, range);
+  if (const Text& file = options_.text("ignore_file")) out.push_back({"--ignore-file", *file});
+  return out;
 }
 
 std::string RunCommand::with_self() const {

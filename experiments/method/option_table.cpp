@@ -355,6 +355,10 @@ const Option kOptions[] = {
      .help = "pairs of objects that are not tested against each\n"
              "other, as in a:b,link*:gripper; * is any text",
      .serves = any},
+    {.name = "ignore_file",
+     .type = "FILE",
+     .help = "the same, a pair a line; # begins a comment",
+     .serves = any},
     {.name = "only",
      .type = "LIST",
      .help = "only these pairs of objects are tested against each\n"

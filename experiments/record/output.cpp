@@ -322,6 +322,10 @@ class Rows {
   void append(const std::vector<TrianglePair>& pairs, const std::vector<ContactShape>& contacts,
               std::size_t k, std::string& out) const {
     const TrianglePair& pair = pairs[k];
+    if (!columns_.kinds.empty() &&
+        std::ranges::find(columns_.kinds, contacts.at(k).kind) == columns_.kinds.end()) {
+      return;
+    }
     out += before_;
     rows_.append(pair, out);
     out.pop_back();

@@ -106,7 +106,7 @@ nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<Triangle
 /// A name as a cell of a CSV: in quotes if it has to be.
 std::string csv_cell(const std::string& text);
 
-/// Columns of pairs_csv() besides those that every list has.
+/// Columns of pairs_csv() besides those that every list has, and which rows it writes.
 struct PairColumns {
   bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
   bool contacts = false;  // contact: the kind; the record must have the kinds
@@ -114,6 +114,7 @@ struct PairColumns {
                           // units; empty for a polygon or nothing. The record must have them.
                           // polygon: the corners of a polygon, else empty
   bool names = false;     // name_a, name_b: of the objects
+  std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
   const ListNumbers* numbers = nullptr;  // set if the scene is a part of another scene; else null
 };
 

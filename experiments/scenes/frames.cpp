@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -142,6 +143,8 @@ constexpr const char* kRemedy =
     "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
     "the mesh file without its ending, or that in the scene file";
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// Whether the name matches a pattern, in which a * stands for any characters. After a mismatch,
 /// the last * takes one character more.
 bool fits(std::string_view name, std::string_view pattern) {
@@ -209,7 +212,7 @@ void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
   const std::string_view text = names.text;
   const auto fail = [&](const std::string& reason) {
     throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
-                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)));
+                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)), names.line);
   };
   std::vector<std::uint32_t> first, second;
   std::string unknown;
@@ -267,15 +270,39 @@ std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& fir
   return pairs_of(a, b);
 }
 
-std::vector<IgnoredNames> parse_ignored(const std::optional<std::string>& list) {
+std::vector<IgnoredNames> parse_ignored(const std::string& list) {
   std::vector<IgnoredNames> out;
-  if (!list) return out;
-  for (std::size_t begin = 0; begin <= list->size();) {
-    const std::size_t end = std::min(list->find(',', begin), list->size());
-    out.push_back({list->substr(begin, end - begin), "--ignore"});
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    out.push_back({list.substr(begin, end - begin), "--ignore"});
     if (out.back().text.empty()) throw Error("--ignore", "a pair of names is empty", kRemedy);
     begin = end + 1;
   }
+  return out;
+}
+
+std::vector<IgnoredNames> read_ignored(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path, "cannot be read", "name a text file with a pair of names a line");
+  std::vector<IgnoredNames> out;
+  long line = 0;
+  for (std::string text; std::getline(file, text);) {
+    ++line;
+    if (line == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    if (text.ends_with('\r')) text.pop_back();
+    if (!text.empty() && !text.starts_with('#')) out.push_back({text, path, line});
+  }
+  if (!file.eof()) throw Error(path, "cannot be read to its end", "name a text file", line);
+  if (out.empty()) throw Error(path, "names no pair of objects", kRemedy);
+  return out;
+}
+
+std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
+                                        const std::optional<std::string>& file) {
+  std::vector<IgnoredNames> out;
+  if (list) out = parse_ignored(*list);
+  if (!file) return out;
+  for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
   return out;
 }
 
@@ -287,7 +314,8 @@ std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<Ig
 }
 
 void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking) {
-  for (const ObjectPair& pair : ignored_objects(scene, parse_ignored(arguments.ignore), lacking))
+  for (const ObjectPair& pair :
+       ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
     scene.ignored.push_back(pair);
   scene.ignored = in_order(std::move(scene.ignored));
 }

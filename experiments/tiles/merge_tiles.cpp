@@ -95,6 +95,7 @@ void require_alike(const Source& first, const Source& other) {
       {"/method", "is of another method"},
       {"/tile/options", "was run with other options"},
       {"/tile/list/columns", "has other columns in its list"},
+      {"/tile/list/kinds", "has other kinds of contact in its list"},
       {"/commit", "is of another version of farcull"}};
   for (const auto& [place, what] : places) {
     if (at<Json>(first, place) == at<Json>(other, place)) continue;

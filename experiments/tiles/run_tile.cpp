@@ -396,8 +396,11 @@ void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
 }
 
 Json list_json(const TileList& list) {
+  Json kinds = Json::array();
+  for (const ContactKind kind : list.columns.kinds) kinds.push_back(std::string(name_of(kind)));
   return {{"file", list.file},
           {"columns", list.text.substr(0, list.text.find('\n'))},
+          {"kinds", kinds},
           {"rows", std::ranges::count(list.text, '\n') - 1},
           {"sha256", sha256(list.text)}};
 }

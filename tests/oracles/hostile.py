@@ -256,6 +256,10 @@ def surroundings(rng, files, expected, sizes, ending):
         text = "object_a,triangle_a,object_b,triangle_b\n" + "".join(f"0,{a},1,{b - sizes[0]}\n" for a, b in expected)
         got = call("check", *files, "--pairs", write(HERE + "list.csv", damaged(rng, text.encode())))
         require(got[0] in (0, 1, 2), "a damaged list", got)
+        with open(HERE + "list.csv", "rb") as file:
+            data = file.read()
+        got = call("run", *files, "--ignore-file", write(HERE + "ignored", data))
+        require(got[0] in (0, 2), "a damaged file of ignored pairs", got)
     return {f"place: {kind}": 1}
 
 

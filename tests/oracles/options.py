@@ -14,8 +14,8 @@ PAIRS_OF_OBJECTS = ["o0:o1", "o*:p2", "o1:p2,p2:o0", "*:o1"]
 METHODS = [BOXES, "far", "cullide", "quick-cullide", "s-cullide", "i-collide", "exact"]
 WORDS = {
     "--method": METHODS, "--self": [], "--clearance": ["1", "2", "0"], "--ignore": PAIRS_OF_OBJECTS, "--only": PAIRS_OF_OBJECTS,
-    "--limit": ["1", "3", "1000"], "--full": [], "--faces": [], "--names": [],
-    "--contacts": [], "--segments": [], "--verbose": [],
+    "--ignore-file": [HERE + "ignored"], "--limit": ["1", "3", "1000"], "--full": [], "--faces": [], "--names": [],
+    "--contacts": [], "--segments": [], "--kinds": ["crossing", "touch-vertex,coplanar,equal,apart"], "--verbose": [],
     "--certificate": [HERE + "c.json"], "--resolution": ["32", "auto"], "--radius": ["budget", "published", "2"],
     "--offset": ["obb", "exact"], "--depth": ["fragment", "fixed"], "--depth-format": ["32f", "24"],
     "--query": ["flags", "occlusion"], BOXES_OPTION: ["objects", "triangles"], "--clusters": ["4", "8,2", "none"],
@@ -25,7 +25,7 @@ DRAWING = set(list(WORDS)[list(WORDS).index("--resolution") :])
 ABOUT_OBJECTS = {key: WORDS[key] for key in ("--self", "--clearance", "--ignore")}
 COMMANDS = {
     "run": {**WORDS, "--no-verify": []}, "verify": WORDS, "check": ABOUT_OBJECTS,
-    "clash": {"--clearance": ["1", "2", "0"], "--ignore": PAIRS_OF_OBJECTS,
+    "clash": {"--clearance": ["1", "2", "0"], "--ignore": PAIRS_OF_OBJECTS, "--ignore-file": [HERE + "ignored"],
               "--fail-on": ["none", "touch", "near,clash"], "--unit": ["mm"]},
     "distance": {"--pairs": ["objects", "nearest", "all"], "--k": ["1", "2"], "--within": ["0", "1", "2"], "--self": [],
                  "--ignore": PAIRS_OF_OBJECTS, "--inside": ["yes", "no"], "--threads": ["1", "2"], "--verify": []},
@@ -57,6 +57,7 @@ def scene(rng, spoil):
     for name, start, size in zip(NAMES, starts_of(sizes), sizes):
         files.append(HERE + name + ".off")
         write_off(files[-1], V, F[start : start + size])
+    write(HERE + "ignored", "# a comment\no0:p2\n")
     words = [word for name, value in given.items() for word in (name, value) if word is not None]
     facts = {f"calls of {command}": 1}
     for pair in itertools.combinations(sorted((command, *item) for item in given.items()), 2):
@@ -97,6 +98,8 @@ class Question:
         self.self = "--self" in given
         self.clearance = int(given.get("--clearance", 0))
         self.ignored = objects_of(given["--ignore"]) if "--ignore" in given else set()
+        if "--ignore-file" in given:
+            self.ignored |= {(0, 2)}
         if "--only" in given:
             self.ignored |= {(0, 1), (0, 2), (1, 2)} - objects_of(given["--only"])
 
@@ -145,22 +148,23 @@ def ask_run(rng, files, words, question, spoil, command="run"):
         require(record["conservative"] in (None, "--conservative" in given), "conservative", *say)
         pairs = question.colliding()
         limited = pairs[: int(given["--limit"])] if "--limit" in given else pairs
+        kinds = given["--kinds"].split(",") if "--kinds" in given else None
         rows = [tuple(int(row[c]) for c in ("object_a", "triangle_a", "object_b", "triangle_b")) for row in table]
-        counted = record["verification"] and "--limit" not in given  # so that a row that is missing shows
+        counted = record["verification"] and "--limit" not in given and kinds is None  # so that a row that is missing shows
         rows = spoil("a dropped row", rows, lambda r: dropped(r) if record["promises"] or counted else None)
-        wanted = {question.row(p): p for p in limited}
+        wanted = {question.row(p): p for p in limited if kinds is None or p[3] in kinds}
         if record["promises"]:
             require(rows == list(wanted), "the list", rows, list(wanted), *say)
             require(record["verification"] is None or record["verification"]["false_negatives"] == 0, "missed", *say)
         else:
-            all_ = {question.row(p): p for p in pairs}
+            all_ = {question.row(p): p for p in pairs if kinds is None or p[3] in kinds}
             require(set(rows) <= set(all_), "the list has wrong pairs", rows, *say)
             wanted = {row: all_[row] for row in rows}
             if counted:
                 require(record["verification"]["false_negatives"] == len(all_) - len(rows), "missed", record["verification"], *say)
         require((record["verification"] is None) == ("--no-verify" in given), "verification", *say)
         columns = set(table[0]) if table else set()
-        contact = any(o in given for o in ("--contacts", "--segments"))
+        contact = any(o in given for o in ("--contacts", "--segments", "--kinds"))
         for column, there in (("face_a", "--faces" in given), ("name_a", "--names" in given), ("contact", contact),
                               ("x0", "--segments" in given), ("neighbours", question.self)):
             require(not table or (column in columns) == there, f"the column {column}", *say)

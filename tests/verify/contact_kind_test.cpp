@@ -401,5 +401,11 @@ TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
   EXPECT_THROW(contact_kinds(scene, std::vector<TrianglePair>{{0, 40}}), std::logic_error);
 }
 
+TEST(ContactKinds, HaveNamesThatAreReadBack) {
+  for (const ContactKind kind : kContactKinds) EXPECT_EQ(parse_contact_kind(name_of(kind)), kind);
+  EXPECT_FALSE(parse_contact_kind("touch"));
+  EXPECT_FALSE(parse_contact_kind(""));
+}
+
 }  // namespace
 }  // namespace farcull

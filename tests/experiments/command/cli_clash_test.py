@@ -61,6 +61,8 @@ bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; f
 0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
 1 contained | clash parts/a.obj inner.obj | ^contained +a +inner .* inner inside$ | ! clean
 0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^clash .ignored. +a +b[ ] | ^examined   5 of 5 .*: clean$
+list.txt << # allowed; a:b
+0 ignored by a file | clash parts --ignore-file list.txt | ^ignored    1 pair
 1 all digits | clash parts --csv - | #0 ^object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs, | #1 ^0,1,a,b,clash,0,1, | #2 ^2,3,c,d,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":".* crossing
 1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]

@@ -9,16 +9,23 @@ fin.obj << v 1 1 -1; v 1 1 1; v 1 3 0; f 1 2 3
 spike.obj << v 4 2 0; v 4 2 3; v 5 2 3; f 1 2 3
 sheet.obj << v 2 2 0; v 3 2 0; v 2 3 0; f 1 2 3
 bad {columns} without pairs | {columns0}: .*--pairs | run {all} {*columns}
+bad kinds '{kinds}' | --kinds: .*give some of apart,[ ] | run {all} --pairs p.csv --kinds {kinds}
 bad limit '{limit}' | --limit: .*1 or more | run {all} --limit {limit}
 bad an unknown name | --ignore: 'floor:wing' names 'wing', and no object is called so; .*floor, fin
   | run {all} --ignore floor:wing
 bad no colon | --ignore: 'floor' has no colon | run {all} --ignore floor
 bad one object | --ignore: 'fin:fin' names one object | verify {all} --ignore fin:fin
 bad an empty pair | --ignore: a pair of names is empty | plan {all} --ignore fin:floor,
+bad no file | none\.txt: cannot be read | run {all} --ignore-file none.txt
+nothing.txt << # only a comment
+bad a file of nothing | nothing\.txt: names no pair | run {all} --ignore-file nothing.txt
+wrong.txt << floor:fin; ; floor:wing
+bad a wrong line | wrong\.txt:3: 'floor:wing' names 'wing' | run {all} --ignore-file wrong.txt
 bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {all} {*part} --certificate c.json
-""", all='floor.obj fin.obj spike.obj sheet.obj', columns=['--segments', '--names'],
+""", all='floor.obj fin.obj spike.obj sheet.obj', columns=['--segments', '--kinds crossing'],
+     kinds=['', 'cross', 'crossing,', ',crossing', 'Crossing', 'crossing coplanar'],
      limit=['0', '-1', '1.5', '', 'all', '99999999999999999999'],
-     part=['--limit 1', '--ignore floor:fin'])
+     part=['--limit 1', '--ignore floor:fin', '--ignore-file wrong.txt'])
 
 # ---- good cases
 
@@ -33,7 +40,8 @@ rows(r"""
   | ^0,0,3,0,coplanar,,,,,,,[-0-9.]+( [-0-9.]+)+,0,0$
 0 names | run {all} --names --pairs - | #0 ^object_a,.*,name_a,name_b$ | ^0,0,1,0,floor,fin$ | ^0,0,3,0,floor,sheet$
 bad names without a list | --names: .*--pairs | run {all} --names
-0 kinds of a clearance | run {all} --clearance 9 --contacts --pairs - | ^0,0,|^1,0,2,0,apart$
+0 some kinds | run {all} --kinds crossing,coplanar --pairs some.csv | $ cmp -s some.csv <(grep -v touch kinds.csv)
+0 kinds of a clearance | run {all} --clearance 9 --kinds apart --pairs - | ^0,0,|^1,0,2,0,apart$
 0 kinds of frames | run two-spheres --frames 2 --contacts --json - --pairs frames.csv | ^ +"crossing": [0-9]+,$
   | @frames.csv #0 ^frame,object_a,.*,contact$
 
@@ -42,7 +50,10 @@ bad names without a list | --names: .*--pairs | run {all} --names
 # boxes makes none of the ignored pairs.
 0 ignored | verify {all} --ignore 'f*:spike' --pairs ignored.csv | [ ]2 ignored \+ 0 missed$
   | ^ignored    2 pairs of objects, of which no candidate pairs were made$ | $ cmp -s ignored.csv <(grep -v ',2,0$' plain.csv)
-0 ignored by {method} | run {all} --method {method} --ignore 'floor:spike,fin:spike' --pairs by.csv | $ cmp -s ignored.csv by.csv
+pairs.txt << # links; floor:spike; fin:spike
+0 ignored by {method} | run {all} --method {method} --ignore-file pairs.txt --pairs by.csv | $ cmp -s ignored.csv by.csv
+$ printf '\xEF\xBB\xBFfloor:spike\r\nfin:spike\r\n' >marked.txt
+0 a byte order mark | run {all} --ignore-file marked.txt --pairs by.csv | $ cmp -s ignored.csv by.csv
 0 ignored in frames | verify two-spheres@ground --frames 2 --ignore first:second | [ ]52,428,800 ignored \+ 0 missed$
 # The list is proved where the same pairs are ignored. The twins: one of all pairs, and one that lacks a pair.
 0 a list with ignored objects is proved | check --pairs ignored.csv {all} --ignore 'f*:spike' | ^proved: .*, of objects that are not ignored$

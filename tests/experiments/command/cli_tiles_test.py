@@ -30,7 +30,7 @@ if launch(['run', 'bunny', '--no-verify']) == 0:
     same(2, 'mannequin-devil')
 # Options that tiles take.
 for tiles, scene in (3, 'two-tori --clearance 0.05'), (4, 'cloth:1000 --self --contacts --faces'), \
-        (2, 'two-spheres --self --clearance 0.01 --segments'), (3, 'degenerate --contacts'), \
+        (2, 'two-spheres --self --clearance 0.01 --segments'), (3, 'degenerate --kinds crossing,coplanar'), \
         (3, "crowd --ignore '*1:*2,*3:*4'"), (2, 'field:3000@seed9'):
     same(tiles, scene)
 
@@ -70,6 +70,8 @@ each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 
 bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
 each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*'
 $ "$farcull" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv' 2>&1 >/dev/null | grep -qF 'no UTF-8'
+ignored.txt << tetrahedron0:*2
+each .*--ignore-file | run crowd --ignore-file ignored.txt | --tiles 1/2 --pairs ignored.txt | --json ignored.txt
 bad a tile of one object | SCENE: nothing to test: the scene is one object | run {mesh} --tiles 1/1
 # A record and a list in two folders, of which one is behind a link.
 $ mkdir -p real/deep && ln -s real/deep link

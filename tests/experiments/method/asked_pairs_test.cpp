@@ -167,6 +167,15 @@ TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
   // Thirteen commas in each row, whatever is empty.
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, ',')), 13 * rows);
   EXPECT_TRUE(has_text(csv, ",coplanar,,,,,,,"));
+
+  const auto of = [&](std::vector<ContactKind> kinds) {
+    return pairs_csv(scene, record, {.contacts = true, .kinds = std::move(kinds)});
+  };
+  const std::string crossing = of({ContactKind::crossing});
+  EXPECT_EQ(static_cast<std::uint64_t>(std::ranges::count(crossing, '\n')),
+            json["contacts"]["crossing"].get<std::uint64_t>() + 1);
+  EXPECT_FALSE(has_text(crossing, "touch"));
+  EXPECT_EQ(of({kContactKinds.begin(), kContactKinds.end()}), of({}));
 }
 
 }  // namespace

@@ -432,5 +432,17 @@ TEST(Ignore, RefusesWhatNamesNothing) {
   EXPECT_TRUE(has_text(refused("a:c"), "the scene has a, b"));
 }
 
+TEST(Ignore, ReadsAFileAndNamesItsLines) {
+  const ScratchFolder folder;
+  const std::string good = folder.write("pairs.txt", "# links\r\n\na:b\r\n");
+  const Scene scene = scene_of({"a", "b"});
+  EXPECT_EQ(ignored_objects(scene, read_ignored(good)), (Pairs{{0, 1}}));
+  const std::string bad = folder.write("bad.txt", "a:b\n# x\na:z\n");
+  EXPECT_TRUE(refuses("bad.txt:3", [&] { ignored_objects(scene, read_ignored(bad)); }));
+  EXPECT_TRUE(refuses("cannot be read", [&] { read_ignored(folder.path("none.txt")); }));
+  const std::string empty = folder.write("empty.txt", "# nothing\n");
+  EXPECT_TRUE(refuses("names no pair", [&] { read_ignored(empty); }));
+}
+
 }  // namespace
 }  // namespace farcull

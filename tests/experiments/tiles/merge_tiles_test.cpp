@@ -113,6 +113,9 @@ TEST_F(MergeTiles, RefuseWhatIsNotOfOneScene) {
   run(2, kTiles, "field:9000");
   change(2, [](Json& json) { json["tile"]["list"]["columns"] = "a,b"; });
   expect_refused("has other columns in its list");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["list"]["kinds"] = {"crossing"}; });
+  expect_refused("has other kinds of contact in its list");
 }
 
 TEST_F(MergeTiles, NoticeATriangleThatNoTileHas) {
