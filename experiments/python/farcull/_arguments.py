@@ -86,6 +86,58 @@ def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
     return array("V", V), array("F", F)
 
 
+class Grouped:
+    """Triangles grouped into objects, by the first triangle of each or by a label for each triangle."""
+
+    def __init__(self, F: Any, object_starts: Any, labels: Any) -> None:
+        self.triangles = array("F", F)
+        self.labels: Optional[np.ndarray] = None  # of the objects; None without labels
+        self.order: Optional[np.ndarray] = None  # numbers of the caller's triangles; None: as given
+        if labels is None:
+            self.starts = _starts(object_starts)
+            return
+        if object_starts is not None:
+            raise InputError("labels", "are given beside object_starts", "give one of the two")
+        each = read("labels", labels, "give one for each triangle")
+        if each.ndim != 1 or len(each) != len(self.triangles) or each.dtype.kind not in "iubUS":
+            raise InputError(
+                "labels",
+                f"have the shape {each.shape} and the type {each.dtype} for {len(self.triangles)} triangles",
+                "give one whole number or text for each triangle",
+            )
+        order = np.argsort(each, kind="stable")
+        self.labels, first = np.unique(each[order], return_index=True)
+        self.starts = np.ascontiguousarray(first, np.int64)
+        if len(order) and (order != np.arange(len(order))).any():
+            self.order, self.triangles = order, self.triangles[order]
+
+    def pairs(self, pairs: np.ndarray, *others: Any) -> Tuple[Any, ...]:
+        """Pairs in the caller's numbers, rows sorted, and what belongs to each row, None for none."""
+        if self.order is None:
+            return (pairs, *others)
+        named = np.sort(self.order[pairs], axis=1).reshape(-1, 2)
+        by = np.lexsort((named[:, 1], named[:, 0]))
+        return (named[by], *(None if other is None else other[by] for other in others))
+
+    def ignored(self, given: Any) -> Any:
+        """Pairs of objects, by their labels where there are some, as pairs of numbers."""
+        if self.labels is None or given is None:
+            return given
+        remedy = "give labels, as in [(3, 7)]"
+        rows = read("ignore", given, remedy)
+        if rows.size == 0:
+            return None
+        # Compared by Python, since numpy rounds where one array is signed and the other is not.
+        places = {label: place for place, label in enumerate(self.labels.tolist())}
+        try:
+            if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iubUS":
+                raise KeyError
+            return [[places[a], places[b]] for a, b in rows.tolist()]
+        except KeyError:
+            reason = "are no rows of two labels that triangles have"
+            raise InputError("ignore", reason, remedy) from None
+
+
 def poses(given: Any) -> np.ndarray:
     """Matrices as (k, 3, 4) doubles; None stands for no poses."""
     if given is None:
@@ -106,31 +158,34 @@ def poses(given: Any) -> np.ndarray:
 Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
-def arrays(V: Any, F: Any, object_starts: Any, moves: Any, answered: Any = None) -> Arrays:
-    """The input of a call. ``answered`` is True where the call before had an answer, whose arrays poses alone move."""
+def arrays(
+    V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Optional[Grouped] = None
+) -> Tuple[Grouped, Arrays]:
+    """The input of a call. ``before``: of the call whose arrays poses move where they are given alone."""
     matrices = poses(moves)
-    if V is None and F is None and object_starts is None and answered is True and len(matrices):
-        return np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices
+    alone = V is None and F is None and object_starts is None and labels is None
+    if alone and isinstance(before, Grouped) and len(matrices):
+        return before, (np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices)
     for name, given in (("V", V), ("F", F)):
         if given is None:
             remedy = "give V and F; poses alone move those of the call before, if it had an answer"
             raise InputError(name, "is not given", remedy)
-    triangles = array("F", F)
-    if matrices.size and not triangles.size:
+    grouped = Grouped(F, object_starts, labels)
+    if matrices.size and not grouped.triangles.size:
         raise InputError("F", "has no triangles", "give some, or poses alone to move those of the call before")
-    return array("V", V), triangles, _starts(object_starts), matrices
+    return grouped, (array("V", V), grouped.triangles, grouped.starts, matrices)
 
 
-def ask(owner: Any, compiled: Any, given: Arrays) -> Dict[str, Any]:
-    """The answer of a compiled collider or finder of ``owner``, which then knows that it has one.
-    A signal handler that asks it in between decides, since its call was the last."""
+def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
+    """The answer of a compiled collider or finder of ``owner``, which then knows the objects of the call.
+    If a signal handler asked it in between, it knows those of the handler's call, which was the last."""
     turn = object()
-    if not given[1].size and given[3].size and owner._answered is not None:
+    if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
-    owner._answered = turn  # nothing is called before the next line: Python checks for signals after calls
+    owner._grouped = turn  # nothing is called before the next line: Python checks for signals after calls
     found = compiled.find(*given)
-    if owner._answered is turn:
-        owner._answered = True
+    if owner._grouped is turn:
+        owner._grouped = grouped
     return found
 
 

@@ -119,8 +119,8 @@ def _html(what: Any) -> str:
         raise InputError("what", f"{what!r} has no page", "give a Scene, Record, Result or Clash")
     if what._input is None:
         raise InputError("what", unusual + ", or comes from a Collider or a pickle", remedy)
-    V, F, starts, selves = what._input
-    scene = Scene.from_arrays(V, F, starts, self=selves)
-    if not np.array_equal(scene.run(verify=False).pairs, what.pairs):
+    V, grouped, selves = what._input
+    scene = Scene.from_arrays(V, grouped.triangles, grouped.starts, self=selves)
+    if not np.array_equal(grouped.pairs(scene.run(verify=False).pairs)[0], what.pairs):
         raise Error("what", "its arrays have changed since", "call farcull.collide again")
     return picture(scene, page=True).html

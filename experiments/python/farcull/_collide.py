@@ -63,8 +63,8 @@ class Result:
     """False: there may be more pairs behind the last one, which the limit leaves out. Before it none is
     missing."""
     report: Report
-    # V, F, object_starts and self of collide(), for show(); None where a page shows other pairs.
-    _input: Optional[Tuple[Any, Any, Any, Any]] = field(default=None, repr=False)
+    # Vertices, grouped triangles and self of collide(), for show(); None where a page shows other pairs.
+    _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
 
     def to_pandas(self) -> Any:
         """A DataFrame with a row for each pair, sorted: ``a``, ``b``, ``neighbours``, and where they were
@@ -132,8 +132,8 @@ class Collider:
     before, it also keeps what it found about triangles that did not move. The answers are those of
     :func:`collide`. One thread at a time may use it.
 
-    By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore``,
-    ``limit`` and ``threads`` as :func:`collide` does.
+    By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore`` (numbers
+    alone), ``limit`` and ``threads`` as :func:`collide` does.
 
     Raises InputError naming the option that is wrong.
     """
@@ -147,12 +147,14 @@ class Collider:
         question = _question(
             self, clearance, neighbours, threads, contacts, segments, ignore, limit
         )
-        collider._answered: Any = None  # True: the call before had an answer
+        collider._grouped: Any = None  # of the call before, if it had an answer; else None
+        collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(question)
 
     def find(
         self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
-        object_starts: Optional[ArrayLike] = None, poses: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
+        poses: Optional[ArrayLike] = None,
     ) -> Result:
         """The pairs that collide.
 
@@ -162,6 +164,8 @@ class Collider:
         F: (m, 3), the triangles, as indices of vertices from 0.
         object_starts: the number of the first triangle of each object: 0, then rising. None: all
             triangles are one object, which has to be tested against itself.
+        labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in
+            any order. The objects are numbered by their labels in ascending order.
         poses: a matrix (4, 4) or (3, 4) for each object, which moves its vertices; no two objects
             share a vertex then. Each product and sum of a coordinate is rounded, from left to right;
             the answer is exact for the points that come out. ``find(poses=...)`` alone moves the
@@ -171,11 +175,25 @@ class Collider:
         ``ignore`` names an object that is not there; and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
-        answered, self._answered = self._answered, None
-        return self._find(_arguments.arrays(V, F, object_starts, poses, answered))
+        before, self._grouped = self._grouped, None
+        grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, before)
+        if labels is not None and self._needs_numbers:
+            raise InputError(
+                "labels", "have no meaning with the ignored numbers or the limit of a Collider",
+                "sort the triangles by label and give object_starts, or call farcull.collide",
+            )
+        return self._find(grouped, given)
 
-    def _find(self, given: _arguments.Arrays, shown: Optional[Tuple[Any, Any, Any, Any]] = None) -> Result:
-        found = _arguments.ask(self, self._collider, given)
+    def _find(
+        self, grouped: _arguments.Grouped, given: _arguments.Arrays,
+        shown: Optional[Tuple[Any, Any, Any]] = None,
+    ) -> Result:
+        found = _arguments.ask(self, self._collider, grouped, given)
+        for names in (
+            ("pairs", "kinds", "segments"),
+            ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
+        ):
+            found.update(zip(names, grouped.pairs(*(found[name] for name in names))))
         return Result(**{**found, "report": Report(**found["report"])}, _input=shown)
 
 
@@ -184,7 +202,8 @@ def collide(
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
     threads: int = 0, contacts: bool = False,
     ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
-    segments: bool = False, poses: Optional[ArrayLike] = None,
+    labels: Optional[ArrayLike] = None, segments: bool = False,
+    poses: Optional[ArrayLike] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
     itself. For many frames, keep a :class:`Collider`.
@@ -201,24 +220,35 @@ def collide(
     threads: up to 1024; 0: one for each core.
     contacts: True: say of each pair how the two triangles meet (:data:`KINDS`).
     ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers
-        from 0.
+        from 0; with ``labels`` by their labels.
     limit: only the first so many pairs, neighbours among them, in the order of the rows; 1 or more.
-        None: all.
+        None: all. Not with ``labels``.
+    labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any
+        order. The objects are numbered by their labels in ascending order.
     segments: True: say of each pair how the two triangles meet, and the points that they have in common.
     poses: a matrix for each object, which moves it, as in :meth:`Collider.find`.
 
     Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for
     arguments that are not so and where there is nothing to test; and MemoryError.
     """
-    given = _arguments.arrays(V, F, object_starts, poses)
+    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
+    _refuse_limit(limit, labels)
     all_objects, each = _arguments.selves(self)
     selves = each or all_objects
     collider = Collider(
         self=selves, clearance=clearance, neighbours=neighbours, threads=threads,
-        contacts=contacts, segments=segments, ignore=ignore, limit=limit,
+        contacts=contacts, segments=segments, ignore=grouped.ignored(ignore), limit=limit,
     )
     usual = clearance == 0 and ignore is None and limit is None and poses is None
-    return collider._find(given, (*given[:3], selves) if usual else None)
+    return collider._find(grouped, given, (given[0], grouped, selves) if usual else None)
+
+
+def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
+    if limit is not None and labels is not None:
+        raise InputError(
+            "limit", "has no meaning with labels: rows are found in the order of the labels",
+            "sort the triangles by label and give object_starts",
+        )
 
 
 def join(

@@ -26,7 +26,7 @@ the other, which has no inside; "unknown" where they meet, or where it was not a
 class Distance:
     """How far two objects are apart, or with kind="all" two triangles."""
 
-    objects: Tuple[int, int]  # numbers from 0
+    objects: Tuple[Any, Any]  # numbers from 0, or labels
     triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
     distance: float  # rounded to nearest; infinity beyond the largest double
     squared: str  # "numerator/denominator" in lowest terms, nothing rounded
@@ -42,7 +42,7 @@ class Distances(Sequence[Distance]):
     ``found[3]`` is a Distance; ``found[found.distance < 1]`` are those that are so near.
     """
 
-    objects: NDArray[np.int64]  # (k, 2) numbers from 0
+    objects: NDArray[Any]  # (k, 2) numbers from 0, or labels
     triangles: NDArray[np.int64]  # (k, 2) the first of those that are nearest
     distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity beyond the largest double
     squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms, nothing rounded
@@ -116,24 +116,36 @@ class DistanceFinder:
             raise InputError(
                 "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
             )
-        finder._answered: Any = None  # True: the call before had an answer
+        pairs = _arguments.ignored(ignore)
+        finder._grouped: Any = None  # of the call before, if it had an answer; else None
+        finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
-            which, wanted, limit, all_objects, each, _arguments.flag("inside", inside),
-            _arguments.ignored(ignore), _arguments.threads(threads),
+            which, wanted, limit, all_objects, each, _arguments.flag("inside", inside), pairs,
+            _arguments.threads(threads),
         )
 
     def find(
         self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
-        object_starts: Optional[ArrayLike] = None, poses: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
+        poses: Optional[ArrayLike] = None,
     ) -> Distances:
-        """The distances. The parameters are those of :meth:`Collider.find`. The finder can be used again
-        after an error, and after Ctrl-C."""
-        answered, self._answered = self._answered, None
-        return self._find(_arguments.arrays(V, F, object_starts, poses, answered))
+        """The distances. The parameters are those of :meth:`Collider.find`; with ``labels`` the objects
+        of an answer are labels. The finder can be used again after an error, and after Ctrl-C."""
+        before, self._grouped = self._grouped, None
+        if labels is not None and self._ignores:
+            raise InputError(
+                "labels", "have no meaning with the ignored numbers of a DistanceFinder",
+                "sort the triangles by label and give object_starts, or call farcull.distances",
+            )
+        return self._find(*_arguments.arrays(V, F, object_starts, labels, poses, before))
 
-    def _find(self, given: _arguments.Arrays) -> Distances:
-        found = _arguments.ask(self, self._finder, given)
+    def _find(self, grouped: _arguments.Grouped, given: _arguments.Arrays) -> Distances:
+        found = _arguments.ask(self, self._finder, grouped, given)
         found["squared"] = np.array(found["squared"], dtype=object)
+        if grouped.order is not None:
+            found["triangles"] = grouped.order[found["triangles"]]
+        if grouped.labels is not None:
+            found["objects"] = grouped.labels[found["objects"]]
         return Distances(**found)
 
 
@@ -141,14 +153,16 @@ def distances(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None, kind: Kind = "objects",
     k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
     inside: bool = True, threads: int = 0,
-    ignore: Optional[ArrayLike] = None, poses: Optional[ArrayLike] = None,
+    labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
+    poses: Optional[ArrayLike] = None,
 ) -> Distances:
     """How far objects are apart, exactly, with the points that are nearest. For many frames, keep a
     :class:`DistanceFinder`.
 
     Parameters
     ----------
-    V, F, object_starts, poses: as in :func:`collide`.
+    V, F, object_starts, labels, poses: as in :func:`collide`. With ``labels`` the objects of an answer
+        are labels.
     kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
         "all": every pair of triangles at the distance ``within`` or less.
     k: how many others, 1 or more; with "nearest" alone.
@@ -158,11 +172,13 @@ def distances(
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
 
-    Returns :class:`Distances`, sorted by objects, then by triangles. Raises InputError naming the argument
-    that is wrong, also where there is nothing to ask, and MemoryError.
+    Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the
+    labels. Raises InputError naming the argument that is wrong, also where there is nothing to ask, and
+    MemoryError.
     """
-    given = _arguments.arrays(V, F, object_starts, poses)
+    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(
-        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads, ignore=ignore
+        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads,
+        ignore=grouped.ignored(ignore),
     )
-    return finder._find(given)
+    return finder._find(grouped, given)

@@ -77,7 +77,7 @@ class Scene:
     ) -> Scene:
         """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
         objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
-        given = _arguments.arrays(V, F, object_starts, None)
+        _, given = _arguments.arrays(V, F, object_starts, None, None)
         all_objects, each = _arguments.selves(self)
         if isinstance(names, str):
             raise InputError("names", "are one text", "give a list of texts")

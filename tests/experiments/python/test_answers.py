@@ -109,6 +109,9 @@ def test_a_finder_answers_frame_after_frame(scene):
             single = farcull.distances(moved, F, OBJECTS, **question)
             assert list(finder.find(moved, F, OBJECTS)) == list(single)
             assert refused(finder.find, moved, -F, OBJECTS) == "F"  # and it can be used again
+        labels = np.repeat(["d", "c", "b", "a"], 40)
+        first = finder.find(V, F, labels=labels)[0]
+        assert set(first.objects) <= set("abcd")
     for wrong in (dict(kind="far"), dict(k=2), dict(within=-1), dict(kind="all"), dict(self=1), dict(threads=-1)):
         assert refused(farcull.DistanceFinder, **wrong) in (*wrong, "within")
 
@@ -119,6 +122,9 @@ def test_objects_that_are_ignored_have_no_distance(scene):
     for ignore in ([(0, 2), (3, 1)], [(2, 0), (1, 3), (0, 2)]):
         found = list(farcull.distances(V, F, OBJECTS, ignore=ignore))
         assert found == truth == list(farcull.DistanceFinder(ignore=ignore).find(V, F, OBJECTS))
+    labels = np.repeat([7, 5, 3, 9], 40)  # the objects 2, 1, 0 and 3
+    labelled = farcull.distances(V, F, labels=labels, ignore=[(7, 3), (5, 9)])
+    assert sorted(d.squared for d in labelled) == sorted(d.squared for d in truth)
     # Twin: other objects, and none.
     assert list(farcull.distances(V, F, OBJECTS, ignore=[(0, 1), (3, 1)])) != truth
     assert len(truth) == 4 and len(farcull.distances(V, F, OBJECTS)) == 6
@@ -130,6 +136,7 @@ def test_objects_that_are_ignored_have_no_distance(scene):
     for wrong in ([(0, 4)], [(1, 1)], [("o0", "o1")], every):
         assert refused(farcull.distances, V, F, OBJECTS, ignore=wrong) == "ignore"
     assert refused(farcull.distances, V, F, OBJECTS, kind="nearest", ignore=[(0, 2)]) == "ignore"
+    assert refused(farcull.DistanceFinder(ignore=[(0, 2)]).find, V, F, labels=labels) == "labels"
 
 
 def box_of(low, high):
@@ -200,14 +207,17 @@ def test_poses_alone_follow_an_answer():
     V, F, starts = farcull.join(box_of((0, 0, 0), (1, 1, 1)), box_of((2, 0, 0), (3, 1, 1)))
     still, into = np.stack([np.eye(4)] * 2), np.stack([np.eye(4)] * 2)
     into[1, 0, 3] = -1.5
+    order = np.random.default_rng(2).permutation(len(F))
+    labels = np.repeat(["b", "a"], 12)[order]
     collider, finder = farcull.Collider(), farcull.DistanceFinder()
     for kept in (collider, finder):
         assert refused(kept.find, poses=still) == "V"
-        kept.find(V, F, starts)
-    truth = farcull.collide(V, F, starts, poses=into)
-    assert same_pairs(collider.find(poses=into), truth) and len(truth.pairs) > 10
+        kept.find(V, F[order], labels=labels)
+    # Of the labels in ascending order, and in the numbers of the caller.
+    truth = farcull.collide(V, F[order], labels=labels, poses=into[::-1])
+    assert same_pairs(collider.find(poses=into[::-1]), truth) and len(truth.pairs) > 10
     (apart,) = finder.find(poses=still)
-    assert apart.distance == 1 and apart.objects == (0, 1)
+    assert apart.distance == 1 and apart.objects == ("a", "b")
     for kept in (collider, finder):
         assert refused(kept.find, poses=still[:1]) == "poses"
         assert refused(kept.find, poses=still) == "V"  # what was refused is not there for poses alone
@@ -216,7 +226,7 @@ def test_poses_alone_follow_an_answer():
         shared = F.copy()
         shared[-1] = 0
         assert refused(kept.find, V, shared, starts, poses=still) == "poses"
-        for bad in ({"object_starts": "no array"}, {"poses": np.eye(3)}, {"V": "no array"}):  # refused before the library sees them
+        for bad in ({"labels": starts}, {"poses": np.eye(3)}, {"V": "no array"}):  # refused before the library sees them
             kept.find(V, F, starts)
             refused(kept.find, **{"V": V, "F": F, "object_starts": starts, **bad})
             assert refused(kept.find, poses=still) == "V"
@@ -248,6 +258,18 @@ def test_segments_are_those_of_the_program(scene):
     assert np.isnan(found.segments).any() and np.isfinite(found.segments).any()
     kinds = farcull.collide(V, F, OBJECTS, **ALL)
     assert kinds.segments is None and np.array_equal(kinds.kinds, found.kinds)
+
+
+def test_segments_follow_their_pairs():
+    V, F = tangled(7)
+    whole = farcull.collide(V, F, OBJECTS, self=True, segments=True)
+    order = np.random.default_rng(7).permutation(len(F))
+    mixed = farcull.collide(V, F[order], labels=np.repeat(range(4), 40)[order], segments=True)
+    named = {tuple(sorted(order[pair])): ends for pair, ends in zip(mixed.pairs, mixed.segments)}
+    assert len(named) == len(whole.pairs[np.diff(whole.pairs // 40)[:, 0] > 0])
+    for pair, ends in zip(whole.pairs.tolist(), whole.segments):
+        if tuple(pair) in named:
+            assert np.array_equal(named[tuple(pair)], ends, equal_nan=True)
 
 
 def test_the_table_of_pairs(monkeypatch):
@@ -378,10 +400,14 @@ class Tensor:
 def test_arrays_come_through_dlpack():
     V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]], np.float32)
     F = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
-    starts, ignore = np.array([0, 1]), np.array([[0, 1]])
+    starts, labels, ignore = np.array([0, 1]), np.array([1, 0]), np.array([[0, 1]])
     assert farcull.collide(Tensor(V), Tensor(F), Tensor(starts)).pairs.tolist() == [[0, 1]]
+    assert farcull.collide(Tensor(V), Tensor(F), labels=Tensor(labels)).pairs.tolist() == [[0, 1]]
     three = np.concatenate([F, F[1:]])
-    assert farcull.collide(V, three, [0, 1, 2], ignore=Tensor(ignore)).pairs.tolist() == [[0, 2], [1, 2]]
+    for labels in None, [7, 8, 9]:
+        rows = Tensor(ignore if labels is None else ignore + 7)
+        some = farcull.collide(V, three, None if labels else [0, 1, 2], labels=labels, ignore=rows)
+        assert some.pairs.tolist() == [[0, 2], [1, 2]]
     error = error_of(farcull.collide, Tensor(V, 2), F, starts)
     assert isinstance(error, farcull.InputError) and error.where == "V" and "device" in error.reason
     assert refused(farcull.collide, V, Tensor(F, 2), starts) == "F"

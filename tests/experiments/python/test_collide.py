@@ -175,20 +175,50 @@ def test_what_is_misunderstood_is_an_error_with_a_remedy(name, tmp_path):
             assert done.stdout == "" and "SCENE: " in done.stderr and ";" in done.stderr
 
 
-def test_what_a_double_does_not_hold_is_refused_and_starts_rise():
+def test_labels_group_triangles_in_any_order():
     scene = farcull.Scene("two-tori")
     V, F, starts = scene.vertices, scene.triangles, scene.object_starts
-    masked = np.ma.array([[0, 1], [0, 1]], mask=[[0, 0], [1, 1]])
-    assert error_of(farcull.collide, V, F, starts, ignore=masked).where == "ignore"
+    count = len(F)
+    expected = farcull.collide(V, F, starts, contacts=True)
+    assert len(expected.pairs) == 282
+    labels = np.repeat([3, 7], [starts[1], count - starts[1]])
+    order = np.random.default_rng(20261127).permutation(count)
+    place = np.argsort(order)  # where the triangle k is now
+    wanted = np.sort(place[expected.pairs], axis=1)
+    wanted = wanted[np.lexsort((wanted[:, 1], wanted[:, 0]))].tolist()
+    for names in (labels, labels.astype(str)):
+        assert same_pairs(farcull.collide(V, F, labels=names), expected)
+        mixed = farcull.collide(V, F[order], labels=names[order], contacts=True)
+        assert mixed.pairs.tolist() == wanted
+        assert sorted(mixed.kinds) == sorted(expected.kinds)
+        (answer,) = farcull.distances(V, F[order], labels=names[order])
+        assert answer.objects == tuple(np.unique(names).tolist()) and list(sorted(answer.triangles)) in wanted
+        ignore = [tuple(np.unique(names))]
+        assert error_of(farcull.collide, V, F[order], labels=names[order], ignore=ignore).where == "ignore"
+    # Labels beyond 2^53 are not rounded, whatever the type of the rows.
+    large = np.array([2**60, 2**60 + 1, 2**61, 2**61 + 1], np.uint64)
+    four = np.concatenate([F[:1]] * 4)
+    for rows in [(2**60 + 1, 2**61 + 1)], np.array([(2**60 + 1, 2**61 + 1)]), large[[[1, 3]]]:
+        assert [1, 3] not in farcull.collide(V, four, labels=large, ignore=rows).pairs.tolist()
+        assert [0, 2] in farcull.collide(V, four, labels=large, ignore=rows).pairs.tolist()
+    masked = np.ma.array([[3, 7], [3, 7]], mask=[[0, 0], [1, 1]])
+    assert error_of(farcull.collide, V, F, labels=labels, ignore=masked).where == "ignore"
     assert error_of(farcull.collide, V, F, starts, clearance=2**53 + 1).where == "clearance"
     far = np.array([[[1, 0, 0, 2**53 + 1], [0, 1, 0, 0], [0, 0, 1, 0]]] * 2)
     assert error_of(farcull.collide, V, F, starts, poses=far).where == "poses"
     # Poses alone move the arrays of the call before; empty arrays are no poses alone.
     kept = farcull.Collider()
-    kept.find(V, F, starts)
+    kept.find(V, F, labels=labels)
     assert error_of(kept.find, V[:0], F[:0], [], poses=[np.eye(4)] * 2).where == "F"
-    # Labels as starts were 12 pairs before, without an error.
-    assert error_of(farcull.collide, V, F, np.repeat([0, 1], len(F) // 2)).where == "object_starts"
+    # The same labels as starts were 12 pairs before, without an error.
+    assert error_of(farcull.collide, V, F, np.repeat([0, 1], count // 2)).where == "object_starts"
+    for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None, np.ma.array(labels)):
+        assert error_of(farcull.collide, V, F, labels=wrong).where in ("labels", "object_starts")
+    assert error_of(farcull.collide, V, F, starts, labels=labels).where == "labels"
+    assert error_of(farcull.collide, V, F, labels=labels, limit=3).where == "limit"
+    for wrong in ([(3, 8)], [("3", "7")], [(3.0, "7")]):
+        assert error_of(farcull.collide, V, F, labels=labels, ignore=wrong).where == "ignore"
+    assert error_of(farcull.collide, V, F, labels=labels.astype(str), ignore=[(3, 7)]).where == "ignore"
 
 
 def test_a_vertex_that_no_triangle_uses_may_be_no_number():
