@@ -26,6 +26,7 @@
 #include "experiments/method/asked.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"

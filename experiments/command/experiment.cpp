@@ -8,6 +8,7 @@
 #include "experiments/lemma/lemma.h"
 #include "experiments/measure/compare.h"
 #include "experiments/measure/family.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/studies/study.h"
 #include "experiments/system/output_file.h"
 

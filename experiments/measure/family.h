@@ -10,6 +10,7 @@
 
 #include "experiments/measure/frames.h"
 #include "experiments/method/run.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull {

@@ -16,6 +16,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 

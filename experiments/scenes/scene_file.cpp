@@ -481,6 +481,13 @@ std::vector<std::string> SceneArguments::words() const {
   return out;
 }
 
+void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking) {
+  for (const ObjectPair& pair :
+       ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
+    scene.ignored.push_back(pair);
+  scene.ignored = in_order(std::move(scene.ignored));
+}
+
 void require_meshes(const SceneArguments& arguments) {
   const std::vector<std::string>& names = arguments.names;
   if (arguments.weld && names.size() == 1 && is_builtin_scene(names[0]))
