@@ -14,9 +14,9 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "verify/closest.h"
 #include "verify/exact.h"
 #include "verify/inside.h"
-#include "verify/planes_between.h"
 
 namespace farcull {
 namespace {

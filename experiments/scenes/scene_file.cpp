@@ -18,7 +18,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/invertible.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
