@@ -17,7 +17,7 @@ core/voronoi: core/scene;  core/native: core/canvas;  core/gl: core/cull core/sw
 offsets: core/native;  verify/certificate: core/scene;  verify: core/canvas verify/certificate;  experiments/system: core/base;
 experiments/scenes/mesh: experiments/system core/gl;  experiments/scenes/cloth: experiments/scenes/mesh;
 experiments/scenes/builtin: experiments/scenes/mesh experiments/scenes/cloth;  experiments/scenes: experiments/scenes/builtin;
-experiments/method: core/gl core/proximity offsets verify;  experiments/library: experiments/method;
+experiments/method: core/gl core/proximity offsets verify;  experiments/library: experiments/record;
 experiments/record: experiments/method experiments/system;  experiments/tiles: experiments/scenes experiments/record;
 experiments/generators: experiments/scenes;  experiments/suite: experiments/generators verify;
 experiments/peers: experiments/suite experiments/library;  experiments/measure: experiments/record experiments/peers core/voronoi;
@@ -44,11 +44,15 @@ OUR = re.compile(f"({'|'.join(OURS)})/")
 STEM = re.compile(r'\.(h|cpp)$')
 TOP = ['CMakeLists.txt', 'README.md', 'docs', *OURS]
 SOURCES = ['.h', '.cpp', '.glsl', '.vert', '.frag', '.comp']  # shaders too, since C++ includes some of them
+COMMANDS = 'bench|check|clash|compare|distance|doctor|help|lemma|picture|plan|report|run|savings|scenes|studies|suite|verify'
 # Where text must not be in .h and .cpp: folders, exception, pattern, message.
 LINES = [
     (OURS[:4], 'core/base/parallel.cpp', r'std::(jthread|async|thread)([^:_\w]|$)|pthread_create',
      'starts a thread: only core/base/parallel.cpp does, which sets the arithmetic of each'),
-    (['core'], '', '"[^"]*--[a-z]', 'names an option of the command line: write {name} (core/base/error.h)')]
+    (OURS[:3], '', rf'"[^"]*(--[a-z]|\bfarcull ({COMMANDS})\b)',
+     'names an option or a command of the command line: write {name} (core/base/error.h)'),
+    (OURS[:3], '', r'\bprogress_?\([^)]*"|case (StageKind|Reason)::|std::string(_view)? \w+\((const )?(Stage|StageKind|Reason)\b',
+     'has words of a stage: only experiments/record/stage_words.cpp does')]
 
 
 def reached(start, edges):
@@ -258,7 +262,7 @@ verify:offsets core/cull core/sweep core/gl experiments/system tests ../offsets/
 verify/canvas.h verify/deep/canvas.h:<offsets/obb.h> offsets/obb.h:= | experiments/system:core/scene:=
 experiments/scenes:experiments/record:= | experiments/scenes/mesh:experiments/scenes:=
 experiments/scenes/cloth:experiments/scenes/builtin:= | experiments/method:experiments/record experiments/scenes:=
-experiments/library:experiments/record:= | experiments/record:experiments/scenes:= | experiments/lemma:experiments/measure:=
+experiments/library:experiments/scenes:= | experiments/record:experiments/scenes:= | experiments/lemma:experiments/measure:=
 experiments/peers:experiments/measure experiments/studies:= | experiments/generators:experiments/suite:=
 experiments/suite:experiments/lemma:= | experiments/studies:experiments/command:= | experiments/picture:experiments/studies:=
 experiments/command:tests:=
@@ -294,8 +298,14 @@ CHANGED = [
         'std::jthread t(work);', 'auto f = std::async(w);', 'std::vector<std::thread> t;', 'pthread_create(&t, nullptr, w, 0);')),
     ({'verify/threads.cpp': 'unsigned n = std::thread::hardware_concurrency();'}, ''),
     ({'core/base/parallel.cpp': 'std::jthread t(work);'}, ''),
-    ({'core/view/words.cpp': 'const char* s = "use --device cpu";'}, 'core/view/words.cpp: names an option'),
-    ({'core/view/words.cpp': 'const char* s = "use {device} cpu"; int i = 3; int j = i--;'}, ''),
+    *(({f'{folder}/words.cpp': f'const char* s = "{text}";'}, f'{folder}/words.cpp: names an option')
+      for folder in ('core/view', 'offsets', 'verify', 'verify/certificate') for text in ('use --device cpu', 'see `farcull doctor`')),
+    *(({'verify/words.cpp': text}, 'verify/words.cpp: has words of a stage') for text in (
+        'if (progress) progress("joining boxes");', 'progress_("round " + round);', 'case StageKind::boxes: return "boxes";',
+        'case Reason::full:', 'std::string name_of(const Stage& stage);', 'std::string_view word(StageKind kind);')),
+    ({'core/view/words.cpp': 'const char* s = "use {device} cpu, a farcull of {doctor}"; int i = 3; int j = i--;'}, ''),
+    ({'core/view/words.cpp': 'progress(StageKind::boxes); if (stage.kind == StageKind::boxes) f("x"); Stage stage_of(int n);'}, ''),
+    ({'experiments/record/words.cpp': 'case StageKind::boxes: f("see `farcull doctor` --self"); std::string name_of(const Stage&);'}, ''),
     ({'README.md': 'The file `verify/gone.h`.'}, 'README.md: verify/gone.h, which does not exist'),
     ({'notes.txt': ''}, 'notes.txt: the top level holds nothing but'), ({'extra/note': ''}, 'extra: the top level holds nothing but'),
     ({'CMakeLists.txt': None}, 'CMakeLists.txt: missing at the top'), ({'README.md': None}, 'README.md: missing at the top level'),

@@ -12,7 +12,6 @@
 #include "verify/closest_features.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
-#include "verify/planes_between.h"
 #include "verify/scaled.h"
 #include "verify/squared_distance.h"
 

@@ -22,7 +22,6 @@
 #include "core/base/stopwatch.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/integer_distance.h"
-#include "verify/distance_claims.h"
 #include "verify/exact.h"
 #include "verify/separation.h"
 

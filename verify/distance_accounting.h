@@ -6,15 +6,54 @@
 // prove far apart, and each answer, it decides in integers (verify/certificate/integer_distance.h).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/fields.h"
 #include "core/scene/scene.h"
-#include "verify/distance_question.h"
+#include "verify/certificate/integer_distance.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
+
+// ---- a question and its answers
+
+/// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects
+/// a <= b, or (with `all`) one of the pairs within the distance. With a == b both triangles are of
+/// one object, and neighbours (verify/exact.h) are left out.
+struct ClaimedDistance {
+  std::uint32_t a = 0, b = 0;  // objects
+  TrianglePair pair;           // a triangle of a and one of b
+  double distance = 0;         // the root, rounded to the nearest double
+  std::string squared;         // its square, "numerator/denominator" in lowest terms
+  std::array<Vec3, 2> points;  // two nearest points, of a and of b, each coordinate rounded once
+  std::array<std::uint8_t, 2> features{};     // the points lie on these, numbered as in
+                                              // verify/certificate/integer_distance.h
+  InsideClaim inside = InsideClaim::unknown;  // unknown if the objects meet, or if a == b
+};
+
+/// A question about the distances of a scene.
+struct DistanceQuestion {
+  /// objects: the nearest pair of every two objects, and of each object marked `self`.
+  /// nearest: the nearest pair of each object with each of its k nearest other objects; of objects
+  ///   equally far away, those with the lower index are nearer.
+  /// all: every pair of triangles within the distance, of different objects or of a `self` object.
+  enum class Kind : std::uint8_t { objects, nearest, all };
+  Kind kind = Kind::objects;
+  std::size_t k = 1;
+  /// Nothing that is farther apart is asked for. World units, >= 0; finite with `all`.
+  double within = std::numeric_limits<double>::infinity();
+  bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
+  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
+};
+
+// ---- the accounting
 
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
 /// that fits, and is counted when it is decided. A pair is *nearer* if an answer should be nearer
@@ -50,5 +89,56 @@ struct DistanceAccounting {
 /// Memory O(triangles + answers).
 DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
                                      const DistanceQuestion& question);
+
+// ---- what account_distances() has to prove about the pairs of triangles of two objects: derived
+// from question and answers, for distance_accounting.cpp and its tests
+
+/// Which distances: those below a length, or at most the length.
+enum class Bound : std::uint8_t { below, at_most };
+
+/// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,
+/// has to be among the answers.
+struct Threshold {
+  std::optional<Length> length;  // none: infinite, so all pairs
+  Bound bound = Bound::below;
+};
+/// Whether the distance is the root of `squared`, rounded to the nearest double (to the even one of
+/// two equally near doubles).
+bool is_rounded_root(double distance, const Fraction& squared);
+
+class DistanceClaims {
+ public:
+  /// Throws std::logic_error as account_distances().
+  DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
+                 const DistanceQuestion& question);
+
+  /// Within this distance every pair of triangles of the objects a <= b has to be an answer.
+  Threshold threshold(std::uint32_t a, std::uint32_t b) const;
+  /// The answers of the objects a <= b.
+  std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
+  /// Whether objects a <= b are asked about.
+  bool asked(std::uint32_t a, std::uint32_t b) const;
+  /// How many answers are wrong, in themselves or because of other answers (not one of the k
+  /// nearest).
+  std::uint64_t wrong(unsigned threads) const;
+
+ private:
+  struct Farthest {  // the kth nearest neighbour of an object
+    std::size_t answers = 0;
+    Fraction squared;
+    std::uint32_t other = 0;
+  };
+  void find_farthest();
+  bool wrong(std::size_t answer) const;
+  bool wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const;
+
+  const Scene& scene_;
+  std::span<const ClaimedDistance> answers_;
+  DistanceQuestion question_;
+  Threshold within_;
+  std::vector<std::optional<Fraction>> squares_;  // of the answers
+  std::vector<Farthest> farthest_;                // of each object; filled for `nearest` alone
+  IntegerInside insides_;
+};
 
 }  // namespace farcull

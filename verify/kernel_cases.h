@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/canvas/kernel_case.h"
+#include "core/canvas/canvas.h"
 #include "verify/rational.h"
 #include "verify/solid_lines.h"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/canvas/kernel_case.h"
+#include "core/canvas/canvas.h"
 
 namespace farcull {
 

@@ -12,7 +12,6 @@
 #include "verify/closest.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
-#include "verify/planes_between.h"
 #include "verify/rounding.h"
 
 namespace farcull {

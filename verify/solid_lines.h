@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "core/canvas/canvas.h"
-#include "core/canvas/kernel_case.h"
 #include "verify/rational.h"
 
 namespace farcull::box_line {

@@ -22,8 +22,8 @@ class Error : public std::runtime_error {
 
 // ---- names of parameters ----
 //
-// A text names a parameter as {depth_format}, so that nothing below the command line knows how its
-// words are written.
+// A text names a parameter as {depth_format}, and a command as {doctor}, so that nothing below the
+// command line knows how its words are written.
 
 /// Writes each {parameter} in the text as its reader does: by the name alone, unless the program
 /// has set another spelling.

@@ -1,17 +1,17 @@
 // A stage of a run: what is done, or left out, and why. A plan lists the stages that are to come, a
 // trace those that were. The same structure serves both, so a run can be compared with its plan.
-// Also the callback by which a long computation reports its current stage.
+// Also the callback by which a long computation reports its current step. Words for all of it are
+// made in experiments/record/stage_words.h.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace farcull {
-
-/// Called before each stage with the stage's name. May be empty.
-using Progress = std::function<void(const std::string&)>;
 
 enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
@@ -44,24 +44,24 @@ enum class StageKind : std::uint8_t {
 /// The things that a stage counts.
 enum class Unit : std::uint8_t { none, triangles, pairs };
 
-/// Why a stage runs, was left out, or how it went. n, m and `detail` are those of Stage.
+/// Why a stage runs, was left out, or how it went. n, m, k, l and `fattener` are those of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,            // --full: nothing is left out
+  full,            // the option `full`: nothing is left out
   regions,         // n pairs of objects' boxes overlap
-  meetings,        // n such pairs, m objects are tested against themselves
-  crowded,         // too many such pairs to list; m as above
+  meetings,        // n such pairs but for k ignored ones, m objects are tested against themselves
+  crowded,         // too many such pairs to list; m and k as above
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
-                   // `detail` were compared, since a corner moved; empty: all
+                   // k were compared, since a corner moved; empty: all
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
   boxes_meet,      // n pairs of triangles are asked about; triangles in none take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
-  no_boxes_overlap,     // no two objects' boxes overlap (and none is tested against itself)
+  no_boxes_overlap,     // no two objects' boxes overlap (k as above, none tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
-  shaders,              // the canvas, on GL with context and shaders, for the fattener `detail`
-  fattener,             // `detail`; n triangles are beyond its budget and kept
+  shaders,              // the canvas, on GL with context and shaders, for the fattener
+  fattener,             // its name; n triangles are beyond its budget and kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
@@ -79,7 +79,7 @@ enum class Reason : std::uint8_t {
   clusters_large,       // occlusion queries on many triangles
   clusters_small,       // occlusion queries on n triangles or fewer
   clusters_flags,       // flags are read back at once
-  sweep,                // boxes of n objects overlap, which have m triangles; `detail`
+  sweep,                // boxes of n objects overlap, which have m triangles; k, l below
   not_cleared,          // pairs that boxes found, but for those that drawing cleared
   join_kept,            // boxes of what is kept
   join_patches,         // boxes of what is kept in different patches, and of all in one patch
@@ -91,27 +91,35 @@ enum class Reason : std::uint8_t {
   predicates,           // exact predicates on the candidates
   no_candidates,        // there is no candidate to decide
   every_pair,           // every pair is accounted for
-  not_asked,            // --no-verify
+  not_asked,            // the option `no_verify`
   near_boxes,           // of n pairs of objects; m bounds of boxes were compared
-  inside_not_asked,     // --inside no
+  inside_not_asked,     // the option `inside` is no
   // In a plan: conditions that pixels will decide.
   if_more_left,   // if more than n triangles are left (n = 0: any)
   if_changed,     // if the round before changed something
   if_culled,      // if the round before culled at least one triangle in n
   if_candidates,  // if there are candidates
-  limited,        // --limit ended the search, so not all pairs are known
+  limited,        // the option `limit` ended the search, so not all pairs are known
 };
+
+/// Level of a stage that culls: none, objects, single triangles; else clusters of so many
+/// triangles.
+inline constexpr std::uint32_t kNoLevel = 0, kObjectLevel = UINT32_MAX,
+                               kTriangleLevel = UINT32_MAX - 1;
 
 struct Stage {
   StageKind kind = StageKind::boxes;
-  std::string subject = {};  // the view or the offset; of setup and boxes: empty
-  std::string level = {};    // of cull: "objects", "clusters of 32", "triangles"
-  int round = 0;             // of a visit, from 1; 0: the stage belongs to no round
-  bool ran = false;          // in a plan: it will run
-  bool depends = false;      // pixels decide whether it runs, or decided it
+  std::string subject = {};        // the view or the offset; of setup and boxes: empty
+  std::uint32_t level = kNoLevel;  // of cull
+  int round = 0;                   // of a visit, from 1; 0: the stage belongs to no round
+  bool ran = false;                // in a plan: it will run
+  bool depends = false;            // pixels decide whether it runs, or decided it
   Reason reason = Reason::none;
-  std::string detail = {};     // a name that the reason speaks of
-  std::uint64_t n = 0, m = 0;  // numbers that the reason speaks of
+  std::string fattener = {};   // the name of the one that the reason is about
+  std::uint64_t n = 0, m = 0;  // numbers that the reason is about
+  // Pairs that are ignored, or were compared; of a sweep: places changed, and l lists sorted anew.
+  std::optional<std::uint64_t> k = {};
+  std::uint64_t l = 0;
   double ms = 0;
   std::uint64_t in = 0, out = 0;  // what enters and what is left
   Unit unit = Unit::none;         // of in and out
@@ -123,15 +131,33 @@ struct Stage {
   std::uint64_t queries_saved = 0;
 };
 
-/// "cull triangles z, round 2".
-std::string name_of(const Stage& stage);
-/// The reason in words, without a full stop; empty for Reason::none.
-std::string reason_of(const Stage& stage);
-/// "triangles", "pairs", "views" or "".
-std::string to_string(Unit unit);
-
 /// A stage with the sums over all stages of draws, queries, draws_saved and queries_saved; its
 /// other fields are empty.
-Stage work_of(const std::vector<Stage>& stages);
+inline Stage work_of(const std::vector<Stage>& stages) {
+  Stage sum;
+  for (const Stage& stage : stages) {
+    sum.draws += stage.draws;
+    sum.queries += stage.queries;
+    sum.draws_saved += stage.draws_saved;
+    sum.queries_saved += stage.queries_saved;
+  }
+  return sum;
+}
+
+/// What a long computation does next: a stage, or `text`, by which its callers name other work.
+struct ProgressStep {
+  ProgressStep(StageKind kind, std::string subject = {}, int round = 0)
+      : kind(kind), subject(std::move(subject)), round(round) {}
+  ProgressStep(std::string text) : text(std::move(text)) {}
+  ProgressStep(const char* text) : text(text) {}
+
+  StageKind kind = StageKind::boxes;
+  std::string subject = {};  // as in Stage
+  int round = 0;             // as in Stage
+  std::string text = {};     // not empty: in place of the others
+};
+
+/// Called before each step. May be empty.
+using Progress = std::function<void(const ProgressStep&)>;
 
 }  // namespace farcull

@@ -31,9 +31,10 @@ bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   return false;
 }
 
-// The words for pairs that a stage of boxes leaves out.
-std::string apart(const BoxesSettings& settings) {
-  return settings.ignored.empty() ? "" : "ignored ones";
+// How many pairs of objects a stage of boxes leaves out.
+std::optional<std::uint64_t> ignored_pairs(const BoxesSettings& settings) {
+  if (settings.ignored.empty()) return std::nullopt;
+  return settings.ignored.size();
 }
 
 Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
@@ -44,9 +45,9 @@ Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
           .reason = full                                    ? Reason::full
                     : decision.tree == Reason::join_crowded ? Reason::crowded
                                                             : Reason::meetings,
-          .detail = full ? "" : apart(plan.settings),
           .n = full ? 0 : decision.pairs,
           .m = full ? 0 : decision.self,
+          .k = full ? std::nullopt : ignored_pairs(plan.settings),
           .ms = ms,
           .in = scene.triangles.size(),
           .out = plan.by_tree() ? scene.triangles.size() : decision.blocks.triangles,
@@ -106,16 +107,17 @@ Stage planned_stage(const BoxesPlan& plan) {
   if (plan.nothing_can_meet()) {
     return {.kind = StageKind::blocks,
             .reason = Reason::no_boxes_overlap,
-            .detail = apart(plan.settings),
+            .k = ignored_pairs(plan.settings),
             .unit = Unit::pairs};
   }
   const std::size_t compared = decision.blocks.pairs.size();
   return {.kind = StageKind::blocks,
           .ran = true,
           .reason = decision.blocks.oriented ? Reason::oriented_pairs : Reason::block_pairs,
-          .detail = compared < decision.blocks.overlaps ? std::to_string(compared) : "",
           .n = decision.blocks.overlaps,
           .m = decision.blocks.meetings,
+          .k = compared < decision.blocks.overlaps ? std::optional<std::uint64_t>(compared)
+                                                   : std::nullopt,
           .in = decision.blocks.triangles,
           .unit = Unit::pairs};
 }
@@ -126,7 +128,7 @@ BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* m
   const auto& [clearance, full, neighbours, lists, ignored] = plan.settings;
   BoxesResult out;
   out.stage = planned_stage(plan);
-  if (progress) progress(plan.by_tree() ? "joining boxes" : "comparing boxes of blocks");
+  if (progress) progress(plan.by_tree() ? StageKind::join : StageKind::blocks);
   if (plan.by_tree()) {
     OrderedPairs tree(scene, clearance, ignored, neighbours, plan.threads);
     out.given = static_cast<bool>(take);

@@ -204,4 +204,19 @@ inline double depth_rounding(int depth_bits) {
 /// to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 
+// ---- questions to a kernel and its answers, wherever it runs: on a device or on the CPU.
+// verify/kernel_check.h decides which answers are right.
+
+/// A solid, and the line along the depth through a pixel centre (px).
+struct SolidCase {
+  float cx, cy;
+  Solid solid;
+};
+/// What solid_interval (core/canvas/canvas.h) gives for a SolidCase; without a hit, entry and exit
+/// mean nothing.
+struct SolidAnswer {
+  bool hit;
+  float entry, exit;
+};
+
 }  // namespace farcull

@@ -126,8 +126,6 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
   return stages;
 }
 
-std::string clusters_name(std::uint32_t size) { return "clusters of " + std::to_string(size); }
-
 // The parts of one run; cull_by() puts them in order.
 class Culling {
  public:
@@ -254,10 +252,10 @@ class Culling {
   }
 
   void begin_visit(std::size_t view) {
-    if (progress_) progress_("culling along " + view_ + ", round " + std::to_string(round_));
+    if (progress_) progress_({StageKind::cull, view_, round_});
     place_ = &places_[view];
     Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
-    stage.detail = settings_.fattener.name;
+    stage.fattener = settings_.fattener.name;
     stage.depends = round_ > 1 || (visited_ && !settings_.full);
     items_ = state_.live;
     FattenCounts counts;
@@ -279,7 +277,7 @@ class Culling {
   // Both passes over the open triangles at one level.
   void run_level(const Level& level) {
     Stage stage = of_visit(StageKind::cull, Reason::nothing_left);
-    stage.level = level.name;
+    stage.level = level.size;
     stage.depends = round_ > 1 || (!settings_.full && (visited_ || !first_level_));
     first_level_ = false;
     if (state_.live.empty() && !settings_.full) {
@@ -345,7 +343,7 @@ class Culling {
     groups_.reserve(settings_.clusters.sizes.size());  // levels point into it
     for (const std::uint32_t size : settings_.clusters.sizes) {
       groups_.push_back(cluster_numbers(state_.live, state_.owner, size));
-      clusters_.push_back({clusters_name(size), &groups_.back()});
+      clusters_.push_back({size, &groups_.back()});
     }
   }
 
@@ -393,8 +391,10 @@ class Culling {
 
   void notify(const Level& level, Bit bit) const {
     if (!settings_.watch) return;
-    settings_.watch({.name = level.name + " " + view_ + ", round " + std::to_string(round_) +
-                             (bit == kF ? ", first pass" : ", second pass"),
+    settings_.watch({.level = level.size,
+                     .view = view_,
+                     .round = round_,
+                     .first_pass = bit == kF,
                      .bits = state_.bits,
                      .draws = used_.draws,
                      .queries = used_.queries,
@@ -434,9 +434,9 @@ class Culling {
   CullState state_;
   bool own_owners_ = false;                         // some triangle is an owner by itself
   std::vector<std::vector<std::uint32_t>> groups_;  // per size of clusters, per triangle
-  Level objects_{"objects", &state_.owner};
+  Level objects_{kObjectLevel, &state_.owner};
   std::vector<Level> clusters_;
-  Level triangles_{"triangles"};
+  Level triangles_{kTriangleLevel};
   std::vector<Place> places_;
 
   int round_ = 0;
@@ -463,12 +463,12 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   const std::vector<Place> places = places_of(regions, settings);
   const std::size_t live = regions.triangles.size();
   std::vector<Stage> stages = opening_stages(scene, regions, settings, places, live);
-  std::vector<std::string> levels;
-  if (has_object_level(scene, regions, settings)) levels.push_back("objects");
+  std::vector<std::uint32_t> levels;
+  if (has_object_level(scene, regions, settings)) levels.push_back(kObjectLevel);
   if (!has_own_owners(scene, settings)) {
-    for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(clusters_name(size));
+    for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(size);
   }
-  if (!settings.objects_alone) levels.push_back("triangles");
+  if (!settings.objects_alone) levels.push_back(kTriangleLevel);
 
   bool first_view = true, first_level = true;
   const Stage rule{.depends = true, .reason = Reason::if_more_left, .n = settings.enough};
@@ -479,7 +479,7 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
                  .round = 1,
                  .ran = true,
                  .reason = Reason::fattener,
-                 .detail = settings.fattener.name};
+                 .fattener = settings.fattener.name};
     const auto add = [&](Stage stage, bool depends) {
       stage.depends = depends && !settings.full;
       if (stage.depends) {
@@ -489,7 +489,7 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
       stages.push_back(std::move(stage));
     };
     add(fatten, !first_view);
-    for (const std::string& level : levels) {
+    for (const std::uint32_t level : levels) {
       Stage cull = fatten;
       cull.kind = StageKind::cull;
       cull.level = level;

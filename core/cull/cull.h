@@ -57,7 +57,10 @@ struct RadiusRule {
 
 /// The state of a run after a pass that had at least one triangle to decide.
 struct CullStep {
-  std::string name;                       // "objects z, round 1, first pass"
+  std::uint32_t level;  // as in Stage
+  std::string view;
+  int round;
+  bool first_pass;
   const std::vector<std::uint8_t>& bits;  // per triangle of the scene
   std::uint64_t draws = 0, queries = 0;   // since the run began
   std::uint64_t draws_saved = 0, queries_saved = 0;

@@ -34,7 +34,7 @@ constexpr PassRule kQuickRule = {
 
 /// A level asks once for all open triangles of a group; groups stand together inside an owner.
 struct Level {
-  std::string name;
+  std::uint32_t size;                                 // as Stage::level
   const std::vector<std::uint32_t>* group = nullptr;  // per triangle of the scene; null: each alone
 };
 

@@ -306,12 +306,11 @@ class Count {
   Count(std::size_t most, std::string what) : most_(most), what_(std::move(what)) {}
   void add(std::size_t pairs) {
     if (found_.fetch_add(pairs) + pairs <= most_) return;
-    throw Error(
-        "within",
-        "has more than " + std::to_string(most_) + " pairs of " + what_ +
-            ", which are too many to list",
-        "give a smaller distance, or ask for the pairs without their distances: farcull run "
-        "{clearance}");
+    throw Error("within",
+                "has more than " + std::to_string(most_) + " pairs of " + what_ +
+                    ", which are too many to list",
+                "give a smaller distance, or ask for the pairs without their distances: {run} "
+                "{clearance}");
   }
 
  private:
@@ -443,7 +442,7 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
     std::span<const std::optional<TrianglePair>> hints, const Progress& progress) const {
   const SceneTrees& trees = state_->trees;
   check(trees.scene(), questions, within, hints.size());
-  if (progress) progress("near pairs");
+  if (progress) progress(StageKind::near);
   const double limit = scaled_limit(trees, within);
   std::vector<NearPairs> out(questions.size());
   std::vector<std::unique_ptr<Search>> long_ones(questions.size());
@@ -476,7 +475,7 @@ std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double with
                                                       std::span<const NearHint> hints, bool all,
                                                       const Progress& progress) const {
   if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
-  if (progress) progress("nearest objects");
+  if (progress) progress(StageKind::near);
   const Scene& scene = trees.scene();
   std::vector<NearHint> good;
   for (const NearHint& hint : hints) {
@@ -514,7 +513,7 @@ std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_
                                                        const Progress& progress) const {
   if (!(within >= 0) || !std::isfinite(within))
     throw std::logic_error("pairs_within: within is not a distance");
-  if (progress) progress("near pairs");
+  if (progress) progress(StageKind::near);
   ProximityCounts counts;
   std::vector<TrianglePair> out = farcull::pairs_within(
       state_->trees, scaled_limit(state_->trees, within), most, state_->threads, counts);

@@ -2,7 +2,9 @@
 #include "core/scene/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -296,6 +298,24 @@ bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pai
     unmoved += !moved.triangle(pair.a) && !moved.triangle(pair.b);
   }
   return 2 * unmoved >= count;
+}
+
+// ---- matrices ----
+
+bool is_invertible(std::array<double, 9> r) {
+  for (int row = 0; row < 9; row += 3) {
+    const double most = std::max({std::abs(r[row]), std::abs(r[row + 1]), std::abs(r[row + 2])});
+    if (!(most > 0)) return false;
+    for (int k = row; k < row + 3; ++k) r[k] /= most;
+  }
+  double sum = 0, magnitudes = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = 3 + (k + 1) % 3, m = 3 + (k + 2) % 3;
+    const double p = r[l] * r[m + 3], q = r[m] * r[l + 3];
+    sum += r[k] * (p - q);
+    magnitudes += std::abs(r[k]) * (std::abs(p) + std::abs(q));
+  }
+  return std::abs(sum) > 9 * 0x1p-53 * magnitudes;
 }
 
 }  // namespace farcull

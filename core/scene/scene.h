@@ -134,8 +134,7 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: what answers about all objects, as in
-/// "farcull distance".
+/// Throws Error if objects of the scene are ignored. who: what answers about all objects.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Tells whether the objects of a pair of triangles are ignored.
@@ -215,5 +214,13 @@ class MovedCorners {
 /// Whether less than half of an even sample of the pairs have a triangle that moved. Without a
 /// pair: whether nothing moved.
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
+
+/// False if the matrix (finite, row by row) maps space to a plane, a line or a point, as far as
+/// doubles tell: its determinant is 0, or no larger than its own rounding errors.
+///
+/// Each row is divided by its largest number, which changes neither answer nor signs. A term of the
+/// determinant then meets 8 roundings at most: the three quotients, two products, a difference and
+/// two sums. So 9 u times the sum of the magnitudes covers them, as in verify/filter_scalars.h.
+bool is_invertible(std::array<double, 9> r);
 
 }  // namespace farcull

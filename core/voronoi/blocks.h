@@ -155,7 +155,7 @@ void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
   level.blocks.push_back({{0, 0, 0}, grid.cells, 0, triangles});
   for (std::uint32_t t = 0; t < triangles; ++t) level.triangles.push_back(t);
   while (!level.blocks.empty()) {
-    if (progress) progress("voronoi: " + std::to_string(level.blocks.size()) + " blocks");
+    if (progress) progress(StageKind::near);
     const std::size_t chunks = chunks_for(level.blocks.size(), 16, options.threads);
     std::vector<Level> below(chunks);
     std::vector<typename Form::Found> found(chunks, form.nothing());

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "experiments/command/command.h"
-#include "experiments/command/verified.h"
 #include "verify/certificate/certificate.h"
 
 namespace farcull {
@@ -29,5 +29,22 @@ void check_again(const CheckArguments& arguments, const std::vector<std::string>
 /// the memory is that of the largest part of the scene and of one tile. whole: they have to be
 /// those of all tiles, in order. Prints the verdict and returns the exit status, as run_check().
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
+
+// ---- the checker that Coq has proved (verify/certificate/coq), a program of its own
+
+/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
+using TakeWord = std::function<void(std::uint64_t)>;
+/// Gives all words of a scene, or those of its coordinates alone.
+void give_words(const Scene& scene, const TakeWord& take);
+void give_coordinates(const Scene& scene, const TakeWord& take);
+
+/// Gives the certificates and the scene to `farcull-check-verified`, which lies beside this program
+/// or in the PATH, and returns its exit status: 0 proved, 1 refuted or not proved, 2 a file that it
+/// cannot read. tiles: the certificates are those of all tiles of the scene, in order. It prints
+/// its verdict on standard output, after the SHA-256 of the files as this program has them: both
+/// checkers print the same. words: gives the words of the scene; they go to the checker through a
+/// file in memory. Throws Error if it cannot be run.
+int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
+                         const std::function<void(const TakeWord&)>& words);
 
 }  // namespace farcull

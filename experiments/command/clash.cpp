@@ -15,6 +15,7 @@
 #include "experiments/method/clash.h"
 #include "experiments/picture/clash_page.h"
 #include "experiments/record/clash.h"
+#include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"

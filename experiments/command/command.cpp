@@ -24,7 +24,9 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/method/asked.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
@@ -258,7 +260,7 @@ Progress TerminalProgress::callback() {
   const char* const terminal = std::getenv("TERM");
   if (!is_terminal(stderr) || terminal == nullptr || std::string_view(terminal) == "dumb")
     return {};
-  return [this](const std::string& stage) { show(stage + " ..."); };
+  return [this](const ProgressStep& step) { show(text_of(step) + " ..."); };
 }
 
 void TerminalProgress::clear() {

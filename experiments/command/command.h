@@ -24,6 +24,7 @@
 #include "experiments/method/run.h"
 #include "experiments/picture/picture.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace CLI {

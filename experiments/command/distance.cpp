@@ -17,6 +17,7 @@
 #include "experiments/measure/frames.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/output.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"

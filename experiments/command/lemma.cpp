@@ -13,6 +13,7 @@
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/system/output_file.h"
 #include "offsets/offsets.h"
 #include "verify/worst_canvas.h"
@@ -129,7 +130,7 @@ Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& 
   };
   const std::string before = "radius " + radius_name(rule) + ", ";
   const Progress named =
-      progress ? [&](const std::string& text) { progress(before + text); } : Progress{};
+      progress ? [&](const ProgressStep& step) { progress(before + text_of(step)); } : Progress{};
   return {rule, lemma_experiment(canvas, fattener, settings, named)};
 }
 

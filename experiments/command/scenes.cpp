@@ -9,7 +9,9 @@
 #include "experiments/command/command.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
+#include "experiments/scenes/write_scene.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 

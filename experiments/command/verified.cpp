@@ -1,6 +1,6 @@
 // The scene is written as 64-bit words, lowest byte first, so that the proved checker needs no
 // reader of meshes: the number of objects, the sizes of the objects, then all coordinates.
-#include "experiments/command/verified.h"
+#include "experiments/command/check.h"
 
 #include <spawn.h>
 #include <sys/mman.h>

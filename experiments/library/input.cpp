@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/scene/invertible.h"
 #include "core/scene/scene.h"
 #include "experiments/method/distances.h"
 

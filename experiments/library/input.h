@@ -19,6 +19,7 @@
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
+#include "experiments/record/stage_words.h"
 #include "verify/contact.h"
 
 namespace farcull {
@@ -47,10 +48,10 @@ auto watched(const MayGoOn& may_go_on, const Call& call) {
   std::string step;  // guarded by the mutex
   std::optional<decltype(call(Progress()))> out;
   StoppableCall running([&] {
-    out.emplace(call([&](const std::string& next) {
+    out.emplace(call([&](const ProgressStep& next) {
       stop_point();
       const std::lock_guard lock(mutex);
-      step = next;
+      step = text_of(next);
     }));
   });
   try {

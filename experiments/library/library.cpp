@@ -11,6 +11,7 @@
 #include "experiments/method/asked.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
+#include "experiments/record/stage_words.h"
 
 namespace farcull {
 namespace {

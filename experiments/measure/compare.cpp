@@ -14,6 +14,7 @@
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/output.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/text_table.h"
@@ -107,7 +108,7 @@ Comparison compare(const Scene& scene, const CompareArguments& arguments,
   measure_in_turns(cells.size(), {.counted = repeats}, [&](std::size_t i, int) {
     const std::string cell = describe(cells[i]) + ": ";
     const Progress named =
-        progress ? [&](const std::string& stage) { progress(cell + stage); } : Progress{};
+        progress ? [&](const ProgressStep& step) { progress(cell + text_of(step)); } : Progress{};
     out.runs[i].push_back(run(scene, cells[i], session, named));
     return compared_ms(out.runs[i].back());
   });

@@ -14,7 +14,9 @@
 #include "experiments/method/asked.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
@@ -255,7 +257,8 @@ void for_each_frame(const FrameRange& range, const char* end, const Progress& pr
   for (long frame = range.first; frame <= range.last; ++frame) {
     const long done = frame - range.first + 1;
     const std::string name = fmt::format("{}frame {} of {}: ", before, done, range.count());
-    one(frame, progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{});
+    one(frame,
+        progress ? [&](const ProgressStep& step) { progress(name + text_of(step)); } : Progress{});
     if (interruptible) interruptible->done(done);
   }
 }

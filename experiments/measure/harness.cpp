@@ -12,6 +12,7 @@
 #include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/machine.h"
 #include "verify/exact.h"

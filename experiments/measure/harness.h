@@ -17,6 +17,7 @@
 #include "core/base/fields.h"
 #include "core/cull/cull.h"
 #include "experiments/method/run.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull {

@@ -216,7 +216,7 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
     if (at == meeting.end() || at->objects != one) pairs.push_back(one);
   }
   std::vector<ClashRow> rows(pairs.size());
-  if (progress) progress("objects inside others");
+  if (progress) progress(StageKind::inside);
   for_each_shared(pairs.size(), options.threads, [&](std::size_t k) {
     ClashRow& row = rows[k];
     row.objects = pairs[k];
@@ -302,7 +302,7 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
     found = std::move(record.collisions.pairs);
   }
   Stopwatch step;
-  if (progress) progress("kinds of contact");
+  if (progress) progress(StageKind::contacts);
   Meetings meetings = meetings_of(scene, std::move(found));
   out.triangle_pairs = meetings.pairs.size();
   const unsigned threads =
@@ -311,7 +311,7 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
   add_stage(out, StageKind::contacts, step, out.triangle_pairs, meetings.rows.size());
   std::vector<ClashRow> apart = apart_rows(scene, objects, options, meetings.rows, progress, out);
   step = Stopwatch();
-  if (progress) progress("touching or clashing");
+  if (progress) progress(StageKind::touch);
   for_each_shared(meetings.rows.size(), options.threads, [&](std::size_t k) {
     const std::size_t from = meetings.first[k], size = meetings.first[k + 1] - from;
     const auto pairs = std::span(meetings.pairs).subspan(from, size);
@@ -327,7 +327,7 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
   out.rows.insert(out.rows.end(), std::make_move_iterator(apart.begin()),
                   std::make_move_iterator(apart.end()));
   if (options.depth) {
-    if (progress) progress("depths");
+    if (progress) progress(StageKind::depth);
     std::vector<ClashRow*> deep;
     for (ClashRow& row : out.rows) {
       if (has_depth(objects, row)) deep.push_back(&row);

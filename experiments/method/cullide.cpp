@@ -57,7 +57,7 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
 
 Stage setup_stage(const Fattener& fattener) {
   return {
-      .kind = StageKind::setup, .ran = true, .reason = Reason::shaders, .detail = fattener.name};
+      .kind = StageKind::setup, .ran = true, .reason = Reason::shaders, .fattener = fattener.name};
 }
 
 Stage offset_stage(const Fattener& fattener) {
@@ -105,7 +105,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
       out.trace.push_back(stage);
       break;
     }
-    if (progress) progress("opening the device");
+    if (progress) progress(StageKind::setup);
     const Stopwatch setup;
     Canvas& canvas = session.canvas(fattener, {.depth_format = options.depth_format,
                                                .query = query_of(options),
@@ -278,13 +278,9 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   const Stopwatch watch;
   Candidates out;
   out.by = std::vector<ViewReport>();
-  if (work.fatteners.empty()) {
-    out.device.note = reason_of(plan.trace.back()) + ": nothing left to draw";
-  } else {
-    cull_by_offsets(scene, work, plan.options, session, progress, out);
-  }
+  if (!work.fatteners.empty()) cull_by_offsets(scene, work, plan.options, session, progress, out);
   const Stopwatch join;
-  if (progress) progress("joining boxes");
+  if (progress) progress(StageKind::join);
   const std::uint64_t left =
       work.pairs ? work.pairs->drawn.size() + work.pairs->other.size() : out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;

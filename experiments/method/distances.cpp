@@ -14,9 +14,9 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "verify/closest.h"
 #include "verify/exact.h"
 #include "verify/inside.h"
-#include "verify/planes_between.h"
 
 namespace farcull {
 namespace {
@@ -261,7 +261,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
-  if (progress) progress("boxes");
+  if (progress) progress(StageKind::boxes);
   const ProximityTrees trees = trees_of(scene, options.threads);
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
@@ -288,7 +288,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
                           .out = left,
                           .unit = Unit::pairs});
   watch = Stopwatch();
-  if (progress) progress("closest points");
+  if (progress) progress(StageKind::closest);
   record.distances = nearest_of(scene, near, options);
   if (options.pairs == DistancePairs::nearest) keep_nearest(scene, options.k, record.distances);
   record.trace.push_back({.kind = StageKind::closest,
@@ -306,7 +306,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
     record.trace.push_back(stage);
     return;
   }
-  if (progress) progress("inside");
+  if (progress) progress(StageKind::inside);
   const Stopwatch watch;
   const Insides insides(scene);
   for_each_shared(record.distances.size(), record.options.threads, [&](std::size_t k) {
@@ -326,7 +326,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
 void between_triangles(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
-  if (progress) progress("boxes");
+  if (progress) progress(StageKind::boxes);
   // Room for pairs that exact arithmetic finds to be a little too far apart.
   const std::size_t room = options.most_pairs + options.most_pairs / 4;
   const ProximityTrees trees(scene, options.threads);
@@ -342,7 +342,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
                           .out = near.size(),
                           .unit = Unit::pairs});
   watch = Stopwatch();
-  if (progress) progress("exact tests");
+  if (progress) progress(StageKind::exact);
   const unsigned threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   std::vector<TrianglePair> pairs =
@@ -365,7 +365,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
         "{clearance}");
   }
   watch = Stopwatch();
-  if (progress) progress("closest points");
+  if (progress) progress(StageKind::closest);
   const std::vector<std::uint32_t> owner = owners(scene);
   record.distances.resize(pairs.size());
   const std::size_t parts = (pairs.size() + kTogether - 1) / kTogether;
@@ -391,7 +391,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
 
 void verify(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   if (!record.options.verify) return;
-  if (progress) progress("accounting for every pair");
+  if (progress) progress(StageKind::verify);
   const DistanceOptions& options = record.options;
   record.verification = account_distances(scene, claims_of(record),
                                           {.kind = options.pairs,

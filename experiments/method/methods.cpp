@@ -131,7 +131,6 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
                                             .neighbours = plan.options.neighbours},
                                            plan.options.ignored);
   Candidates out;
-  out.device.note = "the method draws nothing";
   out.triangle_count = scene.triangles.size();
   for (const Object& object : scene.objects) out.object_count += object.triangle_count > 0;
   out.count = result.box_pairs;
@@ -184,13 +183,12 @@ void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
 
 Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
                          const Progress& progress, const TakePairs&) {
-  if (progress) progress("sweep and prune");
+  if (progress) progress(StageKind::sweep);
   const Stopwatch watch;
   if (plan.options.full) session.sweep().forget();
   SweepPruneResult result = session.sweep().find(scene);
   Candidates out;
   out.ms = watch.ms();
-  out.device.note = "the method draws nothing";
   out.count = result.candidates.size();
   out.pairs = std::move(result.candidates);
   out.triangles = std::move(result.triangles);
@@ -201,8 +199,8 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   Stage stage = sweep_stage(scene);
   stage.n = result.counts.objects;
   stage.m = swept;
-  stage.detail = counted(result.counts.swaps, "place", "places") + " changed, " +
-                 counted(result.counts.sorts, "list", "lists") + " sorted from scratch";
+  stage.k = result.counts.swaps;
+  stage.l = result.counts.sorts;
   stage.ms = out.ms;
   stage.out = out.count;
   out.trace.push_back(stage);
@@ -232,7 +230,6 @@ Candidates find_by_boxes(const Scene& scene, const Plan& plan, Session&, const P
   BoxesResult result =
       find_boxes(scene, std::get<BoxesPlan>(plan.work), plan.memory, progress, take);
   Candidates out;
-  out.device.note = "the method draws nothing";
   out.pairs = std::move(result.candidates);
   out.given = result.given;
   out.count = result.count;

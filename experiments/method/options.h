@@ -99,8 +99,8 @@ struct Option {
 std::span<const Option> run_options();
 /// The option with this name. Precondition: there is one.
 const Option& run_option(std::string_view name);
-/// The option as a word of a command line, as in --depth-format; empty if no command has the
-/// option. For spell_parameters().
+/// The option as a word of a command line, as in --depth-format, or one of the commands that
+/// messages name, as in "farcull doctor"; empty if there is none. For spell_parameters().
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".

@@ -31,7 +31,7 @@ struct UsedDevice {
   bool cpu = false;          // the cores of the CPU answered
   std::string lanes = {};    // the instruction set of the native canvas; empty for others
   int depth_bits = 0;        // of the canvas
-  std::string note;          // why no device was used, or why this one
+  std::string note;          // why this device; empty: none was used
   bool relies = false;       // the promise relies on the GL device
 };
 

@@ -143,7 +143,6 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
   record.complete = whole && ordered.at_end();
   record.limited = true;
   record.found.count = record.decided;
-  record.found.device.note = "the method draws nothing";
   record.ms.cull += watch.ms();
   record.trace.push_back({.kind = StageKind::exact,
                           .ran = true,
@@ -202,7 +201,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     record.decided = record.found.count;
     if (record.decided > 0 || !stage.depends) ran(record.found.decided_ms);
   } else if (!record.found.pairs.empty() || options.full) {
-    if (progress) progress("exact tests");
+    if (progress) progress(StageKind::exact);
     const Stopwatch watch;
     const std::vector<TrianglePair>& pairs = record.found.pairs;
     FrameDecider* const frames = options.limit == 0 ? session.frame_decider() : nullptr;
@@ -227,7 +226,7 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
               .reason = record.limited ? Reason::limited : Reason::not_asked,
               .unit = Unit::pairs};
   if (record.options.verify && !record.limited) {
-    if (progress) progress("accounting for every pair");
+    if (progress) progress(StageKind::verify);
     const bool given = record.found.given;
     const std::vector<TrianglePair> colliding =
         given ? record.collisions.all() : std::vector<TrianglePair>();
@@ -251,7 +250,7 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
 void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const ContactDetail asked = record.options.contacts;
   if (asked == ContactDetail::none) return;
-  if (progress) progress("kinds of contact");
+  if (progress) progress(StageKind::contacts);
   const Stopwatch watch;
   const unsigned threads = session.cpu_threads();
   record.contacts = contacts_of(scene, record.collisions.pairs, asked, threads);

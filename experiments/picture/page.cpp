@@ -22,6 +22,7 @@
 #include "experiments/picture/page_parts.h"
 #include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
 #include "verify/contact.h"

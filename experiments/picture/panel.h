@@ -13,6 +13,7 @@
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/run.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull {

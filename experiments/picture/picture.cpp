@@ -17,6 +17,7 @@
 #include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"

@@ -13,6 +13,7 @@
 #include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
 #include "experiments/picture/panel.h"
+#include "experiments/scenes/frames.h"
 
 namespace farcull {
 

@@ -200,7 +200,7 @@ void end_calls() {
 }
 
 Progress stopping_progress() {
-  return [](const std::string&) { stop_point(); };
+  return [](const ProgressStep&) { stop_point(); };
 }
 
 void raise(const std::string& where, const std::string& reason, const std::string& remedy,

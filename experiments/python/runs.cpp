@@ -29,6 +29,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/weld.h"
 #include "experiments/scenes/scene_file.h"

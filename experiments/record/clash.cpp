@@ -8,6 +8,7 @@
 #include "commit.h"
 #include "core/base/text.h"
 #include "experiments/record/output.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 

@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/gl/base/context.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
@@ -61,7 +62,7 @@ Json device_json(const Record& record) {
     out.update(FARCULL_JSON(used, lanes, depth_bits));
     return out;
   }
-  if (!used.gl) return {{"none", used.note}};
+  if (!used.gl) return {{"none", no_device_reason(record.trace)}};
   Json out = gl_json(*used.gl);
   out["subpixel_bits"] = used.gl->subpixel_bits;
   out["depth_bits"] = used.depth_bits;

@@ -8,6 +8,7 @@
 
 #include "core/gl/base/context.h"
 #include "core/scene/scene.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
 
@@ -87,7 +88,7 @@ std::string device_text(const Record& record) {
     return fmt::format("cpu, lanes of {}, {} depth bits: {}", record.found.device.lanes,
                        record.found.device.depth_bits, record.found.device.note);
   }
-  if (!record.found.device.gl) return "none: " + record.found.device.note;
+  if (!record.found.device.gl) return "none: " + no_device_reason(record.trace);
   const GlInfo& gl = *record.found.device.gl;
   std::string warnings = gl.reset_detection ? "" : "; it does not report when it resets";
   if (const std::string risk = risk_of_threads(gl.renderer); !risk.empty()) warnings += "; " + risk;
@@ -187,7 +188,7 @@ void fold(const Stage& stage, Row& row) {
   }
   const bool fattened = stage.kind == StageKind::fatten;
   row.note += fmt::format("{}{} {:.1f}", row.note.empty() ? "" : ", ",
-                          fattened ? "fatten" : stage.level, stage.ms);
+                          fattened ? "fatten" : level_name(stage.level), stage.ms);
   if (fattened && stage.n > 0)
     row.note +=
         fmt::format(" ({} beyond the budget, kept)", counted(stage.n, "triangle", "triangles"));

@@ -18,7 +18,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/invertible.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
@@ -479,6 +478,13 @@ std::vector<std::string> SceneArguments::words() const {
   if (format) out.push_back("--format=" + *format);
   if (ignore) out.push_back("--ignore=" + *ignore);
   return out;
+}
+
+void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking) {
+  for (const ObjectPair& pair :
+       ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
+    scene.ignored.push_back(pair);
+  scene.ignored = in_order(std::move(scene.ignored));
 }
 
 void require_meshes(const SceneArguments& arguments) {

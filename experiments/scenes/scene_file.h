@@ -15,49 +15,10 @@
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
-
-// Objects that are not tested against each other, by the names on the command line and in files.
-
-/// Treatment of a name that no object has. After the first frame it is no error: objects may come
-/// and go, and an absent object need not be ignored.
-enum class Lacking { refused, passed_over };
-
-/// The pairs of an object that the pattern `first` matches and a different object that `second`
-/// matches. A * in a pattern stands for any characters. Errors name `where`, `line` and the pair as
-/// `what`. Throws Error if a pattern is the name of an object and matches others, too. Unless
-/// `lacking` is passed_over, also throws Error if a pattern matches no object, or if both match one
-/// and the same object alone.
-std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
-                                      const std::string& second, const std::string& where,
-                                      const std::string& what, long line = 0,
-                                      Lacking lacking = Lacking::refused);
-
-/// Two groups of objects by their names, as in "link*:gripper". A * stands for any characters.
-struct IgnoredNames {
-  std::string text;   // such as "link*:gripper"
-  std::string where;  // --ignore, or the file
-  long line = 0;      // of the file, from 1; 0 without one
-};
-
-/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore if a pair is empty.
-std::vector<IgnoredNames> parse_ignored(const std::string& list);
-/// The pairs of a text file, one a line. Empty lines, lines that begin with # and a byte order mark
-/// are passed over. Throws Error naming the file if it cannot be read or names no pair.
-std::vector<IgnoredNames> read_ignored(const std::string& path);
-/// The pairs of a list and of a file, as --ignore and --ignore-file give them; either may be empty.
-std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
-                                        const std::optional<std::string>& file);
-
-/// The pairs of an object of the first group and a different one of the second, as in_order() gives
-/// them. A name may hold colons: each colon is tried as the one between the groups. Throws Error
-/// naming `where` and the line if a text has no colon, if both groups have objects at two of its
-/// colons, or if a name is ambiguous as in pairs_between(). Unless `lacking` is passed_over, also
-/// throws Error if no object has a name, or if both groups are one and the same object.
-std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
-                                        Lacking lacking = Lacking::refused);
 
 /// A scene as a command line asks for it. Names alone make one.
 struct SceneArguments {
@@ -147,84 +108,5 @@ using TakePart = std::function<void(Scene& part)>;
 /// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
 /// perhaps after some parts, and what take() throws. Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
-
-// A scene that moves, frame by frame; and writing scenes to files.
-//
-// In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
-// same memory, which tells a backend what it has to send again. If the topology changes, nothing of
-// the previous frame is reused.
-
-/// Frames first to last, both included; 0 <= first <= last. A built-in motion that is a path has
-/// last + 1 frames, of which these are the end: 30:59 is the second half of 60 frames.
-struct FrameRange {
-  long first = 0;
-  long last = 0;
-  long count() const { return last - first + 1; }
-};
-/// "N" (0 to N - 1) or "A:B", at most a million frames, numbers up to 1e9. Throws Error naming
-/// --frames.
-FrameRange parse_frames(const std::string& text);
-
-/// A scene that depends on the number of a frame.
-class FrameSource {
- public:
-  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes some
-  /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
-  /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
-  /// frame.
-  FrameSource(SceneArguments arguments, FrameRange range, bool self);
-  /// A scene that moves, in place of arguments.
-  explicit FrameSource(MovingScene moving);
-
-  /// The scene at a frame of the range. Returns the same object each time, and the same memory of
-  /// triangles if the topology is that of the previous call. Throws Error naming the file if a mesh
-  /// cannot be read, or as MovingScene does.
-  const Scene& at(long frame);
-
-  /// The Error that at() would throw for the first frame of the range that lacks a file now; empty
-  /// if no file is missing.
-  std::optional<Error> missing() const;
-
-  /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
-  /// or the objects. False after the first call.
-  bool topology_changed() const { return changed_; }
-  /// The notes of a built-in motion on the current frame.
-  FrameNotes notes() const;
-
- private:
-  // The Error that at(frame) would throw if a mesh file of the frame is missing now.
-  std::optional<Error> missing_at(long frame) const;
-
-  SceneArguments arguments_;
-  FrameRange range_;
-  bool self_ = false;
-  std::optional<MovingScene> built_in_;
-  MeshCache meshes_;
-  Scene scene_;  // at the current frame; empty for a built-in motion without ignored objects
-  // The topology in the previous call.
-  std::size_t vertices_ = 0;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<Object> objects_;
-  bool first_ = true;
-  bool changed_ = false;
-};
-
-// Scenes as files: meshes with 17 significant digits, so that every double is read back unchanged,
-// and the scene file that puts them together again.
-
-/// The files that one call has written.
-struct WrittenScene {
-  std::string scene_file;  // FOLDER/scene.json
-  std::uint64_t files = 0;
-  std::uint64_t bytes = 0;
-};
-
-/// Writes each object as OFF, NAME.off, with the vertices that it uses and 17 significant digits,
-/// and scene.json, whose scene has the same scene_hash(). NAME is the object's name with everything
-/// but letters, digits, '.' and '-' replaced, and with a number if two would be the same. Creates
-/// the last part of `folder` if it does not exist; replaces existing files, as other outputs do;
-/// writes scene.json last. Throws Error naming a path that the system refuses, and then removes the
-/// files that are new. Precondition: every object has a triangle.
-WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

@@ -17,6 +17,7 @@
 #include "core/base/stopwatch.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/method.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
@@ -416,7 +417,7 @@ class Runner {
     std::string why = lacking(at.key());
     if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
     if (!lab_) {
-      lab_.emplace(request_.device, [this](const std::string& stage) { show(stage); });
+      lab_.emplace(request_.device, [this](const ProgressStep& step) { show(text_of(step)); });
     }
     std::string failure;
     try {

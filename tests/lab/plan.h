@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/method/run.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"
 

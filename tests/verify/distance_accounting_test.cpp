@@ -6,7 +6,6 @@
 #include "tests/lab/distances.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
-#include "verify/distance_claims.h"
 #include "verify/exact.h"
 #include "verify/separation.h"
 

@@ -1,5 +1,4 @@
 // What the planes between two triangles show of other triangles, against exact distances.
-#include "verify/planes_between.h"
 
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"

@@ -1,6 +1,6 @@
 // The numbers of this folder: vectors of machine integers and of GMP's integers, with the few
 // operations that deciding a pair needs; conversion of doubles to integers; fractions. For the
-// sources of verify/certificate, for verify/distance_claims.h and for tests alone.
+// sources of verify/certificate, for verify/distance_accounting.h and for tests alone.
 #pragma once
 
 #include <gmpxx.h>

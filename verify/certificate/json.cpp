@@ -21,7 +21,7 @@ constexpr const char* kFormat = "farcull-certificate";
 // The versions are the same except that the second has a clearance, and the third a tile as well.
 constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile = 5;
 constexpr const char* kRemedy =
-    "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
+    "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
 
 /// The text as printable ASCII of at most `most` characters, for a message.
 std::string printable(std::string_view text, std::size_t most) {

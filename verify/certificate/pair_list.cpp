@@ -88,7 +88,7 @@ std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pai
 namespace {
 
 constexpr const char* kListRemedy =
-    "give a list as `farcull run --pairs FILE` writes it: first a line "
+    "give a list as `{run} {pairs} FILE` writes it: first a line "
     "object_a,triangle_a,object_b,triangle_b, then these four numbers for each pair";
 
 /// The text as printable ASCII in quotes, cut short, for a message.
@@ -273,7 +273,7 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
       wrong(row.line, pair, "the line names one triangle twice");
     } else if (one_object && !scene.objects[row.object[0]].self) {
       wrong(row.line, pair,
-            "the pair is of one object that is not tested against itself (--self asks)");
+            spelled("the pair is of one object that is not tested against itself ({self} asks)"));
     } else if (std::ranges::binary_search(scene.ignored,
                                           ObjectPair{std::min(row.object[0], row.object[1]),
                                                      std::max(row.object[0], row.object[1])})) {

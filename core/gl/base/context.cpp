@@ -285,12 +285,12 @@ GlContext::GlContext(const std::string& device) {
   const std::optional<int> wanted = parse_number<int>(device);
   if (!device.empty() && device != "hardware" && device != "software" && !wanted) {
     throw Error("{device}", "'" + device + "' is no device",
-                "give software, hardware or a number that `farcull doctor` lists");
+                "give software, hardware or a number that `{doctor}` lists");
   }
   if (wanted && (*wanted < 0 || *wanted >= static_cast<int>(list.size()))) {
     throw Error("{device}",
                 "there is no device " + device + " (0 .. " + std::to_string(list.size() - 1) + ")",
-                "see `farcull doctor`");
+                "see `{doctor}`");
   }
   std::string problems;
   for (const std::string kind : {"hardware", "software"}) {
@@ -382,7 +382,7 @@ void check_gl(const std::string& stage) {
                 errors.find("MEMORY") != std::string::npos
                     ? "memory is missing: choose a smaller resolution or another {device}"
                     : "this is a fault of the driver or of farcull: report it with the output of "
-                      "`farcull doctor`");
+                      "`{doctor}`");
   }
   if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness")) {
     const GLenum reset =

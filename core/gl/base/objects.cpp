@@ -10,7 +10,7 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kReport = "report this driver's log with the output of `farcull doctor`";
+constexpr const char* kReport = "report this driver's log with the output of `{doctor}`";
 
 // Shaders write out and inout parameters through these names, so that kernels compile as C++ too
 // (core/base/glsl_shim.h).

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/canvas/kernel_case.h"
+#include "core/canvas/canvas.h"
 #include "core/gl/base/context.h"
 
 namespace farcull {

@@ -1,6 +1,7 @@
 // Forms of CULLIDE: a limit of rounds, views that all have to clear, objects alone. Each against
 // what single views and single rounds give by themselves.
 #include "core/boxes/join.h"
+#include "experiments/record/stage_words.h"
 #include "tests/lab/cull.h"
 #include "verify/accounting.h"
 

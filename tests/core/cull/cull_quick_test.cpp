@@ -2,6 +2,7 @@
 // clusters, runs in sequence and what may be left out, which must not change what is kept.
 #include "core/base/text.h"
 #include "core/cull/clusters.h"
+#include "experiments/record/stage_words.h"
 #include "tests/lab/cull.h"
 
 namespace farcull {

@@ -2,6 +2,7 @@
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "core/view/regions.h"
+#include "experiments/record/stage_words.h"
 #include "offsets/offsets.h"
 #include "tests/lab/cull.h"
 #include "tests/lab/scenes.h"
@@ -39,7 +40,7 @@ const Stage* find_stage(const std::vector<Stage>& stages, StageKind kind) {
 
 bool asked_objects(const std::vector<Stage>& stages) {
   for (const Stage& stage : stages)
-    if (stage.level == "objects" && stage.ran) return true;
+    if (stage.level == kObjectLevel && stage.ran) return true;
   return false;
 }
 

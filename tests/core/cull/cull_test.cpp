@@ -3,6 +3,7 @@
 #include "core/cull/cull.h"
 
 #include "core/boxes/join.h"
+#include "experiments/record/stage_words.h"
 #include "offsets/offsets.h"
 #include "tests/lab/canvas.h"
 #include "tests/lab/rational.h"

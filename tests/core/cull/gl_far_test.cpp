@@ -5,6 +5,7 @@
 #include "core/cull/cull.h"
 #include "core/view/regions.h"
 #include "experiments/method/run.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/offsets.h"
@@ -316,7 +317,7 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   Session none("no such device");  // opening it would throw
   const Record record = run(scene, {.method = Method::far}, none);
   EXPECT_FALSE(record.found.device.gl.has_value());
-  EXPECT_TRUE(has_text(record.found.device.note, "nothing left to draw"));
+  EXPECT_TRUE(has_text(no_device_reason(record.trace), "nothing left to draw"));
   EXPECT_EQ(record.found.triangle_count, 0u);
   EXPECT_EQ(record.verification->false_negatives, 0u);
 }

@@ -4,6 +4,7 @@
 
 #include "core/cull/cull.h"
 #include "core/cull/patches.h"
+#include "experiments/record/stage_words.h"
 #include "tests/core/cull/model.h"
 #include "tests/lab/canvas.h"
 #include "tests/lab/test.h"
@@ -175,6 +176,11 @@ inline std::string name_of(const Case& c, const Step& step) {
          std::to_string(step.round) + (step.second ? ", second pass" : ", first pass");
 }
 
+inline std::string name_of(const CullStep& step) {
+  return level_name(step.level) + " " + step.view + ", round " + std::to_string(step.round) +
+         (step.first_pass ? ", first pass" : ", second pass");
+}
+
 inline std::vector<std::uint8_t> bits_of(const Case& c, const Bits& bits) {
   std::vector<std::uint8_t> out(c.scene.triangles.size());
   for (std::uint32_t t = 0; t < out.size(); ++t)
@@ -253,12 +259,12 @@ inline Outcome by_core(const Case& c, Fault fault = Fault::none) {
   Outcome out;
   settings.watch = [&](const CullStep& step) {
     out.steps.push_back(
-        {step.name, step.bits, step.draws, step.queries, step.draws_saved, step.queries_saved});
+        {name_of(step), step.bits, step.draws, step.queries, step.draws_saved, step.queries_saved});
   };
   // The progress is what names a view before it is fattened.
-  const CullResult result = cull_by(
-      pass_rule(s), c.scene, regions, settings, canvas,
-      [&](const std::string& text) { *view = std::stoi(text.substr(text.find("along ") + 6)); });
+  const CullResult result =
+      cull_by(pass_rule(s), c.scene, regions, settings, canvas,
+              [&](const ProgressStep& step) { *view = std::stoi(step.subject); });
   for (const Stage& stage : result.stages)
     if (stage.kind == StageKind::cull && stage.ran) out.passes += stage.n;
   out.bits = result.bits;

@@ -5,7 +5,6 @@
 #include "tests/lab/rational.h"
 #include "tests/lab/test.h"
 #include "verify/closest.h"
-#include "verify/planes_between.h"
 
 namespace farcull {
 namespace {

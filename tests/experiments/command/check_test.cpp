@@ -7,6 +7,7 @@
 #include "experiments/measure/frames.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"

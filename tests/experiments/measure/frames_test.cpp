@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "tests/lab/test.h"

@@ -5,6 +5,7 @@
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/plan.h"
@@ -129,7 +130,7 @@ TEST(GlMethods, ExactOffsetsSeeWhatBoxesHaveLeft) {
   std::uint64_t draws = 0, first_in = 0;
   bool second = false;
   for (const Stage& stage : both.trace) {
-    second |= stage.kind == StageKind::setup && stage.detail == "exact";
+    second |= stage.kind == StageKind::setup && stage.fattener == "exact";
     if (second && first_in == 0 && stage.kind == StageKind::fatten) first_in = stage.in;
     if (second) draws += stage.draws;
   }

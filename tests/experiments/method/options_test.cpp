@@ -102,6 +102,7 @@ TEST(Error, SpellsParametersAsTheProgramDoes) {
   EXPECT_EQ(spelled("use {depth_format} 24 or {x.off}, {}"),
             "use --depth-format 24 or {x.off}, {}");
   EXPECT_EQ(spelled("{open"), "{open");
+  EXPECT_EQ(spelled("see `{doctor}`"), "see `farcull doctor`");
   EXPECT_EQ(Error("{device}", "a", "b").where, "--device");
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"
+#include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/plan.h"
 #include "tests/lab/scenes.h"
@@ -240,7 +241,7 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
   const Plan planned = plan(scene, options);
   EXPECT_EQ(decision(planned, "patches"), "runs");
   EXPECT_TRUE(reason_of(stage_named(planned, "patches")).starts_with("16 patches of at most 320"));
-  for (const Stage& stage : planned.stages()) EXPECT_NE(stage.level, "objects");
+  for (const Stage& stage : planned.stages()) EXPECT_NE(stage.level, kObjectLevel);
 }
 
 // An object of one patch has nothing to draw: the answer is that of a box join, without a device.

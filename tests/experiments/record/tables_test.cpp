@@ -1,6 +1,7 @@
 // What the tables say in words: numbers with their nouns, what collides, what there is to test, and
 // the verdict.
 #include "experiments/record/tables.h"
+#include "experiments/record/stage_words.h"
 
 #include <nlohmann/json.hpp>
 

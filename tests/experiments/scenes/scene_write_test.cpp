@@ -2,8 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
+#include "experiments/scenes/write_scene.h"
 #include "tests/lab/moving.h"
 
 namespace farcull {

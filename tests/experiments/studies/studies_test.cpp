@@ -1,4 +1,5 @@
 // What every study promises of its grid.
+#include "experiments/record/stage_words.h"
 #include "experiments/studies/study.h"
 
 #include "core/canvas/fatten.h"

@@ -6,6 +6,7 @@
 #include "core/view/view.h"
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/moving.h"

@@ -1,5 +1,5 @@
-// Words for stages. Every text that a person reads about a stage is made here.
-#include "core/base/stage.h"
+// A switch over the kinds, the reasons and the steps.
+#include "experiments/record/stage_words.h"
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -90,9 +90,16 @@ std::string to_string(Unit unit) {
   return "";
 }
 
+std::string level_name(std::uint32_t level) {
+  return level == kNoLevel         ? ""
+         : level == kObjectLevel   ? "objects"
+         : level == kTriangleLevel ? "triangles"
+                                   : "clusters of " + number(level);
+}
+
 std::string name_of(const Stage& stage) {
   std::string name = verb_of(stage.kind);
-  if (!stage.level.empty()) name += " " + stage.level;
+  if (stage.level != kNoLevel) name += " " + level_name(stage.level);
   if (!stage.subject.empty()) name += " " + stage.subject;
   if (stage.round > 0) name += ", round " + number(stage.round);
   return name;
@@ -100,8 +107,8 @@ std::string name_of(const Stage& stage) {
 
 std::string reason_of(const Stage& stage) {
   const std::string n = grouped(stage.n), m = grouped(stage.m);
-  // Stages about boxes of objects may name in `detail` which pairs are left out: "ignored ones".
-  const std::string apart = stage.detail.empty() ? "" : ", " + stage.detail + " apart";
+  const std::string apart = stage.k ? ", ignored ones apart" : "";
+  const std::string moved = stage.k ? ", of which something moved in " + number(*stage.k) : "";
   switch (stage.reason) {
     case Reason::none:
       return "";
@@ -117,13 +124,11 @@ std::string reason_of(const Stage& stage) {
              "whole; objects tested against themselves: " +
              m;
     case Reason::block_pairs:
-      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n +
-             (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
+      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n + moved +
              "; pairs of objects, and objects with themselves: " + m;
     case Reason::oriented_pairs:
       return "pairs of blocks (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
-             n + (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
-             "; pairs of objects, and objects with themselves: " + m;
+             n + moved + "; pairs of objects, and objects with themselves: " + m;
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::boxes_decide_little:
@@ -137,9 +142,9 @@ std::string reason_of(const Stage& stage) {
     case Reason::nothing_to_look_at:
       return "boxes leave nothing to draw: no device is needed";
     case Reason::shaders:
-      return "canvas for " + stage.detail;
+      return "canvas for " + stage.fattener;
     case Reason::fattener:
-      return stage.detail +
+      return stage.fattener +
              (stage.n > 0 ? "; " + triangles(stage.n) + " beyond the budget, kept" : std::string());
     case Reason::unresolvable:
       return "double arithmetic cannot resolve the region in pixels; nothing is culled here";
@@ -180,9 +185,10 @@ std::string reason_of(const Stage& stage) {
     case Reason::clusters_flags:
       return "flags: a question costs nothing";
     case Reason::sweep:
-      if (stage.detail.empty()) return "boxes of objects, then of their triangles";
+      if (!stage.k) return "boxes of objects, then of their triangles";
       return "boxes of " + objects(stage.n) + " overlap, which have " + triangles(stage.m) + "; " +
-             stage.detail;
+             counted(*stage.k, "place", "places") + " changed, " +
+             counted(stage.l, "list", "lists") + " sorted from scratch";
     case Reason::not_cleared:
       return "those of the pairs above that drawing did not clear";
     case Reason::join_kept:
@@ -229,15 +235,37 @@ std::string reason_of(const Stage& stage) {
   return "";
 }
 
-Stage work_of(const std::vector<Stage>& stages) {
-  Stage sum;
-  for (const Stage& stage : stages) {
-    sum.draws += stage.draws;
-    sum.queries += stage.queries;
-    sum.draws_saved += stage.draws_saved;
-    sum.queries_saved += stage.queries_saved;
+std::string no_device_reason(const std::vector<Stage>& trace) {
+  for (const Stage& stage : trace) {
+    if (stage.kind == StageKind::draw) return reason_of(stage) + ": nothing left to draw";
   }
-  return sum;
+  return "the method draws nothing";
+}
+
+std::string text_of(const ProgressStep& step) {
+  if (!step.text.empty()) return step.text;
+  switch (step.kind) {
+    case StageKind::setup:
+      return "opening the device";
+    case StageKind::blocks:
+      return "comparing boxes of blocks";
+    case StageKind::join:
+      return "joining boxes";
+    case StageKind::sweep:
+      return "sweep and prune";
+    case StageKind::cull:
+      return "culling along " + step.subject + ", round " + number(step.round);
+    case StageKind::exact:
+      return "exact tests";
+    case StageKind::verify:
+      return "accounting for every pair";
+    case StageKind::touch:
+      return "touching or clashing";
+    case StageKind::depth:
+      return "depths";
+    default:
+      return verb_of(step.kind);
+  }
 }
 
 }  // namespace farcull

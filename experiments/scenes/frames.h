@@ -1,0 +1,77 @@
+// A scene that moves, frame by frame.
+//
+// In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
+// same memory, which tells a backend what it has to send again. If the topology changes, nothing of
+// the previous frame is reused.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/scene/scene.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/scene_file.h"
+
+namespace farcull {
+
+/// Frames first to last, both included; 0 <= first <= last. A built-in motion that is a path has
+/// last + 1 frames, of which these are the end: 30:59 is the second half of 60 frames.
+struct FrameRange {
+  long first = 0;
+  long last = 0;
+  long count() const { return last - first + 1; }
+};
+/// "N" (0 to N - 1) or "A:B", at most a million frames, numbers up to 1e9. Throws Error naming
+/// --frames.
+FrameRange parse_frames(const std::string& text);
+
+/// A scene that depends on the number of a frame.
+class FrameSource {
+ public:
+  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes some
+  /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
+  /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
+  /// frame.
+  FrameSource(SceneArguments arguments, FrameRange range, bool self);
+  /// A scene that moves, in place of arguments.
+  explicit FrameSource(MovingScene moving);
+
+  /// The scene at a frame of the range. Returns the same object each time, and the same memory of
+  /// triangles if the topology is that of the previous call. Throws Error naming the file if a mesh
+  /// cannot be read, or as MovingScene does.
+  const Scene& at(long frame);
+
+  /// The Error that at() would throw for the first frame of the range that lacks a file now; empty
+  /// if no file is missing.
+  std::optional<Error> missing() const;
+
+  /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
+  /// or the objects. False after the first call.
+  bool topology_changed() const { return changed_; }
+  /// The notes of a built-in motion on the current frame.
+  FrameNotes notes() const;
+
+ private:
+  // The Error that at(frame) would throw if a mesh file of the frame is missing now.
+  std::optional<Error> missing_at(long frame) const;
+
+  SceneArguments arguments_;
+  FrameRange range_;
+  bool self_ = false;
+  std::optional<MovingScene> built_in_;
+  MeshCache meshes_;
+  Scene scene_;  // at the current frame; empty for a built-in motion without ignored objects
+  // The topology in the previous call.
+  std::size_t vertices_ = 0;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Object> objects_;
+  bool first_ = true;
+  bool changed_ = false;
+};
+
+}  // namespace farcull

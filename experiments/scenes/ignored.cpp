@@ -1,0 +1,194 @@
+// Patterns are compared with the names of all objects; each colon of a text is tried as the one
+// between two names.
+#include "experiments/scenes/ignored.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace farcull {
+
+namespace {
+
+// Names are looked up in each scene: the names of objects may differ from frame to frame.
+
+constexpr const char* kRemedy =
+    "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
+    "the mesh file without its ending, or that in the scene file";
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Whether the name matches a pattern, in which a * stands for any characters. After a mismatch,
+/// the last * takes one character more.
+bool fits(std::string_view name, std::string_view pattern) {
+  std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++n, ++p;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++from;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view pattern) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (fits(scene.objects[o].name, pattern)) out.push_back(o);
+  }
+  return out;
+}
+
+/// Whether the pattern is ambiguous: it is the name of an object and also matches others.
+bool doubtful(const Scene& scene, std::string_view pattern,
+              const std::vector<std::uint32_t>& objects) {
+  return std::ranges::any_of(objects,
+                             [&](std::uint32_t o) { return scene.objects[o].name == pattern; }) &&
+         !std::ranges::all_of(objects,
+                              [&](std::uint32_t o) { return scene.objects[o].name == pattern; });
+}
+
+constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
+
+std::string some_names(const Scene& scene) {
+  constexpr std::size_t kShown = 5;
+  std::string out;
+  for (std::size_t o = 0; o < std::min(kShown, scene.objects.size()); ++o)
+    out += (o > 0 ? ", " : "") + scene.objects[o].name;
+  return out + (scene.objects.size() > kShown ? ", ..." : "");
+}
+
+/// All pairs of an object of `first` and a different object of `second`.
+std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
+                                 const std::vector<std::uint32_t>& second) {
+  std::vector<ObjectPair> out;
+  for (const std::uint32_t a : first) {
+    for (const std::uint32_t b : second) {
+      if (a != b) out.push_back({a, b});
+    }
+  }
+  return in_order(std::move(out));
+}
+
+constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
+
+/// Appends the pairs of objects that names.text stands for.
+void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
+            std::vector<ObjectPair>& out) {
+  const std::string_view text = names.text;
+  const auto fail = [&](const std::string& reason) {
+    throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
+                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)), names.line);
+  };
+  std::vector<std::uint32_t> first, second;
+  std::string unknown;
+  int places = 0;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':', colon + 1)) {
+    const std::string_view left = text.substr(0, colon), right = text.substr(colon + 1);
+    const std::vector<std::uint32_t> a = objects_of(scene, left), b = objects_of(scene, right);
+    if (a.empty() || b.empty()) {
+      if (unknown.empty()) unknown = a.empty() ? left : right;
+      continue;
+    }
+    ++places;
+    first = a;
+    second = b;
+    for (const auto& [name, objects] : {std::pair(left, a), std::pair(right, b)}) {
+      if (doubtful(scene, name, objects))
+        fail(fmt::format("names '{}', which {}", name, kDoubtful));
+    }
+  }
+  if (text.find(':') == std::string_view::npos) fail("has no colon");
+  if (lacking == Lacking::passed_over && (places == 0 || (first.size() == 1 && first == second)))
+    return;
+  if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
+  if (places > 1) fail("can be divided at more than one colon");
+  if (first.size() == 1 && first == second) fail(kOneObject);
+  const std::vector<ObjectPair> pairs = pairs_of(first, second);
+  out.insert(out.end(), pairs.begin(), pairs.end());
+}
+
+}  // namespace
+
+std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
+                                      const std::string& second, const std::string& where,
+                                      const std::string& what, long line, Lacking lacking) {
+  const auto objects = [&](const std::string& pattern) {
+    std::vector<std::uint32_t> out = objects_of(scene, pattern);
+    if (doubtful(scene, pattern, out)) {
+      throw Error(where, fmt::format("{} names '{}', which {}", what, pattern, kDoubtful),
+                  "call the object something without a *", line);
+    }
+    if (!out.empty() || lacking == Lacking::passed_over) return out;
+    throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
+                "give names of objects, in which * stands for any characters; the scene has " +
+                    some_names(scene),
+                line);
+  };
+  const std::vector<std::uint32_t> a = objects(first), b = objects(second);
+  if (a.size() == 1 && a == b && lacking == Lacking::refused) {
+    throw Error(where, fmt::format("{} names '{}' alone", what, scene.objects[a[0]].name),
+                "give two different objects; whether an object is tested against itself is said "
+                "by self",
+                line);
+  }
+  return pairs_of(a, b);
+}
+
+std::vector<IgnoredNames> parse_ignored(const std::string& list) {
+  std::vector<IgnoredNames> out;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    out.push_back({list.substr(begin, end - begin), "--ignore"});
+    if (out.back().text.empty()) throw Error("--ignore", "a pair of names is empty", kRemedy);
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::vector<IgnoredNames> read_ignored(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path, "cannot be read", "name a text file with a pair of names a line");
+  std::vector<IgnoredNames> out;
+  long line = 0;
+  for (std::string text; std::getline(file, text);) {
+    ++line;
+    if (line == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    if (text.ends_with('\r')) text.pop_back();
+    if (!text.empty() && !text.starts_with('#')) out.push_back({text, path, line});
+  }
+  if (!file.eof()) throw Error(path, "cannot be read to its end", "name a text file", line);
+  if (out.empty()) throw Error(path, "names no pair of objects", kRemedy);
+  return out;
+}
+
+std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
+                                        const std::optional<std::string>& file) {
+  std::vector<IgnoredNames> out;
+  if (list) out = parse_ignored(*list);
+  if (!file) return out;
+  for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
+  return out;
+}
+
+std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
+                                        Lacking lacking) {
+  std::vector<ObjectPair> out;
+  for (const IgnoredNames& one : names) append(scene, one, lacking, out);
+  return in_order(std::move(out));
+}
+
+}  // namespace farcull
