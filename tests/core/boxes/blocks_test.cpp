@@ -134,41 +134,6 @@ TEST(Blocks, HoldEachTriangleOnceInItsBox) {
   EXPECT_GT(outside, 1000u);
 }
 
-// Objects whose blocks are scattered, by the boxes of all blocks.
-std::vector<std::uint32_t> scattered_objects(const Scene& scene) {
-  const TriangleBlocks blocks = make_blocks(scene, 0, 2);
-  const auto length = [](const Box& box) { return (box.hi - box.lo).sum(); };
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    double sum = 0;
-    for (std::uint32_t k = blocks.first[o]; k < blocks.first[o + 1]; ++k)
-      sum += length(blocks.boxes[k]);
-    if (sum > kScattered * std::sqrt(blocks.count(o)) * length(blocks.objects[o])) out.push_back(o);
-  }
-  return out;
-}
-
-TEST(Blocks, AreGatheredOnlyWhereTheFileScattersThem) {
-  std::size_t gathered = 0, others = 0;
-  for (const char* name :
-       {"rope:40000", "rope:80000", "rope:160000", "crumpled:60000", "spheres:40000"}) {
-    const Scene scene = make_builtin_scene(name);
-    for (const Scene& either : {scene, shuffled(scene, 1)}) {
-      const std::vector<std::uint32_t> expected = scattered_objects(either);
-      TriangleBlocks blocks = make_blocks(either, 0, 2);
-      gather_scattered(either, 0, std::vector<Box>(blocks.objects), 2, blocks);
-      std::vector<std::uint32_t> found;
-      for (std::uint32_t o = 0; o < either.objects.size(); ++o)
-        if (blocks.is_gathered(o)) found.push_back(o);
-      EXPECT_EQ(found, expected) << name;
-      gathered += found.size();
-      others += scene.objects.size() - found.size();
-    }
-  }
-  EXPECT_GT(gathered, 4u);
-  EXPECT_GT(others, 4u);
-}
-
 TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
   std::size_t found = 0;
   for (const Scene& scene : small_scenes()) {

@@ -169,31 +169,6 @@ TEST(NativeDepth, SolidsThatTouchAreSeenWhereTouchingCounts) {
   });
 }
 
-TEST(NativeDepth, TrianglesThatTouchAreSeenWhereTouchingCounts) {
-  const Window window = lab::window(40, 100);
-  const auto triangle = [](float z) {
-    return std::array<float, 12>{-20, -20, z, 0, 40, -20, z, 0, -20, 40, z, 0};
-  };
-  Drawables drawables;
-  drawables.mode = DepthMode::fixed;
-  drawables.first = {0, 1, 2};
-  on_every_target([&] {
-    for (const int bits : {32, 24}) {
-      for (const bool conservative : {false, true}) {
-        NativeCanvas canvas(DepthMode::fixed, {},
-                            {.depth_bits = bits, .conservative = conservative});
-        drawables.triangles = {triangle(3), triangle(3)};
-        EXPECT_TRUE(is_seen(canvas, window, drawables, true)) << bits;
-        EXPECT_FALSE(is_seen(canvas, window, drawables, false)) << bits;
-        drawables.triangles[1] = triangle(2.75f);
-        EXPECT_FALSE(is_seen(canvas, window, drawables, true)) << bits;
-        drawables.triangles[1] = triangle(3.25f);
-        EXPECT_TRUE(is_seen(canvas, window, drawables, false)) << bits;
-      }
-    }
-  });
-}
-
 // depth_rounding() (core/canvas/canvas.h) counts half a step for it.
 TEST(NativeDepth, TwentyFourBitsHoldTheNearestStep) {
   const Window window = lab::window(40, 100);
