@@ -149,10 +149,6 @@ for size in 10000 30000 100000 300000 1000000 3000000 10000000; do
     --peers none --methods boxes --json "$out/field-$size.json"
 done
 mapfile -t moving < <(moving_scenes)
-for scene in "${moving[@]}"; do
-  step "family-$scene" 3 "every method on frames of $scene" build/farcull experiment family "$scene" --frames 10 \
-    --device "$device" --json "$out/family-$scene.json"
-done
 if [[ -e packed ]]; then
   missing+=("suite (the test suite): left out, it is not in a packed folder")
 else
@@ -165,7 +161,7 @@ for scene in "${moving[@]}"; do
   step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability.sh motion "$scene"
 done
 for scene in armadillo-elephant needles-layers needles-crossed "mannequin-devil --self" "armadillo --self" "bunny --self" \
-  tree-leaves field:100000 crumpled rope spheres fans funnel; do
+  tree-leaves field:100000 crumpled spheres cad-cut funnel; do
   read -ra words <<<"$scene"
   bench 3 "${words[@]}"
 done
@@ -233,7 +229,6 @@ section() {
   section 'Missed pairs' misses 'reliability-*' 'motion-*'
   section 'Times beside other libraries' 'bench-*'
   section 'Growth' 'field-*'
-  section 'Moving scenes' 'family-*'
   section 'The test suite' suite
   if [[ -e $out/results/report/results.md ]]; then
     printf '\n'

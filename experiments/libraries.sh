@@ -6,8 +6,7 @@
 #                                                 that their times say nothing; VTK and Open3D only
 #                                                 where they are installed, since they are large
 #   bash experiments/libraries.sh --keep [DIR]    the small suite, one after the other. When it is whole,
-#                                                 the report is copied to docs/results, and the smallest
-#                                                 examples to tests/cases/libraries.txt
+#                                                 the report is copied to docs/results
 #   bash experiments/libraries.sh [DIR]           the same of the full suite, an hour and a half; a second
 #                                                 run goes on
 # DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
@@ -72,8 +71,6 @@ build/farcull report "$out" || status=$?
 if [[ $keep == yes && $status == 0 ]]; then
   farcull_keep_report libraries "Results of the study libraries" "$out/report" "libraries.sh${quick:+ --keep}"
   cp "$out"/report/tables/libraries{,-meshes,-kinds,-distances,-calls,-families}.csv docs/results/
-  cp "$out"/report/libraries-cases.html docs/results/
-  cp "$out"/report/libraries-examples.txt tests/cases/libraries.txt
 fi
 echo
 # The first table of the page.

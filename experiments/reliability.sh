@@ -27,7 +27,7 @@ esac
 boxes_runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"
-  "crumpled:20000" "rope:20000" "spheres:40000" "fans:8000" "funnel"
+  "crumpled:20000" "spheres:40000" "cad-cut:8000" "funnel"
   "mannequin-devil --self" "armadillo --self" "bunny --self" "degenerate --self" "two-spheres --clearance 0.01"
 )
 if [[ $form == boxes && ${1-} == --list ]]; then
@@ -97,20 +97,22 @@ boxes_run() {
       }' || failed+=("$*")
 }
 
-# moving_scene SCENE: all frames by METHODS.
+# moving_scene SCENE: a row for each of the METHODS, which may have options (far --offset exact).
 moving_scene() {
-  local frames=${FRAMES:-100} methods=${METHODS:-boxes,i-collide,far}
-  local record="$out/$1.$frames.$methods.$commit"
-  if [[ -s $record.json ]]; then
-    echo "$1: done before, see $record.txt"
-    return
-  fi
-  build/farcull experiment family "$1" --methods "$methods" --frames "$frames" --csv "$record.csv" "${device[@]}" \
-    --json "$record.json" >"$record.txt" || {
-    failed+=("$1")
-    rm -f "$record.json"
-  }
-  cat "$record.txt"
+  local frames=${FRAMES:-100} method record
+  while read -r method; do
+    record="$out/$1.$frames.${method// /_}.$commit"
+    if [[ ! -s $record ]]; then
+      # shellcheck disable=SC2086 # the method's options are words
+      build/farcull verify "$1" --method $method --frames "$frames" "${device[@]}" --json "$record.part" >/dev/null || {
+        failed+=("$1 --method $method")
+        continue
+      }
+      mv "$record.part" "$record"
+    fi
+    awk -F'[:,]' -v run="$1, $method" '/"candidate_pairs"/ { candidates += $2 } /"all_colliding_pairs"/ { pairs += $2 }
+      /"missed"/ { missed = $2 } END { printf "%-50s %15d %13d %7d\n", run, candidates, pairs, missed }' "$record"
+  done < <(tr , '\n' <<<"${METHODS:-boxes,i-collide,far,far --offset exact}")
 }
 
 # ask_distances WORDS...: prints the rows, from the record or by running the program.
@@ -161,6 +163,7 @@ case $form in
     if ((!$#)); then
       mapfile -t scenes < <(build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }')
     fi
+    printf '%-50s %15s %13s %7s\n' "scene, method" candidates colliding missed
     for scene in "${scenes[@]}"; do moving_scene "$scene"; done
     ;;
   distances)

@@ -9,8 +9,6 @@
 #   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
 #   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 20 scenes.
-#   bash experiments/results.sh profile [SCENE...]   profile.md: the stages of boxes beside the least that the machine must
-#                                                    do, and beside the fastest library, with one and two threads. Minutes.
 # OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
 # the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
 # then simulated again from its start.
@@ -32,11 +30,6 @@ farcull_build farcull
 if [[ ${1-} == stages ]]; then
   bash experiments/meshes.sh
   exec /usr/bin/python3 experiments/report/stages.py build/farcull docs/results/stages.md docs/results/figures/stages.svg "${@:2}"
-fi
-if [[ ${1-} == profile ]]; then
-  farcull_build farcull_kernels_bench
-  bash experiments/meshes.sh
-  exec /usr/bin/python3 experiments/report/floors.py build docs/results/profile.md "${@:2}"
 fi
 commit=$(build/farcull --version)
 commit=${commit##* }

@@ -37,16 +37,15 @@ farcull_packages=(
   libjs-three
   # the Python module; the build works without
   python3-dev pybind11-dev python3-numpy
-  # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
-  libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
+  # libraries that farcull bench compares with; the build works without
+  libfcl-dev libembree-dev libbullet-dev libode-dev
 )
 # Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
 # Python module take pytest and hypothesis, and install it into a virtual environment.
 farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
 # Packages of tests that are labelled "rare", 300 MB: the report and pages of pictures in a browser, their PDF and LaTeX; the
-# paper as a PDF; the manual, and completion in other shells.
-farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin mandoc
-  groff-base man-db zsh fish)
+# paper as a PDF.
+farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

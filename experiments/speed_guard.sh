@@ -1,20 +1,18 @@
 #!/usr/bin/env bash
-# Is a commit slower than another? Builds both, each from a clone in build/speed-guard/, and measures them in turn: the single
-# kernels (farcull_kernels_bench, CPU time) and boxes on scenes (farcull bench). The time of a scene in a turn is that
-# of its fastest run, which other load on the machine disturbs least. For each row it prints the fastest time of each commit, and the
+# Is a commit slower than another? Builds both, each from a clone in build/speed-guard/, and measures them in turn: boxes
+# on scenes (farcull bench). The time of a scene in a turn is that of its fastest run, which other load on the machine disturbs least. For each row it prints the fastest time of each commit, and the
 # median over the turns of the time of HEAD over that of BASE in the same turn, with the least and the greatest of these ratios.
 #
 #   bash experiments/speed_guard.sh BASE HEAD                          all scenes
-#   bash experiments/speed_guard.sh HEAD~1 HEAD rope 'funnel --self'   these scenes, and the kernels
+#   bash experiments/speed_guard.sh HEAD~1 HEAD spheres 'funnel --self'   these scenes
 #
-# BASE and HEAD are commits as git names them; what is not committed is not measured. A scene or a kernel that BASE does not have
+# BASE and HEAD are commits as git names them; what is not committed is not measured. A scene that BASE does not have
 # is skipped and named. Settings are variables of the environment:
 #   TURNS=5         how often both are measured; they start alternately
 #   REPEAT=5        runs of a scene in a turn, of which the fastest counts
 #   THREADS=N       cores of boxes; default all there are. Where others use them, 1 is disturbed far less
 #   PERCENT=10      a row is a warning if the median ratio is that much above 1,
-#   MS=0.3          and the fastest time is also that many milliseconds longer on a scene,
-#   KERNEL_NS=5     or that many nanoseconds longer in a kernel
+#   MS=0.3          and the fastest time is also that many milliseconds longer
 # Exit status: 0 no warning; 1 a warning: slower, or HEAD fails where BASE does not, or finds another number of pairs; 2 a commit
 # could not be built or measured. Machines differ and are noisy: measure a warning again, with more turns, before it is believed.
 set -euo pipefail
@@ -33,7 +31,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 cd "$farcull_root"
 
 turns=${TURNS:-5} repeat=${REPEAT:-5} threads=${THREADS:-$(nproc)}
-percent=${PERCENT:-10} ms=${MS:-0.3} kernel_ns=${KERNEL_NS:-5}
+percent=${PERCENT:-10} ms=${MS:-0.3}
 sides=(base head)
 declare -A commit tree
 for side in "${sides[@]}"; do
@@ -46,7 +44,7 @@ for side in "${sides[@]}"; do
 done
 scenes=("$@")
 if ((${#scenes[@]} == 0)); then
-  scenes=(crumpled rope spheres fans funnel two-bunnies armadillo-elephant 'mannequin-devil --self' field:100000 needles-crossed)
+  scenes=(crumpled spheres cad-cut funnel two-bunnies armadillo-elephant 'mannequin-devil --self' field:100000 needles-crossed)
 fi
 out=$farcull_root/build/speed-guard
 times=$out/times.tsv       # a measured time per line: row, side, turn, nanoseconds
@@ -63,8 +61,6 @@ clone_and_build() {
   echo "speed-guard: $1 is ${commit[$1]}: $(git -C "$at" log -1 --format=%s)"
   farcull_root=$at
   farcull_build farcull
-  # There is no such target where Google Benchmark is missing.
-  if grep -qs farcull_kernels_bench "$at"/build/{build.ninja,Makefile}; then farcull_build farcull_kernels_bench; fi
 }
 
 # run_scene SIDE SCENE REPEAT: prints the fastest run in nanoseconds and the number of pairs. The scene may be followed by options.
@@ -95,26 +91,15 @@ known() {
   fi
 }
 
-# measure_scene SCENE SIDE TURN and measure_kernels SIDE TURN append to $times.
+# measure_scene SCENE SIDE TURN appends to $times.
 measure_scene() {
   local ns pairs
   read -r ns pairs < <(run_scene "$2" "$1" "$repeat") || return
   printf '%s\t%s\t%s\t%s\n' "$1" "$2" "$3" "$ns" >>"$times"
 }
-measure_kernels() {
-  [[ -x ${tree[$1]}/build/farcull_kernels_bench ]] || return 0
-  # (Its output as CSV ends at the first kernel with other counters.)
-  "${tree[$1]}/build/farcull_kernels_bench" --benchmark_min_time=0.1 --benchmark_format=json 2>/dev/null |
-    awk -F'"' -v side="$1" -v turn="$2" '
-      BEGIN { unit["ns"] = 1; unit["us"] = 1e3; unit["ms"] = 1e6; unit["s"] = 1e9 }
-      $2 == "name" { name = $4 }
-      $2 == "cpu_time" { split($3, value, /[:,]/) }
-      $2 == "time_unit" { printf "kernel %s\t%s\t%s\t%.3f\n", name, side, turn, value[2] * unit[$4] }' >>"$times"
-}
-
 # Prints a line per row of $times, and at the end those that are slower. Fails if there is one.
 report() {
-  awk -F'\t' -v percent="$percent" -v ms="$ms" -v kernel_ns="$kernel_ns" '
+  awk -F'\t' -v percent="$percent" -v ms="$ms" '
     function median(list, n,   i, j, x) {  # sorts the list
       for (i = 2; i <= n; i++) {
         x = list[i]
@@ -123,7 +108,7 @@ report() {
       }
       return n % 2 ? list[(n + 1) / 2] : (list[n / 2] + list[n / 2 + 1]) / 2
     }
-    function in_units(ns) { return ns < 1e4 ? sprintf("%.1f ns", ns) : ns < 1e7 ? sprintf("%.3f ms", ns / 1e6) : sprintf("%.1f ms", ns / 1e6) }
+    function in_units(ns) { return ns < 1e7 ? sprintf("%.3f ms", ns / 1e6) : sprintf("%.1f ms", ns / 1e6) }
     { if (!($1 in seen)) { seen[$1]; rows[++count] = $1 } time[$1, $2, $3] = $4; if ($3 > turns) turns = $3 }
     END {
       printf "%-36s %12s %12s %8s %16s\n", "row", "BASE", "HEAD", "ratio", "least - most"
@@ -137,8 +122,7 @@ report() {
         if (n == 0) { skipped = skipped "skipped: " rows[r] ": one of the two does not have it\n"; continue }
         middle = median(ratio, n); median(base, n); median(head, n)
         old = base[1]; new = head[1]
-        least = rows[r] ~ /^kernel / ? kernel_ns : ms * 1e6
-        slower = middle > 1 + percent / 100 && new - old > least
+        slower = middle > 1 + percent / 100 && new - old > ms * 1e6
         warnings += slower
         printf "%-36s %12s %12s %8.3f %7.3f - %6.3f%s\n", rows[r], in_units(old), in_units(new), middle, ratio[1], ratio[n], slower ? "  WARNING: slower" : ""
       }
@@ -162,7 +146,6 @@ done
 for ((turn = 1; turn <= turns; turn++)); do
   order=(base head)
   if ((turn % 2 == 0)); then order=(head base); fi
-  for side in "${order[@]}"; do measure_kernels "$side" "$turn" || exit 2; done
   for scene in "${measured[@]}"; do
     for side in "${order[@]}"; do measure_scene "$scene" "$side" "$turn" || exit 2; done
   done

@@ -76,7 +76,7 @@ if [[ ${1-} == --sanitize ]]; then
   shift
 fi
 
-# Tests labelled "rare" need 300 MB of packages: a browser, TeX and other shells. CI and campaigns run them, and who names tests.
+# Tests labelled "rare" need 300 MB of packages: a browser and TeX. CI and campaigns run them, and who names tests.
 left_out=()
 farcull_packages+=("${farcull_test_packages[@]}")
 if [[ ${CI-} || ${1-} == --long ]]; then

@@ -25,7 +25,7 @@ std::string peers_text() {
   std::string with = "Peers here:";
   std::string without;
   std::size_t column = with.size();
-  for (const Peer& peer : all_peers(usable_cores())) {
+  for (const Peer& peer : all_peers()) {
     if (!peer.missing.empty()) {
       without += "Left out: " + peer.name + ": " + peer.missing + ".\n";
       continue;
@@ -74,14 +74,14 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
                 "times of distance queries instead: objects, every two\nobjects; or nearest, each "
                 "with "
                 "the nearest other one.\nPeers are then "
-                "fcl-double,fcl-float,cgal-aabb,embree-points"},
+                "fcl-double,fcl-float,cgal-aabb"},
                {"--within", &within_, "DISTANCE",
                 "with --distances: farther ones need not be found;\nin world units, default all"},
                {"--json", &outputs_.json, "FILE", kJsonHelp}},
       [] {
         return "Examples:\n"
                "  farcull bench two-bunnies\n"
-               "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
+               "  farcull bench needles-layers --threads 1 --peers fcl-obb,embree-low\n"
                "  farcull bench field:1000000 --peers none --methods boxes --json field.json\n"
                "  farcull bench bunnies-far-apart --distances objects\n\n" +
                peers_text() +

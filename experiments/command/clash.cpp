@@ -139,12 +139,7 @@ SceneArguments ClashCommand::parts() const {
         return mesh_stem(file) == mesh_stem(other) &&
                fs::path(file).parent_path() == fs::path(other).parent_path();
       };
-      const bool packed = lower_extension(other).ends_with(".gz");
-      std::optional<Error> foreign =
-          packed ? foreign_name(other.substr(0, other.size() - 3)) : foreign_mesh(other);
-      if (foreign && packed)
-        foreign = Error(other, foreign->reason,
-                        "unpack it: gzip -dk " + quoted(other) + ", then " + foreign->remedy);
+      const std::optional<Error> foreign = foreign_mesh(other);
       if (foreign && std::ranges::none_of(files, same)) throw *foreign;
     }
     out.names.insert(out.names.end(), files.begin(), files.end());

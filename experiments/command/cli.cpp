@@ -1,4 +1,4 @@
-// Declares the commands, parses the command line and dispatches, and prints help and the manual.
+// Declares the commands, parses the command line and dispatches, and prints help.
 // Each other command has a file of its own.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,9 +25,7 @@
 
 namespace farcull {
 
-// `farcull help` prints the text of --help, or a file of docs/help, which is compiled in. `farcull
-// man` prints the same texts as a manual page in the language of man(7). It keeps line breaks, so
-// examples and lists keep their form.
+// `farcull help` prints the text of --help, or a file of docs/help, which is compiled in.
 
 namespace {
 
@@ -93,145 +91,9 @@ class HelpCommand {
   std::vector<std::string> words_;
 };
 
-// Escapes text so that roff prints it unchanged, also at the start of a line.
-std::string roff(const std::string& text) {
-  std::string out;
-  bool begins = true;
-  for (const char c : text) {
-    if (begins && (c == '.' || c == '\'')) out += "\\&";
-    begins = c == '\n';
-    switch (c) {
-      case '\\':
-        out += "\\e";
-        break;
-      case '-':
-        out += "\\-";
-        break;
-      case '\'':
-        out += "\\(aq";
-        break;
-      case '`':
-        out += "\\(ga";
-        break;
-      case '^':
-        out += "\\(ha";
-        break;
-      case '~':
-        out += "\\(ti";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
-std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR"; }
-
-// Text that roff fills to the width of the page.
-std::string filled(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return roff(text) + "\n";
-}
-
-// Text whose line breaks roff keeps.
-std::string lines(const std::string& text) {
-  std::string out = ".PP\n.nf\n";
-  const std::size_t end = text.find_last_not_of('\n');
-  bool empty = false;
-  std::string line;
-  for (const char c : text.substr(0, end == std::string::npos ? 0 : end + 1) + "\n") {
-    if (c != '\n') {
-      line += c;
-      continue;
-    }
-    // An empty line would be a break in roff, so it becomes `.sp`.
-    if (line.empty()) {
-      empty = true;
-    } else {
-      out += (empty ? ".sp\n" : "") + roff(line) + "\n";
-      empty = false;
-    }
-    line.clear();
-  }
-  return out + ".fi\n";
-}
-
-std::string tag(const DeclaredOption& option) {
-  std::string out;
-  for (const std::string& name : option.names) out += (out.empty() ? "" : ", ") + bold(name);
-  if (option.names.empty()) return italic(option.type) + (option.many ? " ..." : "");
-  if (option.flag) return out;
-  return out + (option.bare ? " [" + italic(option.type) + "]" : " " + italic(option.type));
-}
-
-std::string usage(const DeclaredCommand& command) {
-  std::string out = bold(command.name);
-  if (!command.options.empty()) out += " [" + italic("options") + "]";
-  for (const DeclaredOption& argument : command.arguments) {
-    const std::string name = italic(argument.type) + (argument.many ? " ..." : "");
-    out += argument.required ? " " + name : " [" + name + "]";
-  }
-  if (!command.commands.empty()) out += " [" + italic("command") + "]";
-  return out + "\n";
-}
-
-void add(const DeclaredCommand& command, std::string& page) {
-  page +=
-      ".SS " + roff(command.name) + "\n" + filled(command.title + ".") + ".PP\n" + usage(command);
-  for (const auto* list : {&command.arguments, &command.options}) {
-    for (const DeclaredOption& option : *list)
-      page += ".TP\n" + tag(option) + "\n" + filled(option.help);
-  }
-  if (!command.footer.empty()) page += lines(command.footer);
-  for (const DeclaredCommand& below : command.commands) add(below, page);
-}
-
-// Lists every command with its options and the end of its help.
-std::string manual_page(const DeclaredCommand& program, const std::string& version) {
-  std::string page = fmt::format(
-      ".\\\" Made by `farcull man`.\n"
-      ".TH FARCULL 1 \"\" \"{}\" \"User commands\"\n"
-      ".SH NAME\nfarcull \\- collision culling that never misses\n"
-      ".SH SYNOPSIS\n{} {} [{}]\n"
-      ".SH DESCRIPTION\n",
-      roff(version), bold("farcull"), italic("command"), italic("options"));
-  page += filled(
-      "farcull finds the triangles that collide. It culls by drawing triangles or by comparing "
-      "boxes, and never culls a pair that intersects. A scene is one or more meshes, a scene file, "
-      "or the name of a "
-      "built-in scene.");
-  for (const DeclaredOption& option : program.options)
-    page += ".TP\n" + tag(option) + "\n" + filled(option.help);
-  page += lines(program.footer) + ".SH COMMANDS\n";
-  for (const DeclaredCommand& command : program.commands) add(command, page);
-  return page;
-}
-
-class ManualCommand {
- public:
-  CLI::App* add_to(CLI::App& app) {
-    program_ = &app;
-    return add_command(app, "man", "the manual page, farcull(1)", {},
-                       "Examples:\n"
-                       "  farcull man | man -l -\n"
-                       "  farcull man >farcull.1");
-  }
-  int run() const {
-    write_help(manual_page(declared(*program_), kVersion));
-    return 0;
-  }
-
- private:
-  const CLI::App* program_ = nullptr;
-};
-
 }  // namespace
 
 Command add_help(CLI::App& app) { return declare<HelpCommand>(app); }
-
-Command add_manual(CLI::App& app) { return declare<ManualCommand>(app); }
 
 // ---- the command line ----
 
@@ -341,7 +203,7 @@ int dispatch(int argc, char** argv) {
   for (Command (*const add)(CLI::App&) :
        {add_run, add_verify, add_plan, add_compare, add_distance, add_clash, add_bench, add_doctor,
         add_check, add_experiment, add_merge, add_picture, add_report, add_scenes, add_suite,
-        add_help, add_completion, add_manual})
+        add_help, add_completion})
     commands.push_back(add(app));
 
   try {
@@ -372,8 +234,7 @@ int command_line(int argc, char** argv) {
   // environment may be changed.
   ::setenv("LP_NUM_THREADS", "0", 0);
   try {
-    // For this thread; core/base/parallel.h sets the threads that it starts. oneTBB's threads copy
-    // the environment of the thread that first uses it, which is this one.
+    // For this thread; core/base/parallel.h sets the threads that it starts.
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {

@@ -40,17 +40,11 @@ namespace {
 DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
   out.name = parents.empty() ? app.get_name() : parents + " " + app.get_name();
-  out.title = app.get_description();
-  out.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options()) {
     DeclaredOption one;
     for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) one.names.push_back("--" + name);
     one.flag = !option->get_positional() && option->get_items_expected_max() == 0;
-    one.bare = !one.flag && option->get_items_expected_min() == 0;
-    one.many = option->get_items_expected_max() > 1;
-    one.required = option->get_required();
-    one.help = option->get_description();
     one.type = option->get_positional() ? option->get_name(true)
                : one.flag               ? ""
                                         : option->get_type_name();
@@ -75,14 +69,6 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
           using Value = std::decay_t<decltype(*value)>;
           if constexpr (std::is_same_v<Value, bool>) {
             option = command->add_flag(row.name, *value, row.help)->disable_flag_override();
-          } else if constexpr (std::is_same_v<Value, BareOption>) {
-            option = command->add_option_function<std::vector<std::string>>(
-                row.name,
-                [value](const std::vector<std::string>& words) {
-                  *value = {true, words.empty() ? "" : words.front()};
-                },
-                row.help);
-            option->expected(0, 1);
           } else {
             option = command->add_option(row.name, *value, row.help);
           }

@@ -38,20 +38,13 @@ int command_line(int argc, char** argv);
 
 using Text = std::optional<std::string>;  // value of an option; empty if it was not given
 
-/// An option whose value may be left out.
-struct BareOption {
-  bool given = false;
-  std::string value;
-};
-
 enum class Need : std::uint8_t { may, must };
 
 /// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
 /// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
   const char* name;
-  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*, BareOption*>
-      value;
+  std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
   Need need = Need::may;
@@ -78,17 +71,11 @@ bool given(const CLI::App& command);
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
   std::string type;  // stands for the value; empty for a flag. The name of an argument
-  std::string help;  // lines as in the help
   bool flag = false;
-  bool bare = false;      // its value may be left out
-  bool many = false;      // an argument that may be given several times
-  bool required = false;  // an argument that has to be given
 };
-/// A declared command with all its subcommands; completion scripts and the manual are made from it.
+/// A declared command with all its subcommands; completion is made from it.
 struct DeclaredCommand {
   std::string name;  // with the names of its parents, as in "farcull experiment all"
-  std::string title;
-  std::string footer;
   std::vector<DeclaredOption> options;    // in the order of the help
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
@@ -143,7 +130,6 @@ Command add_scenes(CLI::App& app);
 Command add_suite(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
-Command add_manual(CLI::App& app);
 
 // The commands of `farcull experiment`. lemma exits with 1 if it finds a violation at the budget
 // radius or more.
@@ -359,7 +345,6 @@ class PictureCommand {
   SceneArguments scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
       up_, size_, output_, html_, resolutions_;
-  BareOption depth_view_;
   bool self_ = false, zoom_ = false;
 };
 

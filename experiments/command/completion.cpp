@@ -1,6 +1,6 @@
 // A script is a table and a function that reads it. The table has a line for each word of each
-// command, and a line for each option or argument with a value that says how to complete it. Each
-// shell has its own function: it finds the command among the words and skips values of options.
+// command, and a line for each option or argument with a value that says how to complete it. The
+// function finds the command among the words and skips values of options.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,12 +37,6 @@ std::vector<std::string> scene_names() {
   return out;
 }
 
-// Help as one line.
-std::string line_of(std::string help) {
-  std::replace(help.begin(), help.end(), '\n', ' ');
-  return help;
-}
-
 std::string joined(const std::vector<std::string>& words, const char* between = " ") {
   return fmt::format("{}", fmt::join(words, between));
 }
@@ -62,7 +56,7 @@ CompletedValues completed_values(const std::string& type) {
     if (type == option.type && !option.words.empty()) return {.words = option.words};
   }
   if (type == "AXIS") return {.words = {"x", "y", "z"}};
-  if (type == "SHELL") return {.words = {"bash", "zsh", "fish"}};
+  if (type == "SHELL") return {.words = {"bash"}};
   if (type == "SCENE") return {.words = scene_names(), .meshes = true};
   if (type == "NAME") return {.words = scene_names()};
   if (type == "FILE" || type == "CERTIFICATE") return {.words = {}, .files = true};
@@ -112,7 +106,7 @@ std::string table_of_values(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
     for (const DeclaredOption& option : command.options) {
-      if (option.flag || option.bare) continue;
+      if (option.flag) continue;
       std::vector<std::string> patterns;
       for (const std::string& name : option.names)
         patterns.push_back(quoted(command.name + " " + name));
@@ -123,7 +117,7 @@ std::string table_of_values(const DeclaredCommand& program) {
   return out;
 }
 
-// Two functions that bash and zsh read alike.
+// The functions that read the tables.
 std::string shared_tables(const DeclaredCommand& program) {
   return fmt::format(
       R"sh(# _farcull_words COMMAND: sets what may follow the command.
@@ -219,101 +213,10 @@ complete -F _farcull farcull
 )sh";
 }
 
-std::string zsh_script(const DeclaredCommand& program) {
-  return "#compdef farcull\n# Completion of farcull for zsh; made by `farcull completion zsh`.\n" +
-         shared_tables(program) + R"sh(
-_farcull() {
-  local current=${words[CURRENT]} candidates='' word
-  local -a plain
-  _farcull_read "${(@)words[2,CURRENT-1]}"
-  if [[ $current == -*=* ]]; then compset -P '*='; fi
-  for word in ${=candidates}; do
-    case $word in
-      @files) _files ;;
-      @folders) _files -/ ;;
-      @meshes) _files -g '*.(#i)(obj|off|ply|stl|json|obj.gz|off.gz|ply.gz|stl.gz)' ;;
-      *) plain+=("$word") ;;
-    esac
-  done
-  compadd -- "${plain[@]}"
-}
-
-if [[ $funcstack[1] == _farcull ]]; then _farcull "$@"; else compdef _farcull farcull; fi
-)sh";
-}
-
-std::string fish_script(const DeclaredCommand& program) {
-  std::string with_value;
-  visit(program, [&](const DeclaredCommand& command) {
-    std::vector<std::string> names;
-    for (const DeclaredOption& option : command.options) {
-      if (!option.flag && !option.bare)
-        names.insert(names.end(), option.names.begin(), option.names.end());
-    }
-    std::vector<std::string> commands;
-    for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
-    with_value += fmt::format("    case {}\n      set commands {}\n      set valued {}\n",
-                              quoted(command.name), joined(commands), joined(names));
-  });
-  std::string out = fmt::format(
-      R"sh(# Completion of farcull for fish; made by `farcull completion fish`.
-# Whether the words before the one to complete end in this command.
-function __farcull_at
-  set -g __farcull_command farcull
-  set -l pending 0
-  set -l commands
-  set -l valued
-  for word in (commandline -opc)[2..-1] ''
-    switch "$__farcull_command"
-{}    end
-    if test $pending -eq 1
-      set pending 0
-    else if contains -- "$word" $valued
-      set pending 1
-    else if contains -- "$word" $commands
-      set -g __farcull_command "$__farcull_command $word"
-    end
-  end
-  test "$__farcull_command" = "$argv[1]"
-end
-
-complete -c farcull -f
-)sh",
-      with_value);
-  visit(program, [&](const DeclaredCommand& command) {
-    const std::string at =
-        "complete -c farcull -n " + quoted("__farcull_at " + quoted(command.name));
-    for (const DeclaredCommand& below : command.commands) {
-      out += at + " -a " + quoted(last_word(below.name)) + " -d " + quoted(below.title) + "\n";
-    }
-    const auto values_of = [](const std::string& type) {
-      const CompletedValues values = completed_values(type);
-      std::string list = joined(values.words);
-      if (values.folders) list += " (__fish_complete_directories)";
-      if (!list.empty()) list = " -a " + farcull::quoted(list);
-      return (values.files || values.meshes ? " -F" : "") + list;
-    };
-    for (const DeclaredOption& option : command.options) {
-      out += at;
-      for (const std::string& name : option.names)
-        out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (!option.flag && !option.bare) out += " -r" + values_of(option.type);
-      out += " -d " + quoted(line_of(option.help)) + "\n";
-    }
-    for (const DeclaredOption& argument : command.arguments) {
-      const std::string values = values_of(argument.type);
-      if (!values.empty()) out += at + values + "\n";
-    }
-  });
-  return out;
-}
-
 // The script for a shell. Throws Error naming SHELL if the shell is unknown.
 std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
   if (shell == "bash") return bash_script(program);
-  if (shell == "zsh") return zsh_script(program);
-  if (shell == "fish") return fish_script(program);
-  throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash, zsh or fish");
+  throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash");
 }
 
 class CompletionCommand {
@@ -321,12 +224,10 @@ class CompletionCommand {
   CLI::App* add_to(CLI::App& app) {
     program_ = &app;
     return add_command(app, "completion", "what a shell needs to complete farcull's words",
-                       {{"SHELL", &shell_, "", "bash, zsh or fish", Need::must}},
+                       {{"SHELL", &shell_, "", "bash", Need::must}},
                        "Examples:\n"
-                       "  source <(farcull completion bash)\n"
-                       "  farcull completion zsh >~/.zfunc/_farcull\n"
-                       "  farcull completion fish >~/.config/fish/completions/farcull.fish\n\n"
-                       "`cmake --install` puts all three in place.");
+                       "  source <(farcull completion bash)\n\n"
+                       "`cmake --install` puts it in place.");
   }
   int run() const {
     write_help(completion_script(declared(*program_), shell_));

@@ -228,10 +228,8 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
                 "the triangles of one object as well, those that share\n"
                 "a vertex position left out"},
                ignore_row(scene_.ignore),
-               {"--inside", &inside_, "yes|parity|no",
-                "whether an object lies inside another: by winding\n"
-                "numbers (yes, the default), by the parity of\n"
-                "crossings, or not at all"},
+               {"--inside", &inside_, "yes|no",
+                "whether an object lies inside another, by winding\nnumbers; default yes"},
                {"--threads", &threads_, "N", "of the CPU; default as many as there are cores"},
                {"--verify", &verify_, "",
                 "check each answer by other code, and of each pair that\nit is no nearer than the "
@@ -264,15 +262,10 @@ DistanceOptions DistanceCommand::parse() const {
   if (self_ && out.pairs == DistancePairs::nearest)
     throw Error("--self", "has no meaning with --pairs nearest: no object is its own neighbour",
                 "leave it out, or use --pairs objects or all");
-  const std::size_t inside =
-      word_of("--inside", inside_, {"yes", "no", "parity"}, "no choice", "give yes, parity or no");
-  out.inside = inside != 1;
-  out.parity = inside == 2;
+  out.inside = word_of("--inside", inside_, {"yes", "no"}, "no choice", "give yes or no") == 0;
   if (inside_ && out.inside && out.pairs == DistancePairs::all)
     throw Error("--inside", *inside_ + " has no meaning with --pairs all",
                 "leave it out, or use --pairs objects or nearest");
-  if (out.parity && verify_)
-    throw Error("--inside", "parity is not what --verify decides by", "leave one of them out");
   out.threads = threads();
   out.verify = verify_;
   return out;

@@ -1,10 +1,8 @@
-// Runs the lemma experiment at one radius or along a sweep; prints a table, writes JSON and CSV.
+// Runs the lemma experiment at one radius; prints a table, writes JSON.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <string_view>
 
 #include "commit.h"
 #include "core/base/error.h"
@@ -27,44 +25,14 @@ using Json = nlohmann::ordered_json;
 struct LemmaArguments {
   std::uint64_t points = 100000;
   std::string radius = "budget";  // budget, published or a factor
-  std::string sweep;              // FROM:TO:STEP of the factor; then `radius` is not used
   // native, gl or worst; empty: the canvas of `device`, or, without a device, gl if hardware
   // answers and passes its probes, else native.
   std::string canvas;
   std::string offset = "obb";  // obb or exact
   std::string device;
   std::uint64_t seed = 1;
-  Outputs outputs = {};  // csv: for a sweep
+  Outputs outputs = {};
 };
-
-struct Sweep {
-  double from, to, step;
-  int count() const { return static_cast<int>(std::floor((to - from) / step + 1e-9)) + 1; }
-  double at(int i) const { return from + i * step; }
-};
-
-Sweep parse_sweep(const std::string& text) {
-  double values[3] = {};
-  std::string_view rest = text;
-  for (int i = 0; i < 3; ++i) {
-    const std::optional<double> value = take_number<double>(rest);
-    const bool last = i == 2;
-    if (!value || !std::isfinite(*value) || (last ? !rest.empty() : !rest.starts_with(':'))) {
-      throw Error("--sweep", "'" + text + "' is no sweep",
-                  "give FROM:TO:STEP of the radius factor, such as 0.5:1.1:0.01");
-    }
-    values[i] = *value;
-    if (!last) rest.remove_prefix(1);
-  }
-  const Sweep sweep{values[0], values[1], values[2]};
-  if (sweep.from < 0 || sweep.to < sweep.from || sweep.step <= 0 ||
-      (sweep.to - sweep.from) / sweep.step > 100000) {
-    throw Error("--sweep",
-                "'" + text + "' does not ascend from 0 or more in at most 100000 positive steps",
-                "give FROM:TO:STEP, such as 0.5:1.1:0.01");
-  }
-  return sweep;
-}
 
 std::string radius_name(const RadiusRule& rule) {
   return rule.published ? "published" : fmt::format("{}", rule.factor);
@@ -110,31 +78,6 @@ std::string result_table(const Result& result) {
   return out;
 }
 
-std::string sweep_csv(const std::vector<Result>& results) {
-  std::string out = fmt::format("factor,generator,{}\n", fmt::join(field_names<WrittenRow>(), ","));
-  for (const Result& result : results) {
-    std::vector<LemmaRow> rows = result.rows;
-    rows.push_back(lemma_total(rows));
-    for (const LemmaRow& row : rows) {
-      out += fmt::format("{},{},{}\n", result.rule.factor, row.generator, csv_of(written(row)));
-    }
-  }
-  return out;
-}
-
-// The smallest factor of the sweep such that neither it nor a later one has a violation.
-std::optional<double> smallest_safe(const std::vector<Result>& results) {
-  std::optional<double> out;
-  for (const Result& result : results) {
-    if (lemma_total(result.rows).violations() > 0) {
-      out.reset();
-    } else if (!out) {
-      out = result.rule.factor;
-    }
-  }
-  return out;
-}
-
 void validate(const LemmaArguments& arguments) {
   if (arguments.points < 1 || arguments.points > 1'000'000'000'000) {
     throw Error("--points", fmt::format("{} is no number of points", arguments.points),
@@ -148,19 +91,6 @@ void validate(const LemmaArguments& arguments) {
                 "leave --device out, or use --canvas gl");
   }
   word_of("--offset", arguments.offset, {"obb", "exact"}, "no offset", "give obb or exact");
-  if (arguments.outputs.csv && arguments.sweep.empty()) {
-    throw Error("--csv", "there is a table to write only with --sweep",
-                "add --sweep 0.5:1.1:0.01, or use --json");
-  }
-}
-
-std::vector<RadiusRule> rules_of(const LemmaArguments& arguments) {
-  if (arguments.sweep.empty()) return {parse_radius(arguments.radius)};
-  const Sweep sweep = parse_sweep(arguments.sweep);
-  std::vector<RadiusRule> out;
-  for (int i = 0; i < sweep.count(); ++i)
-    out.push_back({.published = false, .factor = sweep.at(i)});
-  return out;
 }
 
 // A canvas with the session that it needs; the worst canvas needs none.
@@ -204,7 +134,7 @@ Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& 
 }
 
 Json to_json(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
-             const std::vector<Result>& results) {
+             const Result& result) {
   Json device;
   if (const GlInfo* info = on.device())
     device = {{"vendor", info->vendor}, {"renderer", info->renderer}, {"version", info->version}};
@@ -218,42 +148,19 @@ Json to_json(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
               {"seed", arguments.seed},
               {"seconds", seconds},
               {"commit", FARCULL_COMMIT}};
-  if (arguments.sweep.empty()) {
-    out.update(result_json(results.front()));
-  } else {
-    out["sweep"] = Json::array();
-    for (const Result& result : results) out["sweep"].push_back(result_json(result));
-    out["smallest_factor_without_violation"] = json_of(smallest_safe(results));
-  }
+  out.update(result_json(result));
   return out;
 }
 
-std::string sweep_table(const std::vector<Result>& results) {
-  std::string text = fmt::format("{:>10} {:>12} {:>12} {:>12} {:>12}\n", "factor", "points",
-                                 "no sample", "not bounding", "violations");
-  for (const Result& result : results) {
-    const LemmaRow total = lemma_total(result.rows);
-    text += fmt::format("{:>10.6g} {:>12} {:>12} {:>12} {:>12}\n", result.rule.factor, total.points,
-                        total.no_sample, total.not_bounding, total.violations());
-  }
-  const std::optional<double> safe = smallest_safe(results);
-  if (!safe) return text + "\nthe last factor still has violations\n";
-  return text +
-         fmt::format("\nno violation from the factor {:.6g} on: the budget's slack is {:.4g} %\n",
-                     *safe, 100 * (1 - *safe));
-}
-
 std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
-                    const std::vector<Result>& results) {
+                    const Result& result) {
   const std::string where = on.name == "gl"       ? on.device()->renderer
                             : on.name == "native" ? "lanes of " + lane_target()
                                                   : "no device";
   const std::string heading =
       fmt::format("canvas {}, offset {}, {}\n\n", on.name, arguments.offset, where);
-  const std::string took = fmt::format("\ntook {:.1f} s\n", seconds);
-  if (!arguments.sweep.empty()) return heading + sweep_table(results) + took;
-  return heading + "radius " + radius_name(results.front().rule) + "\n" +
-         result_table(results.front()) + took;
+  return heading + "radius " + radius_name(result.rule) + "\n" + result_table(result) +
+         fmt::format("\ntook {:.1f} s\n", seconds);
 }
 
 class LemmaCommand {
@@ -272,24 +179,21 @@ CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
       {{"--points", &arguments_.points, "N", "points in all; default 100000"},
        {"--radius", &arguments_.radius, "RADIUS",
         "budget, published, or a factor on the budget;\ndefault budget"},
-       {"--sweep", &arguments_.sweep, "SWEEP", "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01"},
        {"--canvas", &arguments_.canvas, "native|gl|worst",
         "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
         "allow); default gl where\n--device is given or hardware answers, else native"},
        {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
        {"--seed", &arguments_.seed, "N", "of the points; default 1"},
        {"--device", &device_, "DEVICE", kDeviceHelp},
-       {"--json", &arguments_.outputs.json, "FILE", kJsonHelp},
-       {"--csv", &arguments_.outputs.csv, "FILE",
-        "write the sweep as CSV to this file; - for standard\noutput"}},
+       {"--json", &arguments_.outputs.json, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull experiment lemma --points 1000000 --radius budget\n"
       "  farcull experiment lemma --radius published\n"
-      "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
+      "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
       "Exit status 1: a violation at the budget radius or beyond.");
 }
 
-// Prints the rows; writes --json and --csv.
+// Prints the rows; writes --json.
 int LemmaCommand::run() {
   LemmaArguments& arguments = arguments_;
   const Outputs outputs = arguments.outputs = checked(arguments.outputs, {});
@@ -297,23 +201,17 @@ int LemmaCommand::run() {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   validate(arguments);
-  const std::vector<RadiusRule> rules = rules_of(arguments);
+  const RadiusRule rule = parse_radius(arguments.radius);
   const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
   LemmaCanvas on(arguments, fattener);
   const Stopwatch watch;
-  std::vector<Result> results;
-  bool broken = false;
-  for (const RadiusRule& rule : rules) {
-    results.push_back(measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress));
-    const bool promises = !rule.published && rule.factor >= 1;
-    broken = broken || (promises && lemma_total(results.back().rows).violations() > 0);
-  }
+  const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
+  const bool promises = !rule.published && rule.factor >= 1;
   const double seconds = watch.ms() / 1000;
   terminal.clear();
-  if (outputs.json) write_json(to_json(arguments, on, seconds, results), *outputs.json);
-  if (outputs.csv) write_output(*outputs.csv, sweep_csv(results));
-  if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, results));
-  return broken ? 1 : 0;
+  if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, result));
+  return promises && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
 }
 
 }  // namespace

@@ -107,18 +107,12 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
                ignore_row(scene_.ignore),
                {"--frame", &frame_, "F", "of a scene that moves"},
                {"--frames", &frames_, "N|A:B",
-                "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and "
-                "without "
-                "--frame: the\nframes that the reader steps through"},
+                "of the motion that F is one of; default 30 of a\nbuilt-in scene"},
                {"--view", &view_, "DIR",
                 "direction that the picture looks along, as in -z or\n-1:-1:-2; default "
                 "-0.45:-0.35:-0.82"},
                {"--up", &up_, "AXIS", "upwards in the picture; default y"},
                {"--zoom", &zoom_, "", "show only where something collides"},
-               {"--view-depth", &depth_view_, "[VIEW]",
-                "instead: the depth that the method stores in one of\nits "
-                "views (default z; --view-depth=-z for -z), and\n"
-                "what that view culls"},
                {"--html", &html_, "FILE",
                 "a page to look into the answers: one file that opens in\nany browser and needs no "
                 "network"},
@@ -132,10 +126,9 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
       "  farcull picture two-bunnies --compare cullide:128,cullide:512,far:128 --zoom -o c.png\n"
       "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
-      "  farcull picture two-tori --method far --resolution 64 --view-depth x -o depth.png\n"
       "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n"
       "  farcull picture two-bunnies --compare cullide,far --html bunnies.html\n"
-      "  farcull picture two-spheres --frames 20 --html motion.html\n\n"
+      "\n"
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
@@ -157,8 +150,6 @@ PictureArguments PictureCommand::arguments() const {
   out.zoom = zoom_;
   if (frame_) out.frame = parse_frame(*frame_);
   if (frames_) out.frames = parse_frames(*frames_);
-  // The flat picture of a page of many frames shows the first one.
-  if (html_ && out.frames && !out.frame) out.frame = out.frames->first;
   if (size_) parse_size(*size_, out.width, out.height);
   for (const auto& [option, text] : {std::pair("--view", view_), std::pair("--up", up_)}) {
     if (text && text->empty())
@@ -166,7 +157,6 @@ PictureArguments PictureCommand::arguments() const {
   }
   out.view = view_.value_or("");
   out.up = up_.value_or("");
-  if (depth_view_.given) out.depth_view = depth_view_.value.empty() ? "z" : depth_view_.value;
 
   RunOptions usual = usual_options();
   if (method_ && compare_)
@@ -206,11 +196,8 @@ PictureArguments PictureCommand::arguments() const {
 }
 
 PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
-  if (picture.depth_view)
-    throw Error("--html", "a page shows no stored depth", "leave --view-depth out");
   PageArguments out;
   out.picture = picture;
-  if (frames_ && !frame_) out.frames = picture.frames;
   std::vector<int> resolutions(kPageResolutions.begin(), kPageResolutions.end());
   if (resolutions_) {
     resolutions.clear();
@@ -261,18 +248,12 @@ int PictureCommand::run() const {
   terminal.clear();
   int status = kExitDone;
   std::string lines;
-  const auto tell = [&](const PanelResult& panel, const std::string& at) {
-    lines += panel.title + at + ": " + panel.headline + "\n";
-    if (!panel.broken) return;
+  for (const PanelResult& panel : html_ ? page.steps : result.panels) {
+    lines += panel.title + ": " + panel.headline + "\n";
+    if (!panel.broken) continue;
     status = kExitBroken;
     complain_broken(
-        fmt::format("{}{} culled pairs that collide: {}", panel.title, at, grouped(panel.missed)));
-  };
-  if (html_) {
-    for (const PageStep& step : page.steps)
-      tell(step.result, step.frame ? fmt::format(", frame {}", *step.frame) : "");
-  } else {
-    for (const PanelResult& panel : result.panels) tell(panel, "");
+        fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
   }
   if (outputs.picture != "-") {
     lines += result.not_asked;

@@ -81,8 +81,7 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
       "Examples:\n"
       "  farcull plan two-bunnies\n"
       "  farcull plan two-bunnies --method far --offset exact\n"
-      "  farcull plan bunnies-far-apart --json -\n"
-      "  farcull plan field:3000000 --tiles 4\n\n"
+      "  farcull plan bunnies-far-apart --json -\n\n"
       "The same scene and options give the same plan. farcull run --full leaves nothing out."}}};
 
 namespace fs = std::filesystem;
@@ -139,7 +138,6 @@ class RunCommand {
   // Throws Error if an option is impossible tile by tile.
   void refuse_with_tiles(const RunOptions& options) const;
   int run_tile(const RunOptions& options) const;
-  int plan_tiles(const RunOptions& options) const;
   int plan(const RunOptions& options) const;
   int run_once(const RunOptions& options, const Outputs& outputs) const;
   int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
@@ -162,12 +160,7 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
                      examples);
 }
 
-Rows RunCommand::plan_rows() {
-  return {{"--tiles", &tiles_, "N",
-           "where run --tiles K/N cuts the scene, how many\ntriangles each tile has and about "
-           "how much memory it\ntakes"},
-          {"--json", &outputs_.json, "FILE", kJsonHelp}};
-}
+Rows RunCommand::plan_rows() { return {{"--json", &outputs_.json, "FILE", kJsonHelp}}; }
 
 Rows RunCommand::output_rows() {
   Rows rows = {{"--frames", &frames_, "N|A:B",
@@ -294,7 +287,7 @@ std::string RunCommand::verdict_line(const Accounting& accounting) const {
 int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_.names);
-  if (kind_ == Kind::plan) return tiles_ ? plan_tiles(options) : plan(options);
+  if (kind_ == Kind::plan) return plan(options);
   if (tiles_) return run_tile(options);
   refuse_outputs();
   columns();
@@ -411,7 +404,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   return kExitBroken;
 }
 
-// `farcull run --tiles K/N` and `farcull plan --tiles N`.
+// `farcull run --tiles K/N`.
 
 SceneSource RunCommand::source() const {
   return [this](const TakePart& take) {
@@ -474,27 +467,6 @@ int RunCommand::run_tile(const RunOptions& options) const {
   if (!broken(tile.record, false)) return kExitDone;
   complain_broken(missed(tile.record));
   return kExitBroken;
-}
-
-int RunCommand::plan_tiles(const RunOptions& options) const {
-  const std::size_t tiles = parse_tiles(*tiles_);
-  refuse_with_tiles(options);
-  const Outputs outputs = checked(outputs_, read_files());
-  TerminalProgress terminal;
-  if (const Progress progress = terminal.callback()) progress("reading the scene");
-  const Census census = take_census(source(), options.clearance, leaves_out());
-  std::vector<ObjectPair> ignored = census.ignored;
-  if (leaves_out()) {
-    const std::vector<ObjectPair> more = left_out(names_of(census));
-    ignored.insert(ignored.end(), more.begin(), more.end());
-  }
-  require_asked(census, in_order(std::move(ignored)));
-  const Cuts cuts = choose_cuts(census, tiles);
-  const std::vector<TileCount> counts = count_tiles(source(), census, cuts);
-  terminal.clear();
-  if (outputs.json) write_json(tiles_json(census, cuts, counts), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", tiles_table(census, cuts, counts));
-  return kExitDone;
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class ScenesCommand {
   void list(const Outputs& outputs) const;
   void write() const;
 
-  Text name_, folder_, frames_;
+  Text name_, folder_;
   Outputs outputs_;
 };
 
@@ -84,15 +84,11 @@ CLI::App* ScenesCommand::add_to(CLI::App& app) {
        {"--write", &folder_, "DIR",
         "write the scene as meshes, one an object, and\nscene.json into this folder, "
         "which is made if its\nparent is there; files of these names are replaced"},
-       {"--frames", &frames_, "N|A:B",
-        "with --write: N frames (0 to N-1) or those numbered\nA to B of a scene that "
-        "moves, for\nfarcull run DIR/scene.json --frames N|A:B"},
        {"--json", &outputs_.json, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull scenes\n"
       "  farcull run crowd@ground\n"
-      "  farcull scenes crowd:3000:0.2 --write crowd\n"
-      "  farcull scenes tree-leaves --write leaves --frames 60");
+      "  farcull scenes crowd:3000:0.2 --write crowd");
 }
 
 int ScenesCommand::run() const {
@@ -100,10 +96,6 @@ int ScenesCommand::run() const {
     if (folder_) {
       throw Error("--write", "no scene is named",
                   "name one, as in farcull scenes two-spheres --write DIR");
-    }
-    if (frames_) {
-      throw Error("--frames", "nothing is written",
-                  "give a scene and --write DIR, or see farcull run --frames");
     }
     list(checked(outputs_, {}));
     return 0;
@@ -145,25 +137,9 @@ void ScenesCommand::list(const Outputs& outputs) const {
 }
 
 void ScenesCommand::write() const {
-  std::optional<FrameRange> range;
-  if (frames_) range = parse_frames(*frames_);
-  TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("making the scene");
-  WrittenScene written;
-  if (range) {
-    MovingScene moving(*name_, range->last + 1);
-    const auto at = [&](long frame) -> const Scene& { return moving.at(frame); };
-    written = write_frames(at, *range, parse_scene_name(*name_).entry->topology_changes, *folder_,
-                           progress);
-  } else {
-    written = write_scene(make_builtin_scene(*name_), *folder_);
-  }
-  terminal.clear();
-  write_output("-",
-               fmt::format("{}, {}\nfarcull run {}{}\n", counted(written.files, "file", "files"),
-                           counted(written.bytes, "byte", "bytes"), written.scene_file,
-                           range ? " --frames " + *frames_ : ""));
+  const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
+  write_output("-", fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
+                                counted(written.bytes, "byte", "bytes"), written.scene_file));
 }
 
 }  // namespace

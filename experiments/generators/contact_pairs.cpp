@@ -230,7 +230,6 @@ const std::vector<PairFamily>& pair_families() {
       out.insert(out.end(), std::make_move_iterator(more.begin()),
                  std::make_move_iterator(more.end()));
     }
-    out.push_back(reported_pairs());
     return out;
   }();
   return families;

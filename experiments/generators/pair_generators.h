@@ -82,7 +82,6 @@ Frame turned_frame(RandomDraws& draws);
 
 struct PairGenerator {
   std::string name;
-  std::string description;  // one line
   DrawnPair (*make)(RandomDraws&);
 };
 
@@ -102,9 +101,6 @@ struct PairFamily {
   std::string parameter;       // the meaning of its number; "" for none
   std::vector<double> values;  // of the number; pair i has the i-th, counted cyclically
   MadePair (*make)(RandomDraws& draws, double parameter);
-  /// Comments for each of `values`, if the family is a list of cases: it then has one pair for each
-  /// value. Else empty.
-  std::vector<std::string> notes = {};
 };
 
 /// In the order of the files.
@@ -125,15 +121,12 @@ struct SuiteObject {
 /// fans, duplicates).
 struct MeshFamily {
   std::string name;
-  std::string description;  // one line
-  std::string parameter;    // the meaning of its number
-  bool self = false;        // its objects are tested against themselves too
+  bool self = false;  // its objects are tested against themselves too
   /// Makes the objects. detail: how fine they are, in a unit that each family chooses.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
-    double parameter = 0;
+    double parameter = 0;  // docs/suite.md says of each family what it is
     int detail = 0;
-    std::string note = {};  // comments on a case, with newlines between them
   };
   std::vector<Member> members;
   std::size_t small = 0;  // so many members, the first ones, are in a small suite too
@@ -153,28 +146,5 @@ std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t
 // shape_families() has random triangles, slivers, degenerate triangles and folds.
 std::vector<PairFamily> distance_families();
 std::vector<PairFamily> shape_families();
-
-/// A case that somebody reported in a public tracker, rebuilt: a pair of triangles, or objects.
-/// experiments/generators/reported.txt has them and explains the fields.
-struct ReportedCase {
-  std::string source;    // as in "OWNER/REPOSITORY#12"
-  std::string expected;  // by its reporter
-  std::string why;       // why the label is what it is
-  std::string label;     // what the table says; the suite decides its labels without it
-  MadePair pair = {};    // if there are no objects
-  bool self = false;     // the objects are tested against themselves
-  std::vector<SuiteObject> objects = {};
-};
-
-/// All cases, in the order of the table.
-const std::vector<ReportedCase>& reported_cases();
-/// Reads a table in this format. Throws std::logic_error naming the line that is malformed.
-std::vector<ReportedCase> parse_reported(std::string_view table);
-/// The family `reported` of pairs, and the families `reported` and `reported-self` of meshes.
-PairFamily reported_pairs();
-std::vector<MeshFamily> reported_meshes();
-
-/// A box of 12 triangles, oriented outwards.
-SuiteObject box_object(const Vec3& lo, const Vec3& hi);
 
 }  // namespace farcull

@@ -4,11 +4,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "core/base/fields.h"
 #include "core/canvas/canvas.h"
 #include "core/canvas/fatten.h"
 #include "core/cull/cull.h"
@@ -60,46 +58,5 @@ double lemma_radius(const RadiusRule& rule, const Budget& budget, double depth_s
 
 /// A row "all" with the sums of the counts and the maxima of the largest values of all rows.
 LemmaRow lemma_total(const std::vector<LemmaRow>& rows);
-
-// Compares the two exact oracles: verify/exact (a filter, CGAL's predicates, rational distances),
-// with which every run is compared, and the integers (verify/certificate/integer_pair), on which
-// certificates rest.
-
-/// The question about a pair.
-enum class OracleQuestion {
-  intersects,  // do the triangles share a point?
-  neighbours,  // given a common corner or two: do they share more than the shared part?
-  clearance    // are they within a clearance, which is near a distance of two corners?
-};
-std::string to_string(OracleQuestion question);
-
-struct OracleRow {
-  std::string generator;
-  OracleQuestion question = OracleQuestion::intersects;
-  std::uint64_t pairs = 0;
-  std::uint64_t intersecting = 0;   // by CGAL; the answers that are yes
-  std::uint64_t disagreements = 0;  // 0, or one of the two is wrong
-  double cgal_ns = 0;               // per pair, in one thread
-  double integer_ns = 0;
-  FARCULL_FIELDS(generator, question, pairs, intersecting, disagreements, cgal_ns, integer_ns)
-  std::string example;  // the first pair of a disagreement, a then b, in hexadecimal doubles
-};
-
-/// Called with a generator's name before its pairs; may be empty.
-using OracleProgress = std::function<void(const std::string&)>;
-
-/// Asks both oracles every question about pairs of every generator of pair_generators(), on all
-/// cores. The questions neighbours and clearance get a tenth of the pairs, rounded up, since they
-/// take longer. The pairs and the answers depend on the seed alone, not on the cores. A larger
-/// number of pairs begins with the pairs of a smaller one.
-std::vector<OracleRow> compare_oracles(std::uint64_t pairs_per_generator, std::uint64_t seed,
-                                       const OracleProgress& progress = {});
-
-/// For people.
-std::string oracles_table(const std::vector<OracleRow>& rows);
-
-/// {"seed", "pairs_per_generator", "disagreements", "generators": [...]}.
-nlohmann::ordered_json oracles_json(const std::vector<OracleRow>& rows,
-                                    std::uint64_t pairs_per_generator, std::uint64_t seed);
 
 }  // namespace farcull

@@ -20,8 +20,7 @@ file(WRITE ${doc}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) un
 
  -- ${CPACK_PACKAGE_CONTACT}  ${now}
 ")
-execute_process(COMMAND gzip -9n ${doc}/changelog ${usr}/share/man/man1/farcull.1 COMMAND_ERROR_IS_FATAL ANY)
-file(RENAME ${usr}/share/zsh/site-functions ${usr}/share/zsh/vendor-completions)
+execute_process(COMMAND gzip -9n ${doc}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
 # Debian's Python looks into this folder alone, whatever prefix the build was configured for.
 file(GLOB python ${usr}/lib/python3.*/*-packages)

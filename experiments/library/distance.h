@@ -28,8 +28,6 @@ struct DistanceFinderOptions {
   bool self = false;  // also triangles of one object, without neighbours; not with `nearest`
   std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
   bool inside = true;                   // find whether an object is inside another; not with `all`
-  bool parity = false;  // by the parity of crossings, not by winding numbers (docs/proximity.md);
-                        // not with `all`
   /// Pairs of different objects, by their numbers from 0, that are not answered; not with
   /// `nearest`.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};

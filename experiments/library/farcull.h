@@ -193,48 +193,4 @@ class Collider {
   std::unique_ptr<State> state_;
 };
 
-/// A pair that Stream finds.
-struct StreamedPair {
-  Pair pair;
-  bool neighbours = false;  // the triangles are of one object and share a vertex position
-  Contact contact;          // set if Options::contacts asks for it
-  bool operator==(const StreamedPair&) const = default;
-};
-
-/// Gives the pairs of Collider::find(), colliding neighbours included, a part at a time, in the
-/// order of Pair. For more pairs than memory holds, or to have the first pairs early.
-///
-///   Stream stream(input, options);
-///   std::vector<StreamedPair> pairs;
-///   while (stream.next(pairs)) use(pairs);
-///
-/// Memory O(triangles), whatever the number of pairs. A stream compares boxes of triangles on the
-/// cores of the CPU, so it finds every pair that collides. It is slower than a Collider if nearly
-/// all pairs are wanted. An object serves one call at a time, as a Collider does.
-class Stream {
- public:
-  /// Copies the input. Throws Error as Collider::find(); may_go_on is an error, since a loop can be
-  /// left.
-  explicit Stream(const Input& input, const Options& options = {});
-  ~Stream();
-  Stream(Stream&&) noexcept;
-  Stream& operator=(Stream&&) noexcept;
-
-  /// Replaces `pairs` by the next pairs. There may be none even before the end. Returns false at
-  /// the end, with `pairs` empty. Each call decides at most about 2^16 candidates and those of one
-  /// more triangle for each thread, so that the caller can stop between two calls. Throws
-  /// std::bad_alloc if memory runs out; each later call then throws Error.
-  bool next(std::vector<StreamedPair>& pairs);
-  /// The number of candidates that exact tests decided in the calls that have ended. Unlike the
-  /// pairs, this number may depend on the number of threads.
-  std::uint64_t decided() const;
-  /// After the end: Result::complete. If exactly as many pairs collide as the limit allows, it may
-  /// depend on the number of threads.
-  bool complete() const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
 }  // namespace farcull

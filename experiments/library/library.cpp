@@ -1,15 +1,11 @@
-// The collider, the stream and distances. Each copies its input into a scene and asks about the
+// The collider and distances. Each copies its input into a scene and asks about the
 // scene (experiments/method/run.h, experiments/method/distances.h).
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/boxes/join.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/method/asked.h"
@@ -120,98 +116,6 @@ Result Collider::find(const Input& input) {
 
 Result collide(const Input& input, const Options& options) { return Collider(options).find(input); }
 
-// The stream: makes candidates in order, a part at a time, and decides each part exactly.
-
-namespace {
-
-constexpr const char* kName = "Stream";
-constexpr std::size_t kPart = std::size_t{1} << 16;  // candidates at a time
-
-}  // namespace
-
-struct Stream::State {
-  Options options;
-  unsigned threads;
-  Scene scene;
-  std::optional<OrderedPairs> candidates;
-  std::vector<TrianglePair> part;
-  std::uint64_t decided = 0, given = 0;
-  bool complete = false;
-  bool failed = false;  // a call began and did not end, so its pairs are lost
-  std::atomic_flag used;
-
-  State(const Input& input, const Options& of)
-      : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
-    check(options);
-    if (options.may_go_on)
-      throw Error("may_go_on", "is not asked by a stream", "leave the loop to end it");
-    TakenInput taken;
-    take(input, options.self, options.self_objects, taken);
-    scene = std::move(taken.scene);
-    const std::vector<ObjectPair> ignored = ignored_of(options.ignore, scene.objects.size());
-    require_asked(scene, ignored, "ignore", "test objects against themselves (self)");
-    candidates.emplace(scene, options.clearance, ignored, true, threads);
-  }
-
-  bool next(std::vector<StreamedPair>& pairs);
-  void decide_part(std::vector<StreamedPair>& pairs);
-};
-
-bool Stream::State::next(std::vector<StreamedPair>& pairs) {
-  pairs.clear();
-  if (!failed && options.limit > 0 && given == options.limit) return false;
-  if (!failed && candidates->at_end()) {
-    complete = true;
-    return false;
-  }
-  if (std::exchange(failed, true))
-    throw Error("stream", "an earlier call failed, and its pairs are lost", "make a new stream");
-  decide_part(pairs);
-  failed = false;
-  return true;
-}
-
-void Stream::State::decide_part(std::vector<StreamedPair>& pairs) {
-  candidates->next(kPart, part);
-  const ExactQuestion question{
-      .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
-  const std::uint64_t limit = part.empty() || options.limit == 0 ? 0 : options.limit - given;
-  const auto [found, count, whole] = decide(scene, part, question, limit);
-  decided += count;
-  if (limit > 0) complete = whole && candidates->at_end();
-  const auto append = [&](const std::vector<TrianglePair>& those, bool neighbours) {
-    const std::vector<ContactShape> contacts =
-        contacts_of(scene, those, detail_of(options.contacts), threads);
-    for (std::size_t k = 0; k < those.size(); ++k) {
-      pairs.push_back({.pair = {those[k].a, those[k].b},
-                       .neighbours = neighbours,
-                       .contact = contacts.empty() ? Contact() : given_out(contacts[k])});
-    }
-  };
-  append(found.pairs, false);
-  append(found.neighbour_pairs, true);
-  std::ranges::sort(pairs, {}, &StreamedPair::pair);
-  given += pairs.size();
-}
-
-Stream::Stream(const Input& input, const Options& options)
-    : state_(as_proved([&] { return std::make_unique<State>(input, options); })) {}
-Stream::~Stream() = default;
-Stream::Stream(Stream&&) noexcept = default;
-Stream& Stream::operator=(Stream&&) noexcept = default;
-
-bool Stream::next(std::vector<StreamedPair>& pairs) {
-  return exclusive(state_, kName, [&](State& state) { return state.next(pairs); });
-}
-
-std::uint64_t Stream::decided() const {
-  return exclusive(state_, kName, [](const State& state) { return state.decided; });
-}
-
-bool Stream::complete() const {
-  return exclusive(state_, kName, [](const State& state) { return state.complete; });
-}
-
 namespace {
 
 // The enumerations of distance.h have the order of the internal ones.
@@ -233,7 +137,6 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
   DistanceOptions out{.pairs = pairs_of(options.kind),
                       .k = options.k,
                       .inside = options.inside,
-                      .parity = options.parity,
                       .threads = options.threads};
   if (options.threads > kMostThreads)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
@@ -252,8 +155,6 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
     throw Error("self", "has no meaning with nearest", "leave it out, or give another kind");
   if (!nearest && options.k != 1)
     throw Error("k", "has no meaning without nearest", "leave it out, or give nearest");
-  if (out.pairs == DistancePairs::all && options.parity)
-    throw Error("parity", "has no meaning with all", "leave it out");
   return out;
 }
 

@@ -121,7 +121,7 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
 }
 
 void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
-  const std::vector<Peer> peers = all_peers(options.threads);
+  const std::vector<Peer> peers = all_peers();
   const std::vector<std::string> names = chosen_names("--peers", options.peers, names_of(peers));
   const bool by_name = options.peers != "all";
   for (const Peer& peer : peers) {
@@ -223,7 +223,7 @@ std::vector<std::string> chosen_names(const std::string& option, const std::stri
 
 void validate(const BenchOptions& options) {
   chosen_names("--methods", options.methods, kMethods);
-  chosen_names("--peers", options.peers, names_of(all_peers(options.threads)));
+  chosen_names("--peers", options.peers, names_of(all_peers()));
   if (options.repeat < 1) {
     throw Error("--repeat", fmt::format("{} is no number of runs", options.repeat),
                 "give 1 or more");

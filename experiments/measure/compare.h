@@ -1,5 +1,4 @@
-// Compares runs in one process: methods and resolutions on one scene (`farcull compare`), and runs
-// that skip unneeded work with runs that do everything, --full (`farcull experiment savings`).
+// Compares methods and resolutions on one scene, in one process (`farcull compare`).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -42,40 +41,5 @@ Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 
 nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison);
-
-struct SavingsArguments {
-  std::vector<std::string> scenes;  // listed by `farcull scenes`; empty: all but costly ones
-  std::string methods = "boxes";    // with commas
-  int repeat = 15;
-  RunOptions options;  // resolution, device and so on, of all
-};
-
-struct SavingsRow {
-  std::string scene;
-  Method method{};
-  std::vector<double> planned_ms,
-      full_ms;             // of each repeat, cull + exact, in the order of the runs
-  bool same_pairs = true;  // with and without --full, in every repeat
-
-  double planned() const;  // medians
-  double full() const;
-  /// At most 5 % + 2 ms slower than --full.
-  bool pays() const;
-};
-
-/// Runs every scene by every method that applies, in turn as planned and with --full. The first run
-/// of each is not counted. Throws Error as run() does.
-std::vector<SavingsRow> run_savings(const SavingsArguments& arguments,
-                                    const Progress& progress = {});
-
-/// Whether two runs found the same pairs, neighbours among them.
-bool same_pairs(const Record& a, const Record& b);
-/// Names the first row whose method promises to miss nothing, by these options, but whose pairs
-/// differ; empty if there is none. Ignores the verdict about the device.
-std::string broken(const std::vector<SavingsRow>& rows, RunOptions options);
-
-std::string savings_table(const std::vector<SavingsRow>& rows);
-nlohmann::ordered_json savings_json(const std::vector<SavingsRow>& rows,
-                                    const SavingsArguments& arguments);
 
 }  // namespace farcull

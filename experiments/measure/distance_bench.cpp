@@ -199,10 +199,6 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
                                  const DistanceBenchResult& result) {
   std::string out = bench_title(scene, options.threads);
-  const auto asked = [&result](const char* name) {
-    return std::any_of(result.rows.begin(), result.rows.end(),
-                       [name](const DistanceBenchRow& row) { return row.name == name; });
-  };
   Table table("lrrrrrrrrrrrrrr");
   table.add({"", "ms", "low", "high", "n", "cold", "build", "query", "MiB", "distances", "exact",
              "lacking", "other 0", "rel. error", result.fastest_peer ? "x fastest" : ""});
@@ -229,10 +225,6 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
       "other "
       "0: objects that meet called apart, or the reverse; rel. error: the largest one\nof the "
       "others.\n";
-  if (asked("embree-points")) {
-    out +=
-        "embree-points: from the vertices alone, so a bound from above where edges are nearest.\n";
-  }
   if (result.fastest_peer) {
     out +=
         fmt::format("x fastest: of the fastest peer that measures in doubles, {}, in this run.\n",

@@ -1,9 +1,8 @@
 // Runs the contestants in rounds and summarizes their times. The bootstrap draws from a generator
-// whose numbers the C++ standard fixes; the quantiles of Student's t are Boost's.
+// whose numbers the C++ standard fixes.
 #include "experiments/measure/harness.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cstdint>
 #include <iterator>
 #include <numeric>
@@ -67,23 +66,6 @@ Estimate median_estimate(std::vector<double> values) {
   for (double& median : medians) median = draws.median(values);
   const std::size_t n = values.size();
   return with_interval(middle_of(values), n, std::move(medians));
-}
-
-Estimate ratio_estimate(std::vector<double> over, std::vector<double> under) {
-  std::sort(over.begin(), over.end());
-  std::sort(under.begin(), under.end());
-  Draws draws;
-  std::vector<double> ratios(kResamples);
-  for (double& ratio : ratios) {
-    const double numerator = draws.median(over);
-    ratio = numerator / draws.median(under);
-  }
-  const std::size_t n = std::min(over.size(), under.size());
-  return with_interval(middle_of(over) / middle_of(under), n, std::move(ratios));
-}
-
-double student_t95(std::size_t degrees) {
-  return boost::math::quantile(boost::math::students_t(static_cast<double>(degrees)), 0.975);
 }
 
 Spread spread_of(const std::vector<double>& values) {

@@ -41,14 +41,6 @@ double middle(std::vector<double> values);
 /// "Statistics"). All 0 if there are no values.
 Estimate median_estimate(std::vector<double> values);
 
-/// The ratio of the medians, with an interval as above for which both lists are resampled. n: the
-/// length of the shorter list. Precondition: no list is empty, and all of `under` is above 0.
-Estimate ratio_estimate(std::vector<double> over, std::vector<double> under);
-
-/// The factor t with which value +- t * standard error is the 95 % interval of a least-squares
-/// slope with so many degrees of freedom (points less 2). Precondition: at least 1.
-double student_t95(std::size_t degrees);
-
 /// Statistics of several values. median: as middle(). low, high: the 95 % interval of the median
 /// (median_estimate()). n: how many values.
 struct Spread {

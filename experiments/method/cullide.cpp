@@ -241,7 +241,10 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   DrawPlan work;
   work.self = tests_self_alone(options.method);
   const bool objects = options.broad_phase == BroadPhase::objects;
-  if (objects || !compare_boxes(scene, threads, plan, work)) find_places(scene, plan, work);
+  if (objects || !compare_boxes(scene, threads, plan, work)) {
+    plan.options.broad_phase = BroadPhase::objects;  // also where those of triangles decide little
+    find_places(scene, plan, work);
+  }
   if (options.objects_alone && work.patches.cut) {
     throw Error("{level}", "an object that is tested against itself is asked in patches",
                 "leave {level} objects or the self-collision out");

@@ -1,8 +1,7 @@
-// Keeps the findings of probes in a JSON file: the inputs, the findings, and a checksum of both.
+// Keeps the findings of probes in a file of lines: a checksum, the inputs, the findings.
 // The file's name is a hash of the inputs, so each build and driver has its own file.
 #include "experiments/method/device_verdict.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,13 +13,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <iterator>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "core/base/bytes.h"
@@ -161,11 +160,7 @@ extern char** environ;
 namespace farcull {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-constexpr int kFormat = 1;
-constexpr std::uintmax_t kMostBytes = 1 << 20;
 
 // Variables by which Mesa's drivers and compilers, and NVIDIA's, choose code.
 constexpr std::array kDriverVariables = {
@@ -174,10 +169,6 @@ constexpr std::array kDriverVariables = {
     "SI_",    "RADEON_",  "ZINK_",    "NOUVEAU_", "NV50_",  "NVC0_", "FD_",   "IR3_",
     "TU_",    "V3D_",     "VC4_",     "PAN_",     "LIMA_",  "ETNA_", "SVGA_", "VIRGL_",
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
-// Variables about caches and messages, which do not change the generated code.
-constexpr std::array kIdleVariables = {"MESA_SHADER_CACHE", "MESA_GLSL_CACHE", "MESA_LOG",
-                                       "MESA_DISK_CACHE", "__GL_SHADER_DISK_CACHE"};
-
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
 // Mesa takes each option of driconf also from the variable of its name, in lower case. Other
@@ -193,9 +184,7 @@ std::string driver_environment() {
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return begins(variable, prefix); };
-    if ((may_be_driconf(variable) ||
-         std::any_of(kDriverVariables.begin(), kDriverVariables.end(), named)) &&
-        std::none_of(kIdleVariables.begin(), kIdleVariables.end(), named))
+    if (may_be_driconf(variable) || std::ranges::any_of(kDriverVariables, named))
       found.push_back(variable);
   }
   std::sort(found.begin(), found.end());
@@ -236,127 +225,68 @@ std::string number(double x) {
   return out;
 }
 
-Json inputs_json(const VerdictInputs& inputs) {
-  Json out = Json::object();
-  for (const auto& [name, value] : inputs) out[name] = value;
+// The inputs as lines of a file.
+std::string text_of(const VerdictInputs& inputs) {
+  std::string out;
+  for (const auto& [name, value] : inputs) out += name + ": " + value + "\n";
   return out;
 }
 
-// Replaces bytes that are not UTF-8, which the environment may have.
-std::string text_of(const Json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string file_of(const VerdictInputs& inputs) {
+std::string file_of(const std::string& inputs) {
   const std::string folder = verdict_folder();
-  if (folder.empty()) return "";
-  return folder + "/device-" + hash_of(text_of(inputs_json(inputs))) + ".json";
+  return folder.empty() ? "" : folder + "/device-" + hash_of(inputs);
 }
 
-// Reads a verdict. Returns nothing if there is no file, or if the file is of no use; then `problem`
-// says why.
-std::optional<DeviceVerdict> read(const std::string& file, const VerdictInputs& inputs,
-                                  std::string& problem) {
+// A file is the hash of the rest, the inputs, a line of three values, and a line for each failure.
+std::string file_text(const std::string& inputs, const DeviceVerdict& verdict) {
+  std::ostringstream rest;
+  rest << inputs << verdict.made << ' ' << verdict.probes << ' ' << verdict.ms << '\n';
+  for (const std::string& failure : verdict.failed) rest << failure << '\n';
+  return hash_of(rest.str()) + "\n" + rest.str();
+}
+
+// Returns nothing if the file is not there, damaged, somebody else's, or about something else.
+std::optional<DeviceVerdict> read(const std::string& file, const std::string& inputs) {
   struct stat status {};
-  if (file.empty() || ::lstat(file.c_str(), &status) != 0) return std::nullopt;
-  if (!S_ISREG(status.st_mode) || status.st_uid != ::geteuid()) {
-    problem = file + " is not a file of this user";
+  if (file.empty() || ::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      status.st_uid != ::geteuid())
     return std::nullopt;
-  }
-  if (static_cast<std::uintmax_t>(status.st_size) > kMostBytes) {
-    problem = file + " is damaged";
-    return std::nullopt;
-  }
   std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  try {
-    Json json = Json::parse(text.str());
-    const std::string checksum = json.at("checksum");
-    json.erase("checksum");
-    if (json.at("farcull_verdict") != kFormat || checksum != hash_of(text_of(json)) ||
-        text_of(json.at("inputs")) != text_of(inputs_json(inputs))) {
-      problem = file + " is damaged, or about something else";
-      return std::nullopt;
-    }
-    DeviceVerdict out;
-    out.holds = json.at("holds");
-    out.failed = json.at("failed").get<std::vector<std::string>>();
-    out.made = json.at("made");
-    out.probes = json.at("probes").size();
-    out.ms = json.at("ms");
-    out.file = file;
-    out.remembered = true;
-    if (out.holds != out.failed.empty() || out.probes == 0) {
-      problem = file + " contradicts itself";
-      return std::nullopt;
-    }
-    return out;
-  } catch (const Json::exception&) {
-    problem = file + " is damaged";
-    return std::nullopt;
-  }
+  std::string hash;
+  std::getline(in, hash);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  if (hash != hash_of(text) || !text.starts_with(inputs)) return std::nullopt;
+  std::istringstream found(text.substr(inputs.size()));
+  DeviceVerdict out;
+  out.file = file;
+  found >> out.made >> out.probes >> out.ms;
+  if (!found || found.get() != '\n' || out.probes == 0) return std::nullopt;
+  for (std::string line; std::getline(found, line);) out.failed.push_back(line);
+  out.holds = out.failed.empty();
+  out.remembered = true;
+  return out;
 }
 
 // Returns "" or why the file could not be written. A reader sees the old file or the new one.
 std::string write(const std::string& file, const std::string& text) {
   if (file.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
-  const auto why = [&](int error) { return file + ": " + std::strerror(error); };
-  std::error_code error;
+  const std::string beside = file + "." + std::to_string(::getpid());
+  std::error_code error, ignored;
   fs::create_directories(fs::path(file).parent_path(), error);
-  if (error) return why(error.value());
-  std::string beside = file + ".XXXXXX";
-  const int descriptor = ::mkstemp(beside.data());
-  if (descriptor < 0) return why(errno);
-  int failure = 0;
-  std::size_t done = 0;
-  while (done < text.size() && failure == 0) {
-    const ssize_t n = ::write(descriptor, text.data() + done, text.size() - done);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n == 0 || errno != EINTR) {
-      failure = n == 0 ? EIO : errno;
-    }
-  }
-  if (::close(descriptor) != 0 && failure == 0) failure = errno;
-  if (failure == 0 && ::rename(beside.c_str(), file.c_str()) != 0) failure = errno;
-  if (failure == 0) return "";
-  ::unlink(beside.c_str());
-  return why(failure);
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) error = {errno, std::generic_category()};
+  if (!error) fs::rename(beside, file, error);
+  if (!error) return "";
+  fs::remove(beside, ignored);
+  return file + ": " + error.message();
 }
 
-// Removes an older verdict; returns "" or why it is still there. If the folder allows no removal,
-// empties the file, which invalidates it.
-std::string forget(const std::string& file) {
-  if (file.empty() || ::unlink(file.c_str()) == 0 || errno == ENOENT || errno == ENOTDIR) return "";
-  const int failure = errno;
-  const int descriptor =
-      ::open(file.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0)
-    return "an older verdict could not be removed: " + file + ": " + std::strerror(failure);
-  ::close(descriptor);
-  return "";
-}
-
-// Returns why write() would fail, as far as the folder tells; else "".
-std::string unwritable(const std::string& file) {
-  if (file.empty()) return write(file, "");
+// Removes an older verdict, or invalidates it if the folder allows no removal.
+void forget(const std::string& file) {
   std::error_code error;
-  const fs::path folder = fs::path(file).parent_path();
-  fs::create_directories(folder, error);
-  if (error) return folder.string() + ": " + std::strerror(error.value());
-  return ::access(folder.c_str(), W_OK | X_OK) == 0 ? ""
-                                                    : folder.string() + ": " + std::strerror(errno);
-}
-
-Json probe_json(const ProbeResult& p) {
-  return {{"assumption", p.assumption},
-          {"name", p.name},
-          {"pass", p.pass},
-          {"measured", std::isfinite(p.measured) ? Json(p.measured) : Json("infinite")},
-          {"bound", p.bound},
-          {"unit", p.unit},
-          {"samples", p.samples}};
+  if (!file.empty() && !fs::remove(file, error) && error) fs::resize_file(file, 0, error);
 }
 
 }  // namespace
@@ -410,21 +340,15 @@ std::string verdict_folder() {
 }
 
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say) {
-  const VerdictInputs inputs = verdict_inputs(device);
-  const std::string file = file_of(inputs);
-  std::string useless;
-  if (const std::optional<DeviceVerdict> known = read(file, inputs, useless)) return *known;
-  if (say) {
-    const std::string unkept = unwritable(file);
-    say("probing " + device.renderer + " for A1 to A10" +
-        (unkept.empty() ? ", once for this device, driver and build"
-                        : "; the verdict cannot be kept, so every run does it: " + unkept) +
-        (useless.empty() ? "" : "; " + useless + " and is written anew"));
-  }
+  const std::string inputs = text_of(verdict_inputs(device));
+  if (const std::optional<DeviceVerdict> known = read(file_of(inputs), inputs)) return *known;
+  if (say)
+    say("probing " + device.renderer + " for A1 to A10, once for this device, driver and build");
   const Stopwatch start;
   const std::vector<ProbeResult> results = probes();
   DeviceVerdict out = keep_verdict(device, results, start.ms());
-  if (!useless.empty()) out.note = useless + (out.note.empty() ? "" : "; " + out.note);
+  if (say && !out.note.empty())
+    say("the verdict cannot be kept, so every run probes the device: " + out.note);
   return out;
 }
 
@@ -434,9 +358,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   out.made = utc_now();
   out.probes = results.size();
   out.ms = ms;
-  Json probes = Json::array();
   for (const ProbeResult& p : results) {
-    probes.push_back(probe_json(p));
     if (p.broke_off && out.problem.empty())
       out.problem = p.assumption + " " + p.name + ": " + p.note;
     if (p.pass || p.broke_off) continue;
@@ -445,28 +367,12 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   }
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
-  const VerdictInputs inputs = verdict_inputs(device);
-  const std::string file = file_of(inputs);
+  const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
   // This comes first, so that no later failure leaves an older promise that these results refute.
-  if (!out.holds) out.note = forget(file);
+  if (!out.holds) forget(file);
   if (!out.holds && out.failed.empty()) return out;
-  Json json = {{"farcull_verdict", kFormat},
-               {"inputs", inputs_json(inputs)},
-               {"holds", out.holds},
-               {"failed", out.failed},
-               {"made", out.made},
-               {"ms", out.ms},
-               {"probes", probes}};
-  // Parses the text again, so that the checksum is of the same text that a reader will hash.
-  json = Json::parse(text_of(json));
-  json["checksum"] = hash_of(text_of(json));
-  const std::string unkept = write(file, text_of(json, 2) + "\n");
-  if (unkept.empty()) {
-    out.file = file;
-    out.note.clear();
-  } else {
-    out.note += (out.note.empty() ? "" : "; ") + unkept;
-  }
+  out.note = write(file, file_text(inputs, out));
+  if (out.note.empty()) out.file = file;
   return out;
 }
 

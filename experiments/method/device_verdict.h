@@ -52,8 +52,6 @@ std::vector<ProbeResult> brief_probes(const GlContext& context);
 
 // ---- the verdict ----
 
-struct ProbeResult;  // core/gl/probe/probe.h
-
 /// The time now: UTC, ISO 8601, in seconds.
 std::string utc_now();
 
@@ -66,7 +64,7 @@ struct DeviceVerdict {
   double ms = 0;                    // time of the probes
   bool remembered = false;          // read from the file; no probe ran now
   std::string file;                 // where the verdict is kept; empty: nowhere
-  std::string note;  // why the file was of no use, or could not be written or removed
+  std::string note;                 // why the file could not be written
 };
 
 /// One sentence without a full stop: what the probes found.
@@ -85,7 +83,7 @@ std::string verdict_folder();
 /// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;
 
-/// Receives one line before probes run, which says that they run, and why.
+/// Receives a line before probes run, and one if their verdict cannot be kept.
 using Say = std::function<void(const std::string& line)>;
 
 /// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by

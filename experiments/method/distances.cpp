@@ -75,17 +75,14 @@ std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
 
 struct Insides::OfObject {
   Box box;
-  bool parity = false;
   std::once_flag closed_found, parts_found;
   Surface surface = Surface::open;
   std::vector<Vec3> parts;
 };
 
-Insides::Insides(const Scene& scene, bool parity)
-    : scene_(scene), objects_(new OfObject[scene.objects.size()]) {
+Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scene.objects.size()]) {
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     objects_[o].box = box_of(scene, scene.objects[o]);
-    objects_[o].parity = parity;
   }
 }
 Insides::~Insides() = default;
@@ -96,11 +93,7 @@ bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_close
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
   if (!lies_within(in.box, out.box)) return false;
-  std::call_once(out.closed_found, [&] {
-    out.surface = surface_of(scene_, outer);
-    // Of a surface that is closed and not oriented inside() takes the parity.
-    if (out.parity && out.surface == Surface::oriented) out.surface = Surface::closed;
-  });
+  std::call_once(out.closed_found, [&] { out.surface = surface_of(scene_, outer); });
   if (out.surface == Surface::open) {
     not_closed = true;
     return false;
@@ -315,7 +308,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
   }
   if (progress) progress("inside");
   const Stopwatch watch;
-  const Insides insides(scene, record.options.parity);
+  const Insides insides(scene);
   for_each_shared(record.distances.size(), record.options.threads, [&](std::size_t k) {
     Distance& d = record.distances[k];
     if (d.objects.a != d.objects.b && !d.closest.squared.is_zero())

@@ -34,8 +34,7 @@ using WhichInside = InsideClaim;
 /// its objects are kept.
 class Insides {
  public:
-  /// parity: by the parity of crossings instead of winding numbers (verify/inside.h).
-  explicit Insides(const Scene& scene, bool parity = false);
+  explicit Insides(const Scene& scene);
   ~Insides();
   Insides(const Insides&) = delete;
   Insides& operator=(const Insides&) = delete;
@@ -61,7 +60,6 @@ struct DistanceOptions {
   std::size_t k = 1;                                        // with `nearest`
   double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
   bool inside = true;    // tells whether an object is inside another
-  bool parity = false;   // by the parity of crossings instead of winding numbers
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
   /// The most answers; more are an error, since each takes some hundreds of bytes. With `all` it

@@ -68,7 +68,7 @@ struct RunOptions {
 using OptionValue = std::variant<std::monostate, bool, int, double, std::string>;
 
 /// An option that a user gives by name. The table of these makes the command line with its help,
-/// completion and manual, the refusals, Python's keywords, and the options in records.
+/// completion, the refusals, Python's keywords, and the options in records.
 struct Option {
   const char* name;  // of the parameter, as in depth_format (--depth-format on a command line)
   const char* type;  // stands for the value in a help, as in "fragment|fixed"; "" for a flag

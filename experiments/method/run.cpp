@@ -163,7 +163,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   if (memory) memory->moved.update(scene, change);
   const double compared_ms = comparing.ms();
   const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
-  record.options.ignored = planned.options.ignored;
+  record.options = planned.options;
   record.plan = planned.stages();
   // A filter and a limit need the list of all candidates.
   const bool limits = record.options.limit > 0, lists = filters || limits;

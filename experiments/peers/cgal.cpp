@@ -1,15 +1,12 @@
-// CGAL, in three ways.
+// CGAL, in two ways.
 // - Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software for box
 //   intersections, 2002) and AABB_tree. CGAL only compares boxes; the candidates are decided as for
 //   all peers.
-// - self_intersections(), which decides exactly by itself.
 // - Distances, by AABB_tree.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/box_intersection_d.h>
 #include <CGAL/squared_distance_3.h>
 #include <CGAL/version.h>
@@ -19,10 +16,6 @@
 #include <memory>
 #include <optional>
 #include <utility>
-
-#ifdef CGAL_LINKED_WITH_TBB
-#include <tbb/global_control.h>
-#endif
 
 #include "core/base/stopwatch.h"
 #include "experiments/peers/peer.h"
@@ -47,29 +40,11 @@ Triangle triangle(const std::array<Vec3, 3>& corners) {
 
 using Runner = BenchAnswer (*)(const Scene&, unsigned threads);
 
-std::function<BenchRun(unsigned)> sequential(Runner run) {
-  return [run](unsigned threads) -> BenchRun {
-    return [run, threads](const Scene& scene) { return run(scene, threads); };
-  };
+Peer peer(const char* name, Runner run) {
+  return {name, kLibrary, "", [run](unsigned threads) -> BenchRun {
+            return [run, threads](const Scene& scene) { return run(scene, threads); };
+          }};
 }
-#ifdef CGAL_LINKED_WITH_TBB
-// TBB's threads start in the first run, which is the cold run and is not used for anything else.
-std::function<BenchRun(unsigned)> parallel(Runner run) {
-  return [run](unsigned threads) -> BenchRun {
-    const auto limit = std::make_shared<tbb::global_control>(
-        tbb::global_control::max_allowed_parallelism, threads);
-    return [limit, run, threads](const Scene& scene) { return run(scene, threads); };
-  };
-}
-using ParallelTag = CGAL::Parallel_tag;
-const char* parallel_missing(unsigned threads) {
-  return threads > 1 ? "" : "the same as without -parallel on one thread";
-}
-#else
-std::function<BenchRun(unsigned)> parallel(Runner) { return {}; }
-using ParallelTag = CGAL::Sequential_tag;
-const char* parallel_missing(unsigned) { return "built without TBB (Debian: libtbb-dev)"; }
-#endif
 
 constexpr std::ptrdiff_t kUntuned = 10;  // CGAL's default cutoff
 constexpr std::ptrdiff_t kTuned = 2000;
@@ -103,28 +78,24 @@ std::vector<PeerBox> numbered(const std::vector<Box>& boxes) {
 }
 
 /// Joins all boxes at once, as the manual calls box_intersection_d.
-template <class Tag, std::ptrdiff_t cutoff>
+template <std::ptrdiff_t cutoff>
 BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
-  constexpr bool kParallel = !std::is_same_v<Tag, CGAL::Sequential_tag>;
-  PeerCandidates candidates(raw, threads, kParallel);
+  PeerCandidates candidates(raw, threads, false);
   const PeerScene scene(raw);
   if (!scene.has_pairs()) return candidates.finish();
   const std::vector<PeerBox> boxes = numbered(scene.boxes);
   Handles all = handles(boxes);
-  PeerCandidates::Part* const only = kParallel ? nullptr : &candidates.part();
-  const auto add = [&candidates, only](std::uint32_t a, std::uint32_t b) {
-    (kParallel ? candidates.part() : *only).add(a, b);
-  };
+  PeerCandidates::Part& part = candidates.part();
   if (scene.two_sides) {
     const auto second = all.begin() + scene.second;
-    CGAL::box_intersection_d<Tag>(
+    CGAL::box_intersection_d(
         all.begin(), second, second, all.end(),
-        [add](const PeerBox* a, const PeerBox* b) { add(a->index, b->index); }, cutoff);
+        [&part](const PeerBox* a, const PeerBox* b) { part.add(a->index, b->index); }, cutoff);
   } else {
-    CGAL::box_self_intersection_d<Tag>(
+    CGAL::box_self_intersection_d(
         all.begin(), all.end(),
-        [add, &scene](const PeerBox* a, const PeerBox* b) {
-          if (scene.counts(a->index, b->index)) add(a->index, b->index);
+        [&part, &scene](const PeerBox* a, const PeerBox* b) {
+          if (scene.counts(a->index, b->index)) part.add(a->index, b->index);
         },
         cutoff);
   }
@@ -189,29 +160,22 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   return candidates.finish();
 }
 
-/// Finds the triangles whose boxes meet the box of a query. Nodes are tested against the query: its
-/// box, or a triangle.
-template <class Query, class Found>
+/// Finds the triangles whose boxes meet the box of a query.
+template <class Found>
 struct Walk {
-  CGAL::Bbox_3 box;
   Found found;
 
   bool go_further() const { return true; }
-  bool do_intersect(const Query& query, const CGAL::AABB_node<Traits>& node) const {
-    if constexpr (std::is_same_v<Query, CGAL::Bbox_3>) {
-      return CGAL::do_overlap(query, node.bbox());
-    } else {
-      return CGAL::do_overlap(box, node.bbox()) && CGAL::do_intersect(query, node.bbox());
-    }
+  bool do_intersect(const CGAL::Bbox_3& box, const CGAL::AABB_node<Traits>& node) const {
+    return CGAL::do_overlap(box, node.bbox());
   }
-  void intersection(const Query&, const Primitive& primitive) {
+  void intersection(const CGAL::Bbox_3& box, const Primitive& primitive) {
     if (CGAL::do_overlap(box, primitive.datum().bbox())) found(primitive.id());
   }
 };
 
 /// If two objects are tested against each other (PeerScene::two_sides), searches a tree of the
 /// smaller one for each triangle of the other; else a tree of all triangles for each triangle.
-template <bool by_triangle>
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
@@ -243,101 +207,14 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
       const auto other = begin + static_cast<std::uint32_t>(at - triangles.cbegin());
       if (scene.two_sides || (other > t && scene.counts(t, other))) part.add(t, other);
     };
-    const Triangle query = scene.two_sides ? triangle(raw.corners(t)) : triangles[i];
-    const CGAL::Bbox_3 box = query.bbox();
-    // The test of a triangle against a box takes no degenerate triangles.
-    if (by_triangle && shape(raw.corners(t)) == Shape::triangle) {
-      Walk<Triangle, decltype(found)> walk{box, found};
-      tree->traversal(query, walk);
-    } else {
-      Walk<CGAL::Bbox_3, decltype(found)> walk{box, found};
-      tree->traversal(box, walk);
-    }
+    const CGAL::Bbox_3 box = (scene.two_sides ? triangle(raw.corners(t)) : triangles[i]).bbox();
+    Walk<decltype(found)> walk{found};
+    tree->traversal(box, walk);
   };
   if (tree) for_each_taken(count, 256, threads, search);
   BenchAnswer answer = candidates.finish();
   answer.build_ms = build_ms;
   return answer;
-}
-
-// Polygon_mesh_processing::self_intersections() finds the pairs of a mesh with itself by
-// box_intersection_d with cutoff 2000, and decides each at once by CGAL's exact predicates. So only
-// the reported pairs can be counted as candidates.
-
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-
-/// The object, if it is the only one with triangles and is tested against itself; else null.
-const Object* only_self(const Scene& scene) {
-  const Object* only = nullptr;
-  for (const Object& object : scene.objects) {
-    if (object.triangle_count == 0) continue;
-    if (only || !object.self) return nullptr;
-    only = &object;
-  }
-  return only;
-}
-
-/// A mesh whose face i is triangle i of the object. A triangle that would make the mesh
-/// non-manifold gets its own vertices. CGAL then reports it with its neighbours, and these pairs
-/// are dropped by position.
-Mesh mesh_of(const Scene& scene, const Object& object) {
-  Mesh mesh;
-  mesh.reserve(static_cast<Mesh::size_type>(scene.vertices.size()),
-               object.triangle_count + object.triangle_count / 2, object.triangle_count);
-  const auto add_vertex = [&](std::uint32_t v) {
-    const Vec3& p = scene.vertices[v];
-    return mesh.add_vertex({p.x(), p.y(), p.z()});
-  };
-  std::vector<Mesh::Vertex_index> made(scene.vertices.size(), Mesh::null_vertex());
-  for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
-    const auto& [a, b, c] = scene.triangles[object.first_triangle + i];
-    for (const std::uint32_t v : {a, b, c}) {
-      if (made[v] == Mesh::null_vertex()) made[v] = add_vertex(v);
-    }
-    if (mesh.add_face(made[a], made[b], made[c]) == Mesh::null_face()) {
-      mesh.add_face(add_vertex(a), add_vertex(b), add_vertex(c));
-    }
-  }
-  return mesh;
-}
-
-/// Receives the pairs of self_intersections(), which writes from one thread.
-struct Collector {
-  const Scene& scene;
-  std::uint32_t first;
-  BenchAnswer& answer;
-
-  void operator()(const std::pair<Mesh::Face_index, Mesh::Face_index>& faces) const {
-    const std::uint32_t a = first + faces.first.idx(), b = first + faces.second.idx();
-    ++answer.candidate_pairs;
-    if (share_position(scene.corners(a), scene.corners(b))) return;
-    answer.pairs.push_back({std::min(a, b), std::max(a, b)});
-  }
-};
-
-template <class Tag>
-BenchAnswer self_intersections(const Scene& scene, unsigned) {
-  BenchAnswer answer;
-  const Object* const object = only_self(scene);
-  if (!object) return answer;
-  const Stopwatch building;
-  const Mesh mesh = mesh_of(scene, *object);
-  answer.build_ms = building.ms();
-  const Stopwatch finding;
-  const Collector collect{scene, object->first_triangle, answer};
-  CGAL::Polygon_mesh_processing::self_intersections<Tag>(
-      mesh, boost::make_function_output_iterator(collect));
-  std::sort(answer.pairs.begin(), answer.pairs.end());
-  answer.candidates_ms = finding.ms();
-  return answer;
-}
-
-/// Why self_intersections() is not exact for the scene; empty if it is. It makes no box for a
-/// degenerate triangle, so it reports no pairs of such a triangle.
-std::string refuses_self(const Scene& scene) {
-  if (!only_self(scene)) return "it takes one object, tested against itself";
-  if (degenerate_triangles(scene) > 0) return "it leaves degenerate triangles out";
-  return "";
 }
 
 // Distances: the triangles of one object against the AABB_tree of another. The tree's own functions
@@ -449,28 +326,11 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
 
 }  // namespace
 
-bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return CGAL::do_intersect(triangle(a), triangle(b));
-}
-
-LibraryPeers cgal_library(unsigned threads) {
-  using CGAL::Sequential_tag;
+LibraryPeers cgal_library() {
   LibraryPeers out;
-  out.broad = {
-      {"cgal-boxes", kLibrary, "", sequential(join_boxes<Sequential_tag, kUntuned>)},
-      {"cgal-boxes-2000", kLibrary, "", sequential(join_boxes<Sequential_tag, kTuned>)},
-      {"cgal-boxes-parallel", kLibrary, parallel_missing(threads),
-       parallel(join_boxes<ParallelTag, kUntuned>)},
-      {"cgal-boxes-2000-parallel", kLibrary, parallel_missing(threads),
-       parallel(join_boxes<ParallelTag, kTuned>)},
-      {"cgal-object-pairs", kLibrary, "", sequential(join_object_pairs)},
-      {"cgal-aabb", kLibrary, "", sequential(search_tree<false>)},
-      {"cgal-aabb-triangles", kLibrary, "", sequential(search_tree<true>)},
-      {"cgal-self-intersections", kLibrary, "", sequential(self_intersections<Sequential_tag>),
-       refuses_self},
-      {"cgal-self-intersections-parallel", kLibrary, parallel_missing(threads),
-       parallel(self_intersections<ParallelTag>), refuses_self},
-  };
+  out.broad = {peer("cgal-boxes", join_boxes<kUntuned>),
+               peer("cgal-boxes-2000", join_boxes<kTuned>),
+               peer("cgal-object-pairs", join_object_pairs), peer("cgal-aabb", search_tree)};
   out.distances = {{.name = "cgal-aabb",
                     .library = kLibrary,
                     .run = distances,

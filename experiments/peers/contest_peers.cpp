@@ -1,6 +1,5 @@
-// The libraries of `farcull bench` as contestants: FCL and ODE with their own tests of two
-// triangles, their distances, and broad phases followed by exact tests. If a pair is lost although
-// the tests are exact, the broad phase has lost it.
+// FCL and ODE with their own tests of two triangles, as contestants, and the distances of FCL and
+// CGAL.
 #include <algorithm>
 #include <memory>
 
@@ -65,11 +64,6 @@ int main(int argc, char** argv) {
     else if (peer.name == "cgal-aabb")
       all.push_back(
           {.card = {.name = peer.name, .library = peer.library}, .distance = distance_by(peer)});
-  }
-  for (const Peer& peer : all_peers(1)) {  // a broad phase has no answer about a pair
-    if (peer.missing.empty())
-      all.push_back({.card = {.name = peer.name + "-exact", .library = peer.library},
-                     .mesh = pairs_by(peer)});
   }
   return contest(argc, argv, all);
 }

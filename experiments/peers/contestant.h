@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/suite/reader.h"
+#include "experiments/suite/label.h"
 
 namespace farcull {
 

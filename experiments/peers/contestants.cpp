@@ -53,10 +53,6 @@ std::vector<KnownContestant> make_list() {
   add("textbook", "", "pair",
       {"moeller-double", "moeller-double-0", "moeller-float", "guigue-devillers-double",
        "guigue-devillers-float", "edge-face-double"});
-  add("peers", "libcgal-dev", "mesh", {"cgal-boxes-exact", "cgal-aabb-exact"});
-  add("peers", "libfcl-dev", "mesh", {"fcl-obbrss-exact"});
-  add("peers", "libembree-dev", "mesh", {"embree-medium-exact"});
-  add("peers", "libbullet-dev", "mesh", {"bullet-gimpact-exact"});
   return all;
 }
 

@@ -6,7 +6,6 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/math/bv/AABB.h>
 #include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision_object.h>
@@ -336,11 +335,9 @@ Peer peer(const char* name, BenchAnswer (*run)(const Scene&, unsigned)) {
 
 LibraryPeers fcl_library() {
   LibraryPeers out{
-      .broad = {peer("fcl-obbrss", candidates_of<fcl::OBBRSSd>),
-                peer("fcl-obb", candidates_of<fcl::OBBd>),
-                peer("fcl-aabb", candidates_of<fcl::AABBd>)},
+      .broad = {peer("fcl-obb", candidates_of<fcl::OBBd>)},
       .narrow = {peer("fcl-float", collide<float>), peer("fcl-double", collide<double>)}};
-  out.broad[0].refuses = out.broad[1].refuses = refuses;
+  out.broad[0].refuses = refuses;
   out.distances = {
       {.name = "fcl-double", .library = kLibrary, .run = distances<double>, .refuses = refuses},
       {.name = "fcl-float",

@@ -19,16 +19,9 @@ struct Known {
 
 constexpr Known kBroad[] = {{"cgal-boxes", "CGAL", "libcgal-dev"},
                             {"cgal-boxes-2000", "CGAL", "libcgal-dev"},
-                            {"cgal-boxes-parallel", "CGAL", "libcgal-dev"},
-                            {"cgal-boxes-2000-parallel", "CGAL", "libcgal-dev"},
                             {"cgal-object-pairs", "CGAL", "libcgal-dev"},
                             {"cgal-aabb", "CGAL", "libcgal-dev"},
-                            {"cgal-aabb-triangles", "CGAL", "libcgal-dev"},
-                            {"cgal-self-intersections", "CGAL", "libcgal-dev"},
-                            {"cgal-self-intersections-parallel", "CGAL", "libcgal-dev"},
-                            {"fcl-obbrss", "FCL", "libfcl-dev"},
                             {"fcl-obb", "FCL", "libfcl-dev"},
-                            {"fcl-aabb", "FCL", "libfcl-dev"},
                             {"embree-low", "Embree 3", "libembree-dev"},
                             {"embree-medium", "Embree 3", "libembree-dev"},
                             {"bullet-gimpact", "Bullet in double", "libbullet-dev"}};
@@ -37,13 +30,12 @@ constexpr Known kNarrow[] = {{"fcl-float", "FCL", "libfcl-dev"},
                              {"ode-trimesh", "ODE", "libode-dev"}};
 constexpr Known kDistances[] = {{"fcl-double", "FCL", "libfcl-dev"},
                                 {"fcl-float", "FCL", "libfcl-dev"},
-                                {"cgal-aabb", "CGAL", "libcgal-dev"},
-                                {"embree-points", "Embree 3", "libembree-dev"}};
+                                {"cgal-aabb", "CGAL", "libcgal-dev"}};
 
-std::vector<LibraryPeers> libraries_of_build([[maybe_unused]] unsigned threads) {
+std::vector<LibraryPeers> libraries_of_build() {
   std::vector<LibraryPeers> all;
 #if FARCULL_WITH_CGAL
-  all.push_back(cgal_library(threads));
+  all.push_back(cgal_library());
 #endif
 #if FARCULL_WITH_FCL
   all.push_back(fcl_library());
@@ -67,9 +59,9 @@ std::string why_missing(const Known& known) {
 
 /// The peers of a list, taken from one member (`part`) of what the adapters give.
 template <class PeerKind>
-std::vector<PeerKind> listed(std::span<const Known> list, std::vector<PeerKind> LibraryPeers::*part,
-                             unsigned threads) {
-  std::vector<LibraryPeers> libraries = libraries_of_build(threads);
+std::vector<PeerKind> listed(std::span<const Known> list,
+                             std::vector<PeerKind> LibraryPeers::*part) {
+  std::vector<LibraryPeers> libraries = libraries_of_build();
   std::vector<PeerKind> out;
   for (const Known& known : list) {
     PeerKind peer{.name = known.name, .library = known.library, .missing = why_missing(known)};
@@ -85,13 +77,9 @@ std::vector<PeerKind> listed(std::span<const Known> list, std::vector<PeerKind> 
 
 }  // namespace
 
-std::vector<Peer> all_peers(unsigned threads) {
-  return listed(kBroad, &LibraryPeers::broad, threads);
-}
-std::vector<Peer> narrow_peers() { return listed(kNarrow, &LibraryPeers::narrow, 1); }
-std::vector<DistancePeer> distance_peers() {
-  return listed(kDistances, &LibraryPeers::distances, 1);
-}
+std::vector<Peer> all_peers() { return listed(kBroad, &LibraryPeers::broad); }
+std::vector<Peer> narrow_peers() { return listed(kNarrow, &LibraryPeers::narrow); }
+std::vector<DistancePeer> distance_peers() { return listed(kDistances, &LibraryPeers::distances); }
 
 // ---- the preparation of a scene and the collector of candidates ----
 

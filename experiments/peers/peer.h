@@ -41,8 +41,7 @@ using BenchRun = std::function<BenchAnswer(const Scene&)>;
 struct Peer {
   std::string name;     // as in --peers
   std::string library;  // with its version, such as "CGAL 5.5.1"
-  std::string
-      missing;  // why it cannot run in this build or with this number of threads; empty: it can
+  std::string missing;  // why it cannot run in this build; empty: it can
   std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
   std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on this scene;
                                                           // empty: it is. Null: exact on all
@@ -77,20 +76,19 @@ struct DistancePeer {
   std::string name;          // as in --peers
   std::string library;       // with its version
   std::string missing = {};  // why it cannot run in this build; empty: it can
-  /// False: the library answers in floats, or gives only upper bounds, so its time does not tell
-  /// how fast distances can be computed.
+  /// False: the library answers in floats, so its time does not tell how fast distances can be
+  /// computed.
   bool comparable = true;
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about this
                                                           // scene; empty: it can. Null: about all
 };
 
-/// Broad phases, each followed by the exact decisions of verify/exact.h, except CGAL's
-/// self_intersections(), which decides exactly by itself. They run at their best settings. All work
-/// that can be divided runs on the threads of the bench. Candidates are decided in bounded parts,
-/// so that tens of millions of overlapping boxes are never stored. The list includes peers that
-/// this build does not have. `threads` >= 1.
-std::vector<Peer> all_peers(unsigned threads);
+/// Broad phases, each followed by the exact decisions of verify/exact.h. They run at their best
+/// settings. All work that can be divided runs on the threads of the bench. Candidates are decided
+/// in bounded parts, so that tens of millions of overlapping boxes are never stored. The list
+/// includes peers that this build does not have.
+std::vector<Peer> all_peers();
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
 /// may be missed or wrong. fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
@@ -107,9 +105,6 @@ std::vector<Peer> narrow_peers();
 ///                          that its dynamic tree of boxes finds
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
 ///                          squared_distance() of two triangles in doubles
-///   embree-points          Embree's rtcPointQuery from every vertex of each object to the other
-///                          object's triangles, in floats. Edges are not compared with edges, so
-///                          it gives an upper bound, and the bound of objects that cross is not 0
 std::vector<DistancePeer> distance_peers();
 
 /// The peers that the adapter of one library adds to the three lists above.
@@ -117,15 +112,11 @@ struct LibraryPeers {
   std::vector<Peer> broad = {}, narrow = {};
   std::vector<DistancePeer> distances = {};
 };
-LibraryPeers cgal_library(unsigned threads);
+LibraryPeers cgal_library();
 LibraryPeers fcl_library();
 LibraryPeers embree_library();
 LibraryPeers bullet_library();
 LibraryPeers ode_library();
-
-/// CGAL's exact predicate by itself, as its users call it. decide() calls it if its filter does not
-/// know the answer. Precondition: neither triangle is degenerate.
-bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 // For the files that adapt a library: which triangles are tested with which, the exact decision of
 // candidates, the search of two trees, and the distances that a task asks for.

@@ -40,7 +40,7 @@ json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector
 
 void require_clash_page(const Scene& scene) {
   require_three();
-  require_page_size(scene, scene.triangles.size());
+  require_page_size(scene);
 }
 
 std::string clash_page(const Scene& scene, const ClashRecord& record, const std::string& unit) {
@@ -67,7 +67,7 @@ std::string clash_page(const Scene& scene, const ClashRecord& record, const std:
            {"zoom", false},
            {"rows", rows},
            {"segments", blocks.add(packed_numbers(quantized(segments, box)))},
-           {"frames", {frame}},
+           {"frame", frame},
            // Two hues that people who see few colours can tell apart, and neither is green.
            {"colours",
             {{"found", {0, 0, 0}},

@@ -1,4 +1,4 @@
-// Collects the triangles of each frame, the colliding pairs and the answers of each step, and puts
+// Collects the triangles, the colliding pairs and the answers of each step, and puts
 // them into the page of web/ as compressed blocks, with a JSON text that names the blocks. A block
 // of numbers holds their differences by byte, compressed by zlib and written as Base64.
 #include "experiments/picture/picture.h"
@@ -86,7 +86,7 @@ Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most
   return Error("--html",
                fmt::format("the scene has {} {}, and a page holds at most {}", grouped(count), what,
                            grouped(most)),
-               "leave objects or frames out, or draw the flat picture alone, with -o");
+               "leave objects out, or draw the flat picture alone, with -o");
 }
 
 json objects_of(const Scene& scene) {
@@ -120,13 +120,11 @@ Box box_of(const Scene& scene) {
   return out;
 }
 
-void require_page_size(const Scene& scene, std::uint64_t triangles_of_all) {
+void require_page_size(const Scene& scene) {
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
   if (scene.triangles.size() > kMostPageTriangles)
     throw too_large("triangles", scene.triangles.size(), kMostPageTriangles);
-  if (triangles_of_all > kMostPageTrianglesOfFrames)
-    throw too_large("triangles in all frames", triangles_of_all, kMostPageTrianglesOfFrames);
   if (scene.objects.size() > kMostPageObjects)
     throw too_large("objects", scene.objects.size(), kMostPageObjects);
 }
@@ -183,24 +181,17 @@ std::string framed_page(std::string_view title, std::string_view body, const Pag
 
 namespace {
 
-// Makes the page frame by frame.
 class PageMaker {
  public:
   PageMaker(const PageArguments& arguments, Lab& lab) : arguments_(arguments), lab_(lab) {
-    if (arguments.frames)
-      source_.emplace(arguments.picture.scene, *arguments.frames, arguments.picture.self);
-  }
-
-  // Adds the triangles, the pairs and the answers of the next frame.
-  void add(std::optional<long> frame) {
-    const Scene& scene = open(frame);
-    triangles_ += scene.triangles.size();
-    require_page_size(scene, triangles_);
+    const Scene& scene = open_scene(arguments_.picture, lab_);
+    require_page_size(scene);
+    box_ = box_of(scene);
     const std::vector<TrianglePair>& pairs = lab_.truth().pairs;
     if (pairs.size() > kMostPagePairs)
       throw too_large("colliding pairs", pairs.size(), kMostPagePairs);
-    json entry = geometry(scene);
-    entry["frame"] = frame ? json(*frame) : json();
+    frame_ = page_vertices(scene, box_, blocks_);
+    add_page_triangles(scene, blocks_, frame_);
     std::vector<std::uint32_t> a, b;
     for (const TrianglePair& pair : pairs) {
       a.push_back(pair.a);
@@ -209,14 +200,12 @@ class PageMaker {
     // One byte per pair: the index of its kind in the array `contacts` of finish().
     std::string contacts;
     for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
-    entry["pairs"] = pairs.size();
-    entry["a"] = blocks_.add(packed_numbers(a));
-    entry["b"] = blocks_.add(packed_numbers(b));
-    entry["contacts"] = blocks_.add(packed_bytes(contacts));
-    frames_.push_back(entry);
+    frame_["a"] = blocks_.add(packed_numbers(a));
+    frame_["b"] = blocks_.add(packed_numbers(b));
+    frame_["contacts"] = blocks_.add(packed_bytes(contacts));
     for (const RunOptions& options : arguments_.steps) {
       require_scene(scene, options.method);
-      step(scene, options, frame, pairs);
+      step(scene, options, pairs);
     }
   }
 
@@ -242,7 +231,7 @@ class PageMaker {
                     {"idlePart", kIdlePart},
                     {"through", kThrough},
                     {"objects", objects}}},
-                  {"frames", frames_},
+                  {"frame", frame_},
                   {"steps", steps_}};
     about.update(page_box(box_));
     PageResult out;
@@ -263,42 +252,10 @@ class PageMaker {
     return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
   }
 
-  const Scene& open(std::optional<long> frame) {
-    if (!source_) {
-      const Scene& scene = open_scene(arguments_.picture, lab_);
-      box_ = box_of(scene);
-      return scene;
-    }
-    if (frames_.empty()) measure(*arguments_.frames);
-    return lab_.scene(fmt::format("a frame of the page\n{}", *frame),
-                      [&] { return source_->at(*frame); });
-  }
-
-  // Sets box_ to the box of all frames, so that all frames round coordinates alike. Reads the
-  // frames from a second FrameSource.
-  void measure(const FrameRange& range) {
-    FrameSource source(arguments_.picture.scene, range, arguments_.picture.self);
-    for (long frame = range.first; frame <= range.last; ++frame) box_.add(box_of(source.at(frame)));
-  }
-
-  // The vertices; also objects and triangles if they differ from those of the previous frame.
-  json geometry(const Scene& scene) {
-    json out = page_vertices(scene, box_, blocks_);
-    const json objects = objects_of(scene);
-    if (objects != objects_ || scene.triangles != corners_) {
-      objects_ = objects;
-      corners_ = scene.triangles;
-      add_page_triangles(scene, blocks_, out);
-    }
-    return out;
-  }
-
-  void step(const Scene& scene, const RunOptions& options, std::optional<long> frame,
-            const std::vector<TrianglePair>& pairs) {
+  void step(const Scene& scene, const RunOptions& options, const std::vector<TrianglePair>& pairs) {
     const MethodAnswer answer = answer_of(options, scene, lab_);
     const PanelResult& result = answer.result;
-    json entry = {{"frame", frames_.size() - 1},
-                  {"method", method_title(options)},
+    json entry = {{"method", method_title(options)},
                   {"resolution", draws(options.method) ? resolution_of(options) : 0},
                   {"title", result.title},
                   {"headline", result.headline},
@@ -318,18 +275,15 @@ class PageMaker {
     if (!answer.idle.empty())
       entry["kept"] = blocks_.add(packed_bytes(bits_of(answer.idle, scene.triangles.size())));
     steps_.push_back(entry);
-    results_.push_back({.result = result, .frame = frame});
+    results_.push_back(result);
   }
 
   const PageArguments& arguments_;
   Lab& lab_;
-  std::optional<FrameSource> source_;
   Box box_ = Box::empty();
   PageBlocks blocks_;
-  json frames_ = json::array(), steps_ = json::array(), objects_;
-  std::vector<std::array<std::uint32_t, 3>> corners_;
-  std::vector<PageStep> results_;
-  std::uint64_t triangles_ = 0;
+  json frame_, steps_ = json::array();
+  std::vector<PanelResult> results_;
 };
 
 }  // namespace
@@ -359,19 +313,12 @@ void require_three() {
 
 void require_page_size(const PageArguments& arguments, Lab& lab) {
   const Scene& scene = open_scene(arguments.picture, lab);
-  require_page_size(scene, scene.triangles.size());
+  require_page_size(scene);
 }
 
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab) {
   require_three();
-  PageMaker maker(arguments, lab);
-  if (arguments.frames) {
-    for (long frame = arguments.frames->first; frame <= arguments.frames->last; ++frame)
-      maker.add(frame);
-  } else {
-    maker.add(arguments.picture.frame);
-  }
-  return maker.finish(flat);
+  return PageMaker(arguments, lab).finish(flat);
 }
 
 }  // namespace farcull

@@ -23,8 +23,8 @@ class PageBlocks {
 
 Box box_of(const Scene& scene);
 
-/// Throws Error naming --html if a page cannot hold the scene. triangles_of_all: in all frames.
-void require_page_size(const Scene& scene, std::uint64_t triangles_of_all);
+/// Throws Error naming --html if a page cannot hold the scene.
+void require_page_size(const Scene& scene);
 
 /// The size of the box for the reader: its corners, and its extents relative to the largest.
 nlohmann::json page_box(const Box& box);

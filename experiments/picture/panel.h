@@ -1,5 +1,4 @@
-// Images with text, and the panels of a picture: the parts that every panel has, and the panel of
-// --view-depth, which shows the depth that a method stores in one of its views.
+// Images with text, and the panels of a picture.
 #pragma once
 
 #include <array>
@@ -31,9 +30,7 @@ struct PictureArguments {
                                    // obliquely down on the side that +z points to
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
   bool zoom = false;               // only the colliding triangles
-  std::optional<std::string> depth_view;  // shows instead the depth stored in this view, and over
-                                          // it the triangles that the view culls
-  int width = 900, height = 760;          // px of a panel's picture, 64 to kMostPicture
+  int width = 900, height = 760;   // px of a panel's picture, 64 to kMostPicture
 };
 
 /// The largest number of panels.
@@ -140,19 +137,16 @@ constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
 
 /// The counts and texts of a panel. `colliding` and `missed` include pairs of neighbours.
 struct PanelResult {
-  std::string title;                   // "cullide at 128 px"
-  std::string headline;                // "missed 12 of 4,268 colliding pairs"
-  std::uint64_t colliding = 0;         // pairs, by the exact method
-  std::uint64_t neighbours = 0;        // of these, pairs of neighbours
-  std::uint64_t missed = 0;            // of `colliding`, not found by the method (in a view of
-                                       // depth_view: with a culled triangle)
-  std::uint64_t missed_triangles = 0;  // triangles in a missed pair
-  std::uint64_t kept = 0;              // triangles; 0 for exact, which culls none
-  std::uint64_t idle = 0;              // of `kept`, in no collision
-  std::uint64_t rings = 0;             // around misses that are too small to see
-  std::uint64_t first_pass = 0, second_pass = 0, culled = 0;  // of depth_view: triangles fully
-                                                              // visible in that pass alone, in both
-  bool drew = false;                                          // it drew in views at a resolution
+  std::string title;                             // "cullide at 128 px"
+  std::string headline;                          // "missed 12 of 4,268 colliding pairs"
+  std::uint64_t colliding = 0;                   // pairs, by the exact method
+  std::uint64_t neighbours = 0;                  // of these, pairs of neighbours
+  std::uint64_t missed = 0;                      // of `colliding`, not found by the method
+  std::uint64_t missed_triangles = 0;            // triangles in a missed pair
+  std::uint64_t kept = 0;                        // triangles; 0 for exact, which culls none
+  std::uint64_t idle = 0;                        // of `kept`, in no collision
+  std::uint64_t rings = 0;                       // around misses that are too small to see
+  bool drew = false;                             // it drew in views at a resolution
   bool broken = false;                           // the method promises, and missed a pair
   std::string device;                            // what answered: a renderer, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px
@@ -177,17 +171,11 @@ std::string method_title(const RunOptions& options);
 /// "far, exact offset, at 128 px".
 std::string panel_title(const RunOptions& options);
 /// "missed 12 of 4,268 colliding pairs".
-std::string headline_of(const PanelResult& result, const std::string& verb);
+std::string headline_of(const PanelResult& result);
 /// Sets the title and the headline over the panel, and the colour of the headline.
 void set_heading(DrawnPanel& panel);
 /// Adds the line of the legend that explains a colour; or the rings, if there are any.
 void explain(DrawnPanel& panel, Rgba colour, const std::string& text);
 void explain_rings(DrawnPanel& panel, const std::string& text);
-
-/// The panel of arguments.depth_view: run, depths and picture. Throws Error if the method draws no
-/// depth, or if nothing is drawn in the view.
-DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& arguments,
-                       const Scene& scene, const Truth& truth, Session& session,
-                       const GlContext& context);
 
 }  // namespace farcull

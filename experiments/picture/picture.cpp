@@ -109,8 +109,6 @@ std::string command_of(const PictureArguments& arguments) {
   if (!arguments.view.empty()) option("--view", arguments.view);
   if (!arguments.up.empty()) option("--up", arguments.up);
   if (arguments.zoom) add("--zoom");
-  // Uses `=`: the value is optional, so a value that begins with - would be taken for an option.
-  if (arguments.depth_view) add("--view-depth=" + *arguments.depth_view);
   option("--size", fmt::format("{}x{}", arguments.width, arguments.height));
   return out;
 }
@@ -125,16 +123,10 @@ void validate(const PictureArguments& arguments) {
     throw Error("--size", fmt::format("{} px is outside 64 .. {}", side, kMostPicture),
                 "give the width and height of a panel in that range, as in 900x760");
   }
-  for (const RunOptions& options : arguments.panels) {
-    validate(options);
-    if (!arguments.depth_view || draws(options.method)) continue;
-    throw Error("--view-depth", to_string(options.method) + " stores no depth",
-                "use --method " + method_names([](const Traits& t) { return t.draws; }));
-  }
+  for (const RunOptions& options : arguments.panels) validate(options);
   as_option("--view", [&] { parse_view(arguments.view.empty() ? kUsualView : arguments.view); });
   as_option("--up", [&] { parse_view(arguments.up.empty() ? "y" : arguments.up); });
   camera(arguments);
-  if (arguments.depth_view) as_option("--view-depth", [&] { parse_view(*arguments.depth_view); });
   if (!arguments.frame) {
     if (!arguments.frames) return;
     throw Error("--frames", "says of how many, not which", "give --frame F as well");
@@ -213,7 +205,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
   // As in `farcull run`, this does not depend on the probes of the device.
   result.broken = promises(record.options) && !answer.missed.empty();
   result.device = device_of(record);
-  result.headline = headline_of(result, "missed");
+  result.headline = headline_of(result);
   return answer;
 }
 
@@ -333,7 +325,6 @@ std::string subtitle(const PictureArguments& arguments, const PictureResult& res
     out += fmt::format(", frame {}", *arguments.frame);
     if (range.count() > 1) out += fmt::format(" of {} to {}", range.first, range.last);
   }
-  if (arguments.depth_view) out += ", one view of the method's";
   return out;
 }
 
@@ -372,9 +363,7 @@ PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
   for (RunOptions options : arguments.panels) {
     options.verify = false;
     options.device = lab.device();
-    DrawnPanel panel = arguments.depth_view
-                           ? depth_panel(options, arguments, scene, truth, lab.session(), context)
-                           : panel_of(options, scene, window, truth, lab, context);
+    DrawnPanel panel = panel_of(options, scene, window, truth, lab, context);
     result.panels.push_back(std::move(panel.result));
     sheets.push_back(std::move(panel.sheet));
   }

@@ -66,15 +66,13 @@ std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
 /// the box are moved to its border. A coordinate is 0 if the box has no extent along its axis.
 std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
 
-/// Limits of a page: triangles in a frame, triangles in all frames, colliding pairs in a frame, and
-/// objects (16 bits of a corner name its object).
-constexpr std::uint64_t kMostPageTriangles = 2'000'000, kMostPageTrianglesOfFrames = 16'000'000,
-                        kMostPagePairs = 4'000'000, kMostPageObjects = 65'536;
+/// Limits of a page: triangles, colliding pairs, and objects (16 bits of a corner name its object).
+constexpr std::uint64_t kMostPageTriangles = 2'000'000, kMostPagePairs = 4'000'000,
+                        kMostPageObjects = 65'536;
 
 struct PageArguments {
-  PictureArguments picture;          // the flat picture; the page shows the same scene
-  std::vector<RunOptions> steps;     // the choices of the reader: at least one
-  std::optional<FrameRange> frames;  // of a scene that moves; empty: the frame of the picture
+  PictureArguments picture;       // the flat picture; the page shows the same scene
+  std::vector<RunOptions> steps;  // the choices of the reader: at least one
 };
 
 /// Default resolutions that a reader can step through, px: from large pixels to usual ones.
@@ -85,27 +83,21 @@ constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
 std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
                                        std::vector<int> resolutions);
 
-/// The answer of one method on one frame.
-struct PageStep {
-  PanelResult result;
-  std::optional<long> frame;
-};
-
 struct PageResult {
   std::string html;
-  std::vector<PageStep> steps;  // frame by frame, in the order of the arguments
+  std::vector<PanelResult> steps;  // the answers, in the order of the arguments
 };
 
 /// Runs the methods of the steps and writes the page. `flat`: the flat picture of the same scene,
 /// for printing and for browsers without WebGL 2. Throws Error if the program was built without
-/// three.js, for a scene or a motion that is too large, and as make_picture() does.
+/// three.js, for a scene that is too large, and as make_picture() does.
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab);
 
 /// Throws Error naming --html if the program was built without three.js.
 void require_three();
 
-/// Throws Error naming --html if the scene of the page, or its first frame, has more triangles or
-/// objects than a page holds. Called before any run. Throws as open_scene() does.
+/// Throws Error naming --html if the scene of the page has more triangles or objects than a page
+/// holds. Called before any run. Throws as open_scene() does.
 void require_page_size(const PageArguments& arguments, Lab& lab);
 
 }  // namespace farcull

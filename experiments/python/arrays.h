@@ -5,6 +5,7 @@
 #include <pybind11/numpy.h>
 
 #include <pybind11/pybind11.h>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,7 @@ void beside(const std::function<void()>& work);
 
 /// Runs `work` as beside() does, and returns its value.
 template <class Work>
-auto answer_beside(const Work& work) {
+auto without_gil(const Work& work) {
   std::optional<decltype(work())> out;
   beside([&] { out.emplace(work()); });
   return std::move(*out);
@@ -70,79 +71,23 @@ Progress stopping_progress();
 /// becomes an InputError, any other an Error; std::bad_alloc becomes a MemoryError.
 void register_exceptions();
 
-/// Uninitialized memory for numbers that are all written before they are read.
-template <class Number>
-class Memory {
- public:
-  /// Room for `count` numbers; the old contents are lost.
-  std::span<Number> room(std::size_t count) {
-    if (count > size_) {
-      size_ = 0;
-      memory_.reset();  // before the new memory is asked for, so that both are never held
-      memory_.reset(new Number[count]);
-      size_ = count;
-    }
-    return {memory_.get(), count};
-  }
-
- private:
-  std::unique_ptr<Number[]> memory_;
-  std::size_t size_ = 0;
-};
-
-/// An array of rows of three numbers of any type, with any strides. Reads the memory as it is at
-/// the time of a call. The array lives at least as long as this.
-class Rows {
- public:
-  /// name: of the parameter, for errors. Throws farcull.InputError if the array is not (n, 3), or
-  /// its type does not convert to double without rounding (for indices: has no whole numbers).
-  Rows(const py::array& array, std::string name, bool indices);
-
-  /// The numbers as doubles or as indices, row after row. Returns the array's own memory if its
-  /// type and layout fit, else copies in `memory`. Touches no Python. Throws Error for a number
-  /// that would round, or an index below 0 or of 2^32 or more.
-  std::span<const double> doubles(Memory<double>& memory) const;
-  std::span<const std::uint32_t> indices(Memory<std::uint32_t>& memory) const;
-  /// The array's own numbers if they have this type and lie row after row; else empty.
-  std::span<const std::int64_t> wide() const;
-
- private:
-  template <class Out, class In>
-  std::span<const Out> copy(Memory<Out>& memory) const;
-  template <class Out, class In>
-  void copy_rows(std::size_t begin, std::size_t end, Out* to) const;
-  bool packed(std::size_t size) const;
-
-  py::array kept_;
-  std::string name_;
-  const std::byte* data_ = nullptr;
-  std::size_t rows_ = 0;
-  std::ptrdiff_t row_stride_ = 0, column_stride_ = 0;  // bytes
-  char kind_ = 'f';                                    // as numpy.dtype.kind
-  std::size_t size_ = 8;                               // bytes of a number
-};
-
-/// Copies of arrays that the library cannot use directly. They are kept between calls, so that only
-/// the first call allocates memory.
-struct Copies {
-  Memory<double> vertices;
-  Memory<std::uint32_t> triangles;
-};
-
 /// The input of a call. Only its constructor and destructor need the interpreter.
-class Given {
+class MeshArrays {
  public:
-  /// poses: (k, 3, 4) doubles, row by row; empty: no object moves.
-  Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts,
-        const py::array& poses);
-  /// Overwrites `copies` if the library cannot use the arrays directly. The input is valid as long
-  /// as this object exists and the copies exist unchanged.
-  Input input(Copies& copies) const;
+  /// As _arguments.py makes them, contiguous: vertices (n, 3), doubles; triangles (m, 3), int64 or
+  /// uint32; object_starts; poses (k, 3, 4), or empty if no object moves.
+  MeshArrays(const py::array& vertices, const py::array& triangles,
+             const py::array_t<std::int64_t>& object_starts, const py::array_t<double>& poses);
+  MeshArrays(const MeshArrays&) = delete;
+  MeshArrays& operator=(const MeshArrays&) = delete;
+  /// Refers to the arrays and to this object.
+  const Input& input() const { return input_; }
 
  private:
-  Rows vertices_, triangles_;
+  std::array<py::array, 2> kept_;
   std::vector<std::uint32_t> starts_;
   std::vector<Pose> poses_;
+  Input input_;
 };
 
 /// An array (k, 2) from any type of pairs with members a and b.
@@ -187,13 +132,12 @@ struct KeptScene {
   explicit KeptScene(Scene given) : scene(std::make_shared<const Scene>(std::move(given))) {}
 };
 
-/// The question to a collider or a stream, from the dictionary of _collide.py.
+/// The question to a collider, from the dictionary of _collide.py.
 Options options_of(const py::dict& question);
 
 void add_collider(py::module_& module);
 void add_distances(py::module_& module);
 void add_scenes(py::module_& module);
 void add_runs(py::module_& module);
-void add_stream(py::module_& module);
 
 }  // namespace farcull::python

@@ -1,4 +1,4 @@
-// The collider, the stream and distances of the library.
+// The collider and distances of the library.
 #include <pybind11/stl.h>
 #include <unistd.h>
 
@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -87,8 +86,8 @@ class KeptFinder {
             const py::array& poses) {
     require_process(process_, name_);
     const Turn turn(used_, name_);
-    const Given given(vertices, triangles, starts, poses);
-    return answer_beside([&] { return finder_->find(given.input(copies_)); });
+    const MeshArrays given(vertices, triangles, starts, poses);
+    return without_gil([&] { return finder_->find(given.input()); });
   }
 
   const Asked options;
@@ -96,7 +95,6 @@ class KeptFinder {
  private:
   const char* name_;
   pid_t process_;
-  Copies copies_;
   std::atomic_flag used_;
   std::unique_ptr<Finder> finder_;
 };
@@ -189,7 +187,7 @@ void add_collider(py::module_& module) {
 void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
       .def(py::init([](const std::string& kind, std::size_t k, std::optional<double> within,
-                       bool self, const std::vector<bool>& self_objects, bool inside, bool parity,
+                       bool self, const std::vector<bool>& self_objects, bool inside,
                        const std::vector<std::array<std::uint32_t, 2>>& ignore, unsigned threads) {
         return std::make_unique<KeptDistances>("DistanceFinder",
                                                DistanceFinderOptions{.kind = kind_of(kind),
@@ -198,7 +196,6 @@ void add_distances(py::module_& module) {
                                                                      .self = self,
                                                                      .self_objects = self_objects,
                                                                      .inside = inside,
-                                                                     .parity = parity,
                                                                      .ignore = ignore,
                                                                      .threads = threads});
       }))
@@ -208,85 +205,6 @@ void add_distances(py::module_& module) {
       });
   module.attr("features") = names_of(kFeatures);
   module.attr("inside") = names_of(kInside);
-}
-
-// Pairs part by part: the stream of the library.
-
-namespace {
-
-// A stream for one thread at a time and for one process, like KeptCollider. After each next()
-// Python must call take(). If a signal or a lack of memory prevents that, the following next()
-// throws, since nobody would notice the gap.
-class KeptStream {
- public:
-  KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
-             const py::array& poses, const Options& options)
-      : process_(::getpid()), contacts_(options.contacts) {
-    const Given given(vertices, triangles, starts, poses);
-    beside([&] {
-      Copies copies;
-      stream_ = std::make_unique<Stream>(given.input(copies), options);
-    });
-  }
-
-  // The next part of the pairs, perhaps empty; None after the last part.
-  py::object next() {
-    require_process(process_, "Stream");
-    const Turn turn(used_, "Stream");
-    if (given_) {
-      raise("stream", "an earlier call was interrupted, and its pairs are lost",
-            "make a new stream; one for each thread", false);
-    }
-    given_ = true;
-    const bool more = answer_beside([&] { return stream_->next(found_); });
-    decided_ = stream_->decided();
-    complete_ = stream_->complete();
-    if (!more) {
-      given_ = false;
-      return py::none();
-    }
-    py::array_t<bool> neighbours(static_cast<py::ssize_t>(found_.size()));
-    std::ranges::transform(found_, neighbours.mutable_data(), std::identity(),
-                           &StreamedPair::neighbours);
-    const auto [kinds, segments] =
-        contact_arrays(std::views::transform(found_, &StreamedPair::contact), contacts_);
-    return py::make_tuple(pair_array(std::views::transform(found_, &StreamedPair::pair)),
-                          neighbours, kinds, segments);
-  }
-
-  void take() { given_ = false; }
-
-  // The values after the last next(), so that they can be read while another thread calls it.
-  std::uint64_t decided() const { return decided_; }
-  bool complete() const { return complete_; }
-
- private:
-  pid_t process_;
-  Contacts contacts_;
-  bool given_ = false;  // a call began, and its pairs were not taken
-  std::atomic_flag used_;
-  std::unique_ptr<Stream> stream_;
-  std::vector<StreamedPair> found_;
-  std::uint64_t decided_ = 0;
-  bool complete_ = false;
-};
-
-}  // namespace
-
-void add_stream(py::module_& module) {
-  py::class_<KeptStream>(module, "Stream")
-      .def(py::init([](const py::array& vertices, const py::array& triangles,
-                       const py::array& starts, const py::array& poses, const py::dict& question) {
-        return std::make_unique<KeptStream>(vertices, triangles, starts, poses,
-                                            options_of(question));
-      }))
-      .def("next", &KeptStream::next)
-      // Python checks for signals after a call, but not after an assignment.
-      .def_property(
-          "taken", [](const KeptStream&) { return true; },
-          [](KeptStream& stream, bool) { stream.take(); })
-      .def_property_readonly("decided", &KeptStream::decided)
-      .def_property_readonly("complete", &KeptStream::complete);
 }
 
 }  // namespace farcull::python

@@ -232,7 +232,6 @@ void fill(py::module_& module) {
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
   spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
   add_collider(module);
-  add_stream(module);
   add_distances(module);
   add_scenes(module);
   add_runs(module);

@@ -1,4 +1,4 @@
-// Runs of any method, with their record, plan, check, picture and clashes, like the commands of the
+// Runs of any method, with their record, check, picture and clashes, like the commands of the
 // same names.
 #include <pybind11/stl.h>
 
@@ -46,11 +46,10 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
                  const py::array& poses, const std::string& name,
                  const std::vector<std::string>& names, bool self,
                  const std::vector<bool>& self_objects) {
-  const Given given(vertices, triangles, starts, poses);
-  return answer_beside([&] {
+  const MeshArrays given(vertices, triangles, starts, poses);
+  return without_gil([&] {
     TakenInput taken;
-    Copies copies;
-    take(given.input(copies), self, self_objects, taken, nullptr, false);
+    take(given.input(), self, self_objects, taken, nullptr, false);
     Scene& scene = taken.scene;
     scene.name = name;
     if (!names.empty() && names.size() != scene.objects.size()) {
@@ -75,7 +74,7 @@ SceneArguments arguments_of(const std::vector<std::string>& names, const std::st
 }
 
 Kept from_names(const std::vector<std::string>& names, const std::string& weld, bool self) {
-  return answer_beside([&] {
+  return without_gil([&] {
     Scene scene = load_scene(arguments_of(names, weld));
     if (self) {
       for (Object& object : scene.objects) object.self = true;
@@ -100,7 +99,7 @@ class Frames {
     if (frame < range_.first || frame > range_.last)
       raise("frame", std::to_string(frame) + " is none of the frames", "give one of them", true);
     const Turn turn(used_, "Frames");
-    return answer_beside([&] { return std::make_unique<KeptScene>(source_->at(frame)); });
+    return without_gil([&] { return std::make_unique<KeptScene>(source_->at(frame)); });
   }
 
  private:
@@ -118,20 +117,23 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
 }
 
 // The triangles of a mesh after vertices that are at most so far apart were merged.
-py::array_t<std::uint32_t> welded(const py::array& vertices, const py::array& triangles,
+py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
+                                  const py::array_t<std::int64_t>& triangles,
                                   const std::string& tolerance) {
-  const Rows from(vertices, "V", false), of(triangles, "F", true);
   py::array_t<std::uint32_t> out({triangles.shape(0), py::ssize_t{3}});
   std::uint32_t* const to = out.mutable_data();
+  const std::span<const double> points(vertices.data(), static_cast<std::size_t>(vertices.size()));
+  const std::span<const std::int64_t> corners(triangles.data(),
+                                              static_cast<std::size_t>(triangles.size()));
   beside([&] {
-    Copies copies;
     Mesh mesh;
-    const std::span<const double> points = from.doubles(copies.vertices);
-    const std::span<const std::uint32_t> corners = of.indices(copies.triangles);
     for (std::size_t k = 0; k + 2 < points.size(); k += 3)
       mesh.vertices.emplace_back(points[k], points[k + 1], points[k + 2]);
-    for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
-      mesh.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
+    for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
+      mesh.triangles.push_back({static_cast<std::uint32_t>(corners[k]),
+                                static_cast<std::uint32_t>(corners[k + 1]),
+                                static_cast<std::uint32_t>(corners[k + 2])});
+    }
     weld(mesh, parse_weld(tolerance));
     std::ranges::copy(mesh.triangles | std::views::join, to);
   });
@@ -143,7 +145,7 @@ std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
                                                       const std::string& first,
                                                       const std::string& second,
                                                       const std::string& what) {
-  return answer_beside([&] {
+  return without_gil([&] {
     std::vector<std::array<std::uint32_t, 2>> out;
     for (const ObjectPair& pair : pairs_between(*kept.scene, first, second, "ignore", what))
       out.push_back({pair.a, pair.b});
@@ -247,7 +249,7 @@ void require_pairs(const Scene& scene) {
 
 KeptRecord run_of(const KeptScene& kept, const GivenOptions& given, bool verify, unsigned threads,
                   bool kinds, const Ignored& ignore, std::uint64_t limit) {
-  return answer_beside([&] {
+  return without_gil([&] {
     const RunOptions options = options_of(given, ignore, limit, verify, kinds);
     require_pairs(*kept.scene);
     require_asked(*kept.scene, options.ignored, "ignore", "make the scene with self=True");
@@ -279,20 +281,6 @@ py::list views_of(const Candidates& found) {
   return out;
 }
 
-py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned threads,
-                  const Ignored& ignore, std::uint64_t limit) {
-  const auto [json, table] = answer_beside([&] {
-    const RunOptions options = options_of(given, ignore, limit);
-    require_pairs(*kept.scene);
-    require_asked(*kept.scene, options.ignored, "ignore", "make the scene with self=True");
-    const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
-    const MissesOfPlan misses = misses_of(*kept.scene, planned);
-    return std::pair(plan_json(*kept.scene, planned, misses.predicted).dump(),
-                     plan_table(*kept.scene, planned) + misses_line(misses));
-  });
-  return py::make_tuple(json, table);
-}
-
 // The list as a file of the program would hold it.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -315,7 +303,7 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
   const Scene& scene = *kept.scene;
   std::optional<GivenList> list;
   if (pairs) list = listed(scene, pairs_of(*pairs, "pairs", scene.triangles.size()));
-  const SceneCheck check = answer_beside([&] {
+  const SceneCheck check = without_gil([&] {
     std::optional<Certificate> parsed;
     if (certificate) parsed = parse_certificate(*certificate, "certificate");
     const double asked = clearance.value_or(parsed ? parsed->clearance : 0);
@@ -335,18 +323,16 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
 
 // The pixels, what the panels say, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
-                     const std::string& view, const std::string& up, bool zoom,
-                     const std::optional<std::string>& depth_view, int width, int height,
-                     const std::string& device, unsigned threads, bool page) {
+                     const std::string& view, const std::string& up, bool zoom, int width,
+                     int height, const std::string& device, unsigned threads, bool page) {
   std::string html;
-  const PictureResult result = answer_beside([&] {
+  const PictureResult result = without_gil([&] {
     if (page) require_three();
     PictureArguments arguments;
     arguments.scene = {kept.scene->name};
     arguments.view = view;
     arguments.up = up;
     arguments.zoom = zoom;
-    arguments.depth_view = depth_view;
     arguments.width = width;
     arguments.height = height;
     for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));
@@ -355,8 +341,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     lab.scene(kept.scene->name, [&] { return *kept.scene; });
     PictureResult flat = make_picture(arguments, lab);
     if (page) {
-      html = make_page({.picture = arguments, .steps = arguments.panels, .frames = {}}, flat, lab)
-                 .html;
+      html = make_page({.picture = arguments, .steps = arguments.panels}, flat, lab).html;
     }
     return flat;
   });
@@ -381,7 +366,7 @@ struct KeptClash {
 
 KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignore, bool depth,
                    unsigned threads) {
-  return answer_beside([&] {
+  return without_gil([&] {
     auto scene = std::make_shared<Scene>(*kept.scene);
     for (Object& object : scene->objects) object.self = false;
     ClashOptions options{
@@ -426,20 +411,20 @@ void add_runs(py::module_& module) {
   viewed("kept_triangles", &Candidates::triangles);
   const auto text = [](auto& of, const char* name, auto write) {
     using Answer = typename std::decay_t<decltype(of)>::type;
-    of.def(name, [write](const Answer& k) { return answer_beside([&] { return write(k); }); });
+    of.def(name, [write](const Answer& k) { return without_gil([&] { return write(k); }); });
   };
   text(made, "json", [](const KeptRecord& k) { return to_json(*k.scene, k.record).dump(); });
   text(made, "table", [](const KeptRecord& k) { return run_table(*k.scene, k.record); });
   made.def("missed", [](const KeptRecord& k) -> py::object {
     if (!k.record.verification) return py::none();
-    return pair_array(answer_beside([&] { return k.missed(); }));
+    return pair_array(without_gil([&] { return k.missed(); }));
   });
   made.def("certificate", [](const KeptRecord& k) {
     if (k.record.options.limit > 0 || !k.record.options.ignored.empty()) {
       raise("certificate", "is about all colliding pairs of all objects",
             "run without ignore and limit", true);
     }
-    return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
+    return without_gil([&] { return to_text(certificate_of(*k.scene, k.record)); });
   });
   // The keywords of run(), and whether each is a flag; method and limit are separate parameters.
   py::dict options;
@@ -449,7 +434,6 @@ void add_runs(py::module_& module) {
   }
   module.attr("options") = options;
   module.def("run", &run_of);
-  module.def("plan", &plan_of);
   module.def("check", &check_of);
   module.def("picture", &picture_of);
   py::class_<KeptClash> clash(module, "Clash");

@@ -173,9 +173,7 @@ Json distances_json(const Scene& scene, const DistanceRecord& record,
           {"pairs_asked", kPairsAsked.at(static_cast<std::size_t>(o.pairs))},
           {"k", json_if(o.pairs == DistancePairs::nearest, o.k)},
           {"within", o.within},
-          {"inside_by", text_json(!o.inside  ? ""
-                                  : o.parity ? "parity"
-                                             : "winding number")},
+          {"inside_by", text_json(o.inside ? "winding number" : "")},
           {"ignored", scene.ignored.size()},
           {"pairs",
            json_list(record.distances, [&](const Distance& d) { return pair_json(scene, d); })},

@@ -19,12 +19,12 @@ from matplotlib import pyplot  # noqa: E402
 
 ROUNDS, SIDE = 5, 256  # runs of each form, pixels of a view
 SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres "
-          "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers fans stack "
+          "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers stack "
           "mannequin-devil+self cad-cut").split()
 DEFAULT = "boxes"
 FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then methods
 # Scenes of the list whose exact tests take longer than their views, and in which views are tried.
-LOOKED_AT = "needles-crossed needles-layers fans cad-cut mannequin-devil+self".split()
+LOOKED_AT = "needles-crossed needles-layers cad-cut mannequin-devil+self".split()
 DIRECTIONS, SIDES = 20, (64, 1024)
 # One of these is the fastest on every scene of docs/results/bench.md.
 PEERS = "embree-low,embree-medium,cgal-object-pairs,fcl-obb,bullet-gimpact"

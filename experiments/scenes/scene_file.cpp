@@ -567,7 +567,6 @@ std::string scene_file_text(const std::string& name, const std::vector<SceneFile
   Json list = Json::array();
   for (const SceneFileObject& object : objects) {
     Json& out = list.emplace_back(Json{{"name", object.name}, {"mesh", object.mesh}});
-    if (object.groups) out["split"] = "groups";
     if (object.self) out["self"] = true;
   }
   Json out = {{"name", name}, {"objects", list}};

@@ -124,7 +124,6 @@ Scene parse_scene_file(const std::string& text, const std::string& path);
 /// An object in a scene file to be written, without a placement.
 struct SceneFileObject {
   std::string name, mesh;
-  bool groups = false;  // split: groups
   bool self = false;
 };
 /// The text of a scene file; ignored: pairs of names.
@@ -227,14 +226,5 @@ struct WrittenScene {
 /// writes scene.json last. Throws Error naming a path that the system refuses, and then removes the
 /// files that are new. Precondition: every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
-
-/// The same for frames, for `farcull run FOLDER/scene.json --frames`: NAME_%04d.off with the number
-/// of the frame, or NAME.off for an object that stands still while others move. If objects come and
-/// go (`objects_change`), all objects of a frame are groups of one OBJ instead, in their order.
-/// `at` gives the frames of the range in order. Throws Error as write_scene(), and if objects come
-/// and go but only some are tested against themselves, which no scene file can express.
-WrittenScene write_frames(const std::function<const Scene&(long)>& at, FrameRange range,
-                          bool objects_change, const std::string& folder,
-                          const Progress& progress = {});
 
 }  // namespace farcull

@@ -82,17 +82,6 @@ const Asked& ask_card(const KnownContestant& contestant) {
   return out;
 }
 
-/// An example of a fault: its family, and its line in a list of the suite, with the kind that the
-/// oracles find.
-std::string example_line(const Json& example) {
-  SuitePair pair;
-  pair.parameter = example[1];
-  for (std::size_t i = 0; i < 18; ++i)
-    (i < 9 ? pair.a : pair.b)[i / 3 % 3][static_cast<Eigen::Index>(i % 3)] = example[i + 2];
-  pair.kind = decide(pair, "an example");
-  return example[0].get<std::string>() + " " + pair_line(pair);
-}
-
 LibraryCounts counts_of(const Json& found) {
   LibraryCounts out;
   for (const auto& [name, value] : found["counts"].items()) {
@@ -103,8 +92,6 @@ LibraryCounts counts_of(const Json& found) {
     else
       out.values.emplace_back(name, value.get<std::uint64_t>());
   }
-  for (const auto& [fault, example] : found["examples"].items())
-    out.values.emplace_back("example_" + fault, example_line(example));
   return out;
 }
 

@@ -85,7 +85,7 @@ std::vector<std::string> scenes_of(bool quick) {
   std::vector<std::string> out = {
       "slivers:100:30",  "slivers:200:1e3", "crowd:300:0.5", "field:8000",   "spheres:6000",
       "shells:8",        "two-tori",        "two-spheres",   "torii:720",    "cylinders:30",
-      "tree-leaves:100", "fans:2000",       "cad-cut:2000",  "mixed:50:100", "stack:16:0.01"};
+      "tree-leaves:100", "cad-cut:2000",    "mixed:50:100",  "stack:16:0.01"};
   for (const char* drawn : {"random-soup", "needles:100", "crowd:200"}) {
     for (const std::string& scene : drawn_scenes(drawn, 3)) out.push_back(scene);
   }

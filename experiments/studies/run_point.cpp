@@ -161,8 +161,8 @@ PointResult result_of(const Scene& scene, const Truth& truth, const Record& reco
   return out;
 }
 
-Peer peer_named(const std::string& name, unsigned threads) {
-  for (const std::vector<Peer>& peers : {all_peers(threads), narrow_peers()}) {
+Peer peer_named(const std::string& name) {
+  for (const std::vector<Peer>& peers : {all_peers(), narrow_peers()}) {
     for (const Peer& peer : peers) {
       if (peer.name == name) return peer;
     }
@@ -323,13 +323,13 @@ PointResult measure_with_risk(const RunPoint& point, Lab& lab, Record* record) {
 std::string library_of_peer(const Point& point) {
   const auto* asked = std::get_if<PeerPoint>(&point);
   if (asked == nullptr) return "";
-  const Peer peer = peer_named(asked->peer, 1);
+  const Peer peer = peer_named(asked->peer);
   return peer.missing.empty() ? peer.library : "";
 }
 
 PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads) {
   const Scene& scene = open_scene(point.scene, lab);
-  const Peer peer = peer_named(point.peer, threads);
+  const Peer peer = peer_named(point.peer);
   PointResult out{.device = "cpu"};
   out.left_out = !peer.missing.empty() ? peer.missing : peer.refuses ? peer.refuses(scene) : "";
   if (!out.left_out.empty()) return out;

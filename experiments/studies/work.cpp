@@ -109,17 +109,17 @@ constexpr const char* kOriented = "fcl-obb";  // leaves of FCL's trees whose ori
 // Scans and models, smooth bodies, thin triangles, cloth.
 std::vector<PointScene> culled_scenes(bool quick) {
   if (quick) {
-    return {
-        NamedScene{"two-bunnies"}, NamedScene{"two-spheres"},   NamedScene{"crowd:60"},
-        NamedScene{"needles:60"},  NamedScene{"random-soup"},   NamedScene{"slivers:100"},
-        NamedScene{"fans:2000"},   NamedScene{"crumpled:2000"}, MotionFrame{"cloth:450", 40, 100}};
+    return {NamedScene{"two-bunnies"},   NamedScene{"two-spheres"},
+            NamedScene{"crowd:60"},      NamedScene{"needles:60"},
+            NamedScene{"random-soup"},   NamedScene{"slivers:100"},
+            NamedScene{"crumpled:2000"}, MotionFrame{"cloth:450", 40, 100}};
   }
   return {NamedScene{"two-bunnies"},        NamedScene{"armadillo-elephant"},
           NamedScene{"dragon-bunny"},       NamedScene{"mannequin-devil"},
           NamedScene{"two-tori"},           NamedScene{"crowd:400"},
           NamedScene{"spheres:20000"},      NamedScene{"needles:400"},
           NamedScene{"needles-crossed"},    NamedScene{"random-soup"},
-          NamedScene{"fans:8000"},          NamedScene{"crumpled:20000"},
+          NamedScene{"cad-cut:8000"},       NamedScene{"crumpled:20000"},
           MotionFrame{"cloth:800", 80, 100}};
 }
 

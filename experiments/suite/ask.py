@@ -113,9 +113,6 @@ class Child:
 
 
 Answer = collections.namedtuple('Answer', 'outcome value ns reason')
-DEATHS = ['crashed', 'hung', 'no memory']
-ROUNDS = 4  # of the search for a simpler pair with the same fault
-Fault = collections.namedtuple('Fault', 'family parameter numbers right answer')  # right: whether the pair meets
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
@@ -574,9 +571,8 @@ def ask_family(command, card, suite, names, options):
 
 
 def rows_of(command, card, suite, kinds, options):
-    """A row for each kind of question, family, parameter and label (of a mesh its name). With `--json` also an example of each
-    fault of pairs: its family and its parameter, and the coordinates."""
-    rows, examples = {}, {}
+    """A row for each kind of question, family, parameter and label (of a mesh its name)."""
+    rows = {}
     for kind, listed in lists_of(card, suite, kinds):
         answers, differs = ask_twice(command, [one.question for one in listed], options)
         for one, answer, again in zip(listed, answers, differs):
@@ -585,108 +581,10 @@ def rows_of(command, card, suite, kinds, options):
             if answer.outcome == 'answered' and is_scored(card, one):
                 row['scored'] += 1
                 score(card, one, answer.value, row)
-        if kind == 'pair' and options.json:
-            faults = faults_of(card, listed, answers)
-            for name, numbers in simplest(command, card, faults, options).items() if faults else ():
-                if name not in examples or cost(numbers) < cost(examples[name][2:]):
-                    examples[name] = [f'pairs/{faults[name].family}', float(faults[name].parameter), *numbers]
     for family, names in suite.meshes().items() if 'mesh' in kinds else []:
         for name, row in zip(names, ask_family(command, card, suite, names, options)):
             rows['mesh', family, suite.properties(name)['parameter'], name] = row
-    return rows, examples
-
-
-# ---- the smallest pair of each kind of fault
-
-def faults_of(card, listed, answers):
-    """For each fault the pair with the fewest characters at which the contestant has it, of those of which its documentation
-    promises the answer. Triangles that share corners are left out."""
-    found, faults = [], {}
-    for one, answer in zip(listed, answers):
-        right = one.label != 'apart'
-        if one.label != '?' and one.question.fields[0] == '-' and (answer.outcome, answer.value) not in (
-                ('answered', right), ('refused', None), ('unanswered', None), ('not asked', None)):
-            name = 'death' if answer.outcome in DEATHS else 'missed' if right else 'wrong'
-            fault = Fault(one.question.family, one.parameter, one.numbers, right, (answer.outcome, answer.value))
-            found.append((cost(one.numbers), len(found), name, fault, one.label))
-    for *_, name, fault, label in sorted(found, key=lambda one: one[:2]):
-        a, b = corners_of(fault.numbers), corners_of(fault.numbers[9:])
-        if name not in faults and promised(card, a, b, fault.right, label):
-            faults[name] = fault
-    return faults
-
-
-def decimal(x):
-    text = repr(x + 0.0)
-    return text[:-2] if text[-2:] == '.0' else text.replace('.0e', 'e')
-
-
-def cost(numbers):
-    return sum(len(decimal(x)) for x in numbers)
-
-
-def to_bits(x, bits):
-    fraction, exponent = math.frexp(x)
-    return math.ldexp(round(math.ldexp(fraction, bits)), exponent - bits)
-
-
-def to_digits(x, digits):
-    return float(f'{x:.{digits - 1}e}') if digits else 0.0
-
-
-def simpler(numbers):
-    """Pairs with fewer characters: rounded to bits, digits and whole numbers, moved to a corner, with one coordinate rounded."""
-    most = math.frexp(max(map(abs, numbers)))[1]
-    changes = [lambda x, n=n: to_bits(x, n) for n in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)]
-    changes += [lambda x, n=n: to_digits(x, n) for n in range(1, 17)]
-    changes += [lambda x, n=n: float(round(math.ldexp(x, n - most))) for n in range(1, 31)]
-    changes += [lambda x: math.ldexp(x, -most)]
-    found = [[change(x) for x in numbers] for change in changes]
-    found += [[x - numbers[3 * corner + i % 3] for i, x in enumerate(numbers)] for corner in range(6)]
-    found += [[*numbers[:i], to_digits(numbers[i], n), *numbers[i + 1:]] for i in range(18) for n in (0, 1, 2, 3, 5, 8)]
-    found = {tuple(x + 0.0 for x in one) for one in found if all(map(math.isfinite, one))}
-    return sorted((one for one in found if cost(one) < cost(numbers)), key=lambda one: (cost(one), one))
-
-
-def pierces(edge, t):
-    """Whether an edge crosses the inside of a triangle."""
-    edge, t = whole(edge, t)
-    p, along = edge[0], minus(edge[1], edge[0])
-    side = [dot(normal(t), minus(q, t[0])) for q in edge]
-    turns = [dot(along, cross(minus(a, p), minus(b, p))) for a, b in edges(t)]
-    return min(side) < 0 < max(side) and (min(turns) > 0 or max(turns) < 0)
-
-
-def meets(a, b):
-    """Whether two closed triangles have a point in common, exactly."""
-    return any(pierces(edge, t) for s, t in ((a, b), (b, a)) for edge in edges(s)) or within(a, b, 0)
-
-
-def simplest(command, card, faults, options):
-    """Of each fault a pair with the same fault and fewer characters, which is the only one that a process is asked about; none
-    if the fault depends on what was asked before. Each round asks about all simpler pairs in one process."""
-    def err(tried):
-        questions = [Question('pair', ['-', *map(repr, pair)], name) for name, pair in tried]
-        return [(answer.outcome, answer.value) == faults[name].answer
-                for (name, _), answer in zip(tried, ask(command, questions, options)[0])]
-
-    def is_like(name, numbers):
-        a, b, right = corners_of(numbers), corners_of(numbers[9:]), faults[name].right
-        return meets(a, b) == right and promised(card, a, b, right)
-
-    found = {name: fault.numbers for name, fault in faults.items()}
-    better = found
-    for _ in range(ROUNDS):  # each death costs a process, a hang its whole limit
-        tried = [(name, pair) for name, from_ in better.items()
-                 for pair in simpler(from_)[:4 if faults[name].answer[0] in DEATHS else None]]
-        better = {}
-        for (name, pair), errs in zip(tried, err(tried)):
-            if errs and name not in better and is_like(name, pair):
-                better[name] = pair
-        found = {**found, **better}
-    alone = {name: next((pair for pair in (found[name], fault.numbers) if all(err([(name, pair)])[0] for _ in range(2))), None)
-             for name, fault in faults.items()}
-    return {name: pair for name, pair in alone.items() if pair}
+    return rows
 
 
 # ---- tables
@@ -737,9 +635,9 @@ SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'ow
          **{name: name for name in ('zero', 'not zero', 'negative', 'off', 'points', 'points off')}}
 
 
-def as_json(card, rows, examples):
+def as_json(card, rows):
     """What the study `libraries` keeps of one kind of question (experiments/studies/libraries.cpp): the card, the sums of all
-    rows, the rows, and the smallest pair of each fault."""
+    rows, and the rows."""
     total, scores = Row(), []
     for (kind, family, parameter, label), row in rows.items():
         if kind == 'mesh':  # its colliding pairs are what counts
@@ -754,16 +652,16 @@ def as_json(card, rows, examples):
     out = {'called': card['call'], **{name: card[name] for name in ('library', 'means', 'says', 'source', 'use')}}
     out.update({name.replace(' ', '_'): total[of] for name, of in SCORE.items()}, promises=card['promises'] == 'yes',
                reason=total.reason, scores=json.dumps(scores, separators=(',', ':')))
-    return {'counts': out, 'ns': total['ns'], 'examples': examples}
+    return {'counts': out, 'ns': total['ns']}
 
 
 def measure(command, options):
     suite = None if options.only == ['card'] else Suite(options.suite)
     card = card_of(command, ask(command, [Question('card', [])], options)[0][0])
     kinds = [kind for kind in KINDS if kind in card['answers'].split() and kind in (options.only or KINDS)]
-    rows, examples = rows_of(command, card, suite, kinds, options) if suite else ({}, {})
+    rows = rows_of(command, card, suite, kinds, options) if suite else {}
     if options.json:
-        json.dump(as_json(card, rows, examples), sys.stdout)
+        json.dump(as_json(card, rows), sys.stdout)
         return 0
     families = {kind: {} for kind in KINDS}
     for (kind, family, *_), row in rows.items():

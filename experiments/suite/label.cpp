@@ -3,11 +3,13 @@
 // The kind follows from the common points of two triangles. Their intersection is convex, and each
 // corner of it is a corner of a triangle, a point where an edge crosses the other plane, or a point
 // where two edges cross. All of these are found as rational numbers, so nothing is rounded.
-#include "experiments/suite/reader.h"
+#include "experiments/suite/label.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 
 #include "core/base/error.h"
@@ -27,6 +29,10 @@ using rational::Q;
 using rational::Q3;
 
 using Triangle = std::array<Q3, 3>;
+
+constexpr std::array<const char*, 10> kKinds = {
+    "apart",    "touch-vertex", "touch-edge",      "touch-face",       "crossing",
+    "coplanar", "equal",        "neighbours-meet", "neighbours-apart", "?"};
 
 constexpr const char* kReport = "one of the oracles is wrong; report the pair";
 
@@ -169,8 +175,8 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
 
-void require_equal(bool one, bool other, const char* oracles, const std::string& where, long line) {
-  if (one != other) throw Error(where, fmt::format("{} disagree", oracles), kReport, line);
+void require_equal(bool one, bool other, const char* oracles, const std::string& where) {
+  if (one != other) throw Error(where, fmt::format("{} disagree", oracles), kReport);
 }
 
 /// Throws Error if two vertices that triangles of the object use are at one position.
@@ -190,35 +196,60 @@ void require_distinct(const Scene& scene, const Object& object, const std::strin
 
 }  // namespace
 
+std::string to_string(SuiteKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
+bool collides(SuiteKind kind) {
+  return kind != SuiteKind::apart && kind != SuiteKind::neighbours_apart;
+}
+
+std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
+  const std::array<std::uint32_t, 3>& a = scene.triangles[pair.a];
+  const std::array<std::uint32_t, 3>& b = scene.triangles[pair.b];
+  std::uint32_t out = 0;
+  for (int i = 0; i < 3; ++i) {
+    const bool repeated = std::find(a.begin(), a.begin() + i, a[i]) != a.begin() + i;
+    out += !repeated && std::find(b.begin(), b.end(), a[i]) != b.end();
+  }
+  return out;
+}
+
+std::string hexadecimal(double value) {
+  std::string text = std::signbit(value) ? "-0x" : "0x";
+  std::array<char, 40> buffer;
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                         std::abs(value), std::chars_format::hex);
+  return text.append(buffer.data(), end);
+}
+
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                      const std::string& where, long line) {
+                      const std::string& where) {
   const bool meets = intersects(a, b);
   IntegerPair integers(a, b);
   require_equal(meets, !integers.separating_direction(),
-                "CGAL's predicates and the directions in integers", where, line);
+                "CGAL's predicates and the directions in integers", where);
   require_equal(meets, integers.has_common_point(), "CGAL's predicates and the points in integers",
                 where, line);
   if (!meets) return SuiteKind::apart;
   bool found = false;
   const SuiteKind kind = kind_of_meeting(a, b, found);
-  require_equal(meets, found, "CGAL's predicates and the points in rational numbers", where, line);
+  require_equal(meets, found, "CGAL's predicates and the points in rational numbers", where);
   require_equal(penetrate(a, b), kind == SuiteKind::crossing,
-                "CGAL's predicates and rational numbers, about whether the triangles cross,", where,
-                line);
+                "CGAL's predicates and rational numbers, about whether the triangles cross,",
+                where);
   return kind;
 }
 
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                            const std::string& where, long line) {
+                            const std::string& where) {
   const bool meets = intersects_beyond_shared(a, b);
   require_equal(meets, IntegerPair(a, b).meets_beyond_shared(),
-                "CGAL's predicates and integers, about neighbours,", where, line);
+                "CGAL's predicates and integers, about neighbours,", where);
   return meets ? SuiteKind::neighbours_meet : SuiteKind::neighbours_apart;
 }
 
 SuiteKind decide(const SuitePair& pair, const std::string& where) {
-  return pair.shared.empty() ? decide_kind(pair.a, pair.b, where, pair.line)
-                             : decide_neighbours(pair.a, pair.b, where, pair.line);
+  return pair.shared.empty() ? decide_kind(pair.a, pair.b, where)
+                             : decide_neighbours(pair.a, pair.b, where);
 }
 
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a,

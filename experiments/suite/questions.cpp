@@ -1,4 +1,4 @@
-// Makes, reads and decides the questions of a suite beyond pairs.
+// Makes and decides the questions of a suite beyond pairs.
 #include "experiments/suite/questions.h"
 
 #include <fmt/format.h>
@@ -10,9 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
-#include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/text.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/closest.h"
@@ -24,41 +21,9 @@ namespace {
 constexpr const char* kReport = "one of the oracles is wrong; report the question";
 constexpr std::array<const char*, 4> kKinds = {"distance", "self", "inside", "clash"};
 
-/// How many paths and coordinates follow the label.
-constexpr std::array<std::size_t, 4> kPaths = {0, 1, 1, 2}, kCoordinates = {18, 0, 3, 0};
-
 std::size_t number_of(SuiteQuestionKind kind) { return static_cast<std::size_t>(kind); }
 
-std::string hexadecimal(double value) {
-  std::string out;
-  append_hexadecimal(out, value);
-  return out;
-}
-
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
-
-SuiteQuestion parse_question(const ListLine& line) {
-  SuiteQuestion out{
-      .id = line.id, .parameter = line.parameter, .label = std::string(line.words[3])};
-  const auto* const at = std::find(kKinds.begin(), kKinds.end(), line.words[2]);
-  if (at == kKinds.end()) line.fail(quote_token(line.words[2]) + " is no kind of question");
-  const auto kind = static_cast<std::size_t>(at - kKinds.begin());
-  out.kind = static_cast<SuiteQuestionKind>(kind);
-  if (line.words.size() != 4 + kPaths[kind] + kCoordinates[kind])
-    line.fail(
-        fmt::format("{} has {} paths and {} coordinates", *at, kPaths[kind], kCoordinates[kind]));
-  const auto paths = line.words.begin() + 4;
-  out.paths.assign(paths, paths + static_cast<std::ptrdiff_t>(kPaths[kind]));
-  out.coordinates = line.coordinates(4 + kPaths[kind]);
-  return out;
-}
-
-Vec3 corner(const std::vector<double>& from, std::size_t i) {
-  return {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
-}
-std::array<Vec3, 3> triangle(const std::vector<double>& from, std::size_t first) {
-  return {corner(from, first), corner(from, first + 1), corner(from, first + 2)};
-}
 
 /// The objects with these numbers as a scene of their own.
 Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bool self) {
@@ -141,15 +106,6 @@ constexpr int kPoints = 24;              // of each closed object
 constexpr std::size_t kDistances = 530;  // of each family of pairs: those of the small suite
 
 }  // namespace
-
-SuiteQuestions read_questions(const std::string& path) {
-  SuiteQuestions out;
-  const std::string text = read_file(path, std::numeric_limits<std::uint64_t>::max());
-  out.family = read_list(text, path, "farcull-questions", [&](const ListLine& line) {
-    out.questions.push_back(parse_question(line));
-  });
-  return out;
-}
 
 std::string questions_text(const SuiteQuestions& questions) {
   std::string out = "farcull-questions 1 " + questions.family + "\n";
@@ -290,46 +246,6 @@ std::optional<bool> decide_clash(const Scene& scene, const std::string& where) {
     return true;
   }
   return {};
-}
-
-void check_questions(const SuiteQuestions& questions, const std::string& folder,
-                     const std::string& path) {
-  const std::vector<SuiteQuestion>& all = questions.questions;
-  const auto check = [&](const SuiteQuestion& question, std::optional<std::string> right) {
-    if (question.label == "?" || right == question.label) return;
-    throw Error(path,
-                fmt::format("question {} has the label {}, and {}", question.id, question.label,
-                            right ? *right + " is right" : "nothing decides it"),
-                "correct the label, or write the suite again");
-  };
-  const auto check_yes = [&](const SuiteQuestion& question, std::optional<bool> yes) {
-    check(question, yes ? std::optional<std::string>(yes_or_no(*yes)) : std::nullopt);
-  };
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string where = fmt::format("{}: question {}", path, all[i].id);
-    if (all[i].kind == SuiteQuestionKind::distance) {
-      const std::vector<double>& x = all[i].coordinates;
-      check(all[i], decide_distance(triangle(x, 0), triangle(x, 3), where));
-      continue;
-    }
-    SceneBuilder builder(questions.family, where);
-    for (const std::string& obj : all[i].paths) {
-      builder.add(load_mesh(folder + "/" + obj), obj, Split::kNone, {},
-                  all[i].kind == SuiteQuestionKind::self);
-    }
-    const Scene scene = builder.finish();
-    if (all[i].kind == SuiteQuestionKind::self) check_yes(all[i], decide_self(scene, where));
-    if (all[i].kind == SuiteQuestionKind::clash) check_yes(all[i], decide_clash(scene, where));
-    if (all[i].kind != SuiteQuestionKind::inside) continue;
-    // Points that are asked about one object are decided together.
-    std::vector<Vec3> points;
-    for (std::size_t k = i; k < all.size() && all[k].kind == SuiteQuestionKind::inside; ++k) {
-      if (all[k].paths != all[i].paths) break;
-      points.push_back(corner(all[k].coordinates, 0));
-    }
-    for (const bool in : decide_inside(scene, points, where)) check_yes(all[i++], in);
-    --i;
-  }
 }
 
 }  // namespace farcull

@@ -7,10 +7,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "experiments/suite/reader.h"
+#include "experiments/suite/label.h"
 
 namespace farcull {
 
@@ -31,10 +30,7 @@ struct SuiteQuestions {
   std::vector<SuiteQuestion> questions = {};
 };
 
-/// Reads a file of questions. Throws Error naming the file, the line and a remedy if it has another
-/// form.
-SuiteQuestions read_questions(const std::string& path);
-/// The inverse: the text of such a file.
+/// The text of a file of questions.
 std::string questions_text(const SuiteQuestions& questions);
 
 /// Questions about the first pairs of a family, as many as in the small suite: how far are they
@@ -60,10 +56,5 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
 /// that both oracles of decide_inside() call inside both; no on a plane along an axis between them.
 /// Empty if neither is found.
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
-
-/// Throws Error naming the file and the line of the first label that is wrong. folder: of the
-/// suite.
-void check_questions(const SuiteQuestions& questions, const std::string& folder,
-                     const std::string& path);
 
 }  // namespace farcull

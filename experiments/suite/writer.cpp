@@ -1,4 +1,4 @@
-// Makes and writes a suite, and checks a suite that is read back by deciding every label anew.
+// Makes and writes a suite.
 // Pairs are decided on all cores; each result has its own place, so the order is that of the IDs.
 #include "experiments/suite/writer.h"
 
@@ -17,8 +17,8 @@
 #include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/suite/questions.h"
-#include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -26,20 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The 19 families of random pairs have 10070 together, or 1007000. A list of cases has each once.
-std::uint64_t pair_count(const PairFamily& family, SuiteSize size) {
-  if (!family.notes.empty()) return family.values.size();
-  return size == SuiteSize::small ? 530 : 53000;
-}
+/// Pairs of a family; the 19 families have 10070 together, or 1007000.
+std::uint64_t pair_count(SuiteSize size) { return size == SuiteSize::small ? 530 : 53000; }
 
 std::size_t members(const MeshFamily& family, SuiteSize size) {
   return size == SuiteSize::full ? family.members.size() : family.small;
-}
-
-/// Appends a comment line for each line of the note.
-void append_note(std::string& text, const std::string& note) {
-  std::istringstream lines(note);
-  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
 }
 
 std::string mesh_name(const MeshFamily& family, std::size_t index) {
@@ -81,6 +72,50 @@ std::string colliding_text(const SuiteMesh& mesh) {
   return out;
 }
 
+/// The line of one pair, without its newline.
+std::string pair_line(const SuitePair& pair) {
+  std::string shared;
+  for (const auto& [i, j] : pair.shared)
+    shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
+  if (shared.empty()) shared = "-";
+  std::string out =
+      fmt::format("{} {} {} {}", pair.id, shortest(pair.parameter), shared, to_string(pair.kind));
+  for (const auto* t : {&pair.a, &pair.b}) {
+    for (const Vec3& p : *t) {
+      for (int k = 0; k < 3; ++k) out += " " + hexadecimal(p[k]);
+    }
+  }
+  return out;
+}
+
+std::string pairs_text(const SuitePairs& pairs) {
+  std::string out = "farcull-pairs 1 " + pairs.family + "\n";
+  for (const PairFamily& family : pair_families()) {
+    if (family.name != pairs.family) continue;
+    out += "# " + family.description + "\n";
+    if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
+  }
+  for (const SuitePair& pair : pairs.pairs) out += pair_line(pair) + "\n";
+  return out;
+}
+
+/// The text of suite.txt; `index.sum` is not used.
+std::string index_text(const SuiteIndex& index) {
+  std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
+                                index.size, index.licence);
+  for (const SuiteIndex::File& file : index.files) {
+    fmt::format_to(std::back_inserter(out), "file {} {} {} {}\n", file.path, file.bytes,
+                   file.sha256, file.items);
+  }
+  return out + "sum " + sha256(out) + "\n";
+}
+
+/// The sum in the last line of suite.txt.
+std::string sum_of(const std::string& text) {
+  constexpr std::size_t kLine = 4 + 64 + 1;  // "sum ", SHA-256, newline
+  return text.size() > kLine ? text.substr(text.size() - 65, 64) : "";
+}
+
 /// Writes files below a folder and lists them.
 class Folder {
  public:
@@ -99,12 +134,22 @@ class Folder {
     const std::size_t count = questions.questions.size();
     if (count > 0) write("questions/" + name + ".txt", questions_text(questions), count);
   }
+  void write(const SuiteMesh& mesh) {
+    const std::string folder = "meshes/" + mesh.name + "/";
+    for (const Object& object : mesh.scene.objects)
+      write(folder + object.name + ".obj", obj_text(mesh.scene, object), object.triangle_count);
+    write(folder + "mesh.txt",
+          fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
+                      shortest(mesh.parameter), mesh.family),
+          0);
+    write(folder + "pairs.csv", colliding_text(mesh), mesh.pairs.size());
+  }
   void finish() {
     std::sort(index_.files.begin(), index_.files.end(),
               [](const auto& x, const auto& y) { return x.path < y.path; });
     const std::string text = index_text(index_);
     write_output(path_ + "/suite.txt", text);
-    index_ = parse_suite(text, path_ + "/suite.txt");
+    index_.sum = sum_of(text);
   }
 
  private:
@@ -118,56 +163,6 @@ class Folder {
   std::string path_;
   SuiteIndex& index_;
 };
-
-constexpr const char* kCorrect = "correct the label, or write the suite again";
-
-void check_pair(const SuitePair& pair, const std::string& path) {
-  if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) {
-    throw Error(path, fmt::format("pair {} has equal corners that are not called shared", pair.id),
-                "call all of them shared, or none", pair.line);
-  }
-  const SuiteKind kind = decide(pair, path);
-  if (pair.kind == SuiteKind::unlabelled || pair.kind == kind) return;
-  throw Error(path,
-              fmt::format("pair {} is called {}, and it is {}", pair.id, to_string(pair.kind),
-                          to_string(kind)),
-              kCorrect, pair.line);
-}
-
-void check_pairs(const SuitePairs& pairs, const std::string& path) {
-  const std::size_t count = pairs.pairs.size();
-  for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) check_pair(pairs.pairs[i], path);
-  });
-}
-
-std::string named(const Scene& scene, const TrianglePair& pair) {
-  const std::vector<std::uint32_t> owner = owners(scene);
-  std::string out;
-  for (const std::uint32_t t : {pair.a, pair.b}) {
-    const Object& object = scene.objects[owner[t]];
-    out += fmt::format("{}{},{}", out.empty() ? "" : ",", object.name, t - object.first_triangle);
-  }
-  return out;
-}
-
-void check_mesh(const SuiteMesh& mesh, const std::string& path) {
-  const std::vector<SuiteMeshPair> right = decide_mesh(mesh.scene, path);
-  if (!mesh.labelled) return;
-  const auto [in_list, in_right] =
-      std::mismatch(mesh.pairs.begin(), mesh.pairs.end(), right.begin(), right.end());
-  if (in_list == mesh.pairs.end() && in_right == right.end()) return;
-  const bool missing =
-      in_right != right.end() && (in_list == mesh.pairs.end() || in_right->pair < in_list->pair);
-  // The header is line 1.
-  const long line = 2 + static_cast<long>(in_list - mesh.pairs.begin());
-  throw Error(
-      path + "/pairs.csv",
-      missing
-          ? fmt::format("the pair {} collides and is missing", named(mesh.scene, in_right->pair))
-          : fmt::format("the pair {} does not collide", named(mesh.scene, in_list->pair)),
-      kCorrect, line);
-}
 
 }  // namespace
 
@@ -211,7 +206,7 @@ SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings) 
   if (found == all.end()) throw std::logic_error("make_pairs: no family " + family);
   SuitePairs out;
   out.family = family;
-  out.pairs.resize(pair_count(*found, settings.size));
+  out.pairs.resize(pair_count(settings.size));
   const std::size_t count = out.pairs.size();
   for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -241,7 +236,6 @@ SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings) {
       out.family = family.name;
       out.parameter = family.members[i].parameter;
       out.self = family.self;
-      out.note = family.members[i].note;
       SceneBuilder builder(name, name);
       int number = 0;
       for (SuiteObject& object : make_suite_mesh(family, settings.seed, i)) {
@@ -256,61 +250,18 @@ SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings) {
   throw std::logic_error("make_mesh: no mesh " + name);
 }
 
-std::string pair_line(const SuitePair& pair) {
-  std::string shared;
-  for (const auto& [i, j] : pair.shared)
-    shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
-  if (shared.empty()) shared = "-";
-  std::string out =
-      fmt::format("{} {} {} {}", pair.id, shortest(pair.parameter), shared, to_string(pair.kind));
-  for (const auto* t : {&pair.a, &pair.b}) {
-    for (const Vec3& p : *t) {
-      for (int k = 0; k < 3; ++k) {
-        out += ' ';
-        append_hexadecimal(out, p[k]);
-      }
-    }
-  }
+SuiteIndex read_suite(const std::string& folder) {
+  const std::string path = folder + "/suite.txt", text = read_file(path, UINT64_MAX);
+  SuiteIndex out;
+  out.sum = sum_of(text);
+  std::istringstream words(text);
+  std::string seed, size, head, version;
+  words >> head >> version >> seed >> out.seed >> size >> out.size;
+  if (!words || head + " " + version != "farcull-suite 1" || seed != "seed" || size != "size" ||
+      !text.ends_with("sum " + sha256(text.substr(0, text.size() - 69)) + "\n"))
+    throw Error(path, "is no list of a suite, or was changed",
+                "docs/suite.md has the format; write the suite again");
   return out;
-}
-
-std::string pairs_text(const SuitePairs& pairs) {
-  std::string out = "farcull-pairs 1 " + pairs.family + "\n";
-  const std::vector<std::string>* notes = nullptr;
-  for (const PairFamily& family : pair_families()) {
-    if (family.name != pairs.family) continue;
-    out += "# " + family.description + "\n";
-    if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
-    notes = &family.notes;
-  }
-  for (const SuitePair& pair : pairs.pairs) {
-    if (notes != nullptr && pair.id < notes->size()) append_note(out, (*notes)[pair.id]);
-    out += pair_line(pair) + "\n";
-  }
-  return out;
-}
-
-std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh) {
-  std::vector<SuiteText> out;
-  for (const Object& object : mesh.scene.objects)
-    out.push_back({object.name + ".obj", obj_text(mesh.scene, object), object.triangle_count});
-  std::string properties =
-      fmt::format("self {}\nparameter {}\nfamily {}\n", mesh.self ? "yes" : "no",
-                  shortest(mesh.parameter), mesh.family);
-  append_note(properties, mesh.note);
-  out.push_back({"mesh.txt", std::move(properties), 0});
-  if (mesh.labelled) out.push_back({"pairs.csv", colliding_text(mesh), mesh.pairs.size()});
-  return out;
-}
-
-std::string index_text(const SuiteIndex& index) {
-  std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
-                                index.size, index.licence);
-  for (const SuiteIndex::File& file : index.files) {
-    fmt::format_to(std::back_inserter(out), "file {} {} {} {}\n", file.path, file.bytes,
-                   file.sha256, file.items);
-  }
-  return out + "sum " + sha256(out) + "\n";
 }
 
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
@@ -330,49 +281,11 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
   for (const std::string& name : mesh_names(settings.size)) {
     if (progress) progress("mesh " + name);
     const SuiteMesh mesh = make_mesh(name, settings);
-    for (const SuiteText& file : mesh_texts(mesh))
-      files.write("meshes/" + name + "/" + file.name, file.text, file.items);
+    files.write(mesh);
     files.write(name, questions_of(mesh, settings.seed));
     out.meshes.push_back(counts_of(mesh));
   }
   files.finish();
-  return out;
-}
-
-SuiteSummary check_suite(const std::string& folder, const Progress& progress) {
-  SuiteSummary out;
-  out.index = read_suite(folder);
-  check_files(folder, out.index);
-  const auto require_items = [&](const std::string& path, std::uint64_t items) {
-    for (const SuiteIndex::File& file : out.index.files) {
-      if (file.path != path || file.items == items) continue;
-      throw Error(folder + "/" + path,
-                  fmt::format("has {} items; suite.txt says {}", items, file.items), kCorrect);
-    }
-  };
-  for (const std::string& file : out.index.pair_files()) {
-    if (progress) progress(file);
-    const SuitePairs pairs = read_pairs(folder + "/" + file);
-    require_items(file, pairs.pairs.size());
-    check_pairs(pairs, folder + "/" + file);
-    out.families.push_back(counts_of(pairs));
-  }
-  for (const SuiteIndex::File& file : out.index.files) {
-    if (!file.path.starts_with("questions/") || !file.path.ends_with(".txt")) continue;
-    if (progress) progress(file.path);
-    const SuiteQuestions questions = read_questions(folder + "/" + file.path);
-    require_items(file.path, questions.questions.size());
-    check_questions(questions, folder, folder + "/" + file.path);
-  }
-  for (const std::string& name : out.index.mesh_folders()) {
-    if (progress) progress(name);
-    const SuiteMesh mesh = read_mesh(folder + "/" + name);
-    for (const Object& object : mesh.scene.objects)
-      require_items(name + "/" + object.name + ".obj", object.triangle_count);
-    require_items(name + "/pairs.csv", mesh.pairs.size());
-    check_mesh(mesh, folder + "/" + name);
-    out.meshes.push_back(counts_of(mesh));
-  }
   return out;
 }
 

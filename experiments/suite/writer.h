@@ -1,5 +1,5 @@
-// Makes a suite and writes it as files; docs/suite.md has the format. The bytes depend on the size
-// and the seed alone, neither on the machine nor on its number of cores.
+// Makes a suite and writes it as files, and reads their list. docs/suite.md has the format. The
+// bytes depend on the size and the seed alone, neither on the machine nor on its number of cores.
 #pragma once
 
 #include <array>
@@ -9,11 +9,31 @@
 
 #include "core/base/stage.h"
 #include "experiments/generators/pair_generators.h"
-#include "experiments/suite/reader.h"
+#include "experiments/suite/label.h"
 
 namespace farcull {
 
 enum class SuiteSize : std::uint8_t { small, full };
+
+/// The list of the files of a suite: suite.txt.
+struct SuiteIndex {
+  struct File {
+    std::string path;  // relative to the folder
+    std::uint64_t bytes = 0;
+    std::string sha256;       // 64 lower-case hexadecimal digits
+    std::uint64_t items = 0;  // pairs, or the triangles of an OBJ; 0 for mesh.txt
+  };
+
+  std::uint64_t seed = 0;
+  std::string size;  // small or full
+  std::string licence;
+  std::vector<File> files;  // by path, ascending; read_suite() leaves them out
+  std::string sum;          // SHA-256 of all lines but the last: it names the whole suite
+};
+
+/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the sum is not that of the lines.
+/// ask.py compares the files.
+SuiteIndex read_suite(const std::string& folder);
 
 struct SuiteSettings {
   SuiteSize size = SuiteSize::small;
@@ -30,7 +50,7 @@ struct SuiteCounts {
   std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
 };
 
-/// Everything that was written or checked.
+/// Everything that was written.
 struct SuiteSummary {
   SuiteIndex index;
   std::vector<SuiteCounts> families;
@@ -53,29 +73,10 @@ std::vector<std::string> mesh_names(SuiteSize size);
 /// A mesh of this suite with its colliding pairs. Throws as make_pairs().
 SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
 
-/// The text of a file of pairs, and of the files of a mesh by their names in its folder, ascending.
-std::string pairs_text(const SuitePairs& pairs);
-/// The line of one pair in such a file, without its newline.
-std::string pair_line(const SuitePair& pair);
-struct SuiteText {
-  std::string name;
-  std::string text;
-  std::uint64_t items = 0;  // as SuiteIndex::File::items
-};
-std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh);
-/// The text of suite.txt; `index.sum` is not used.
-std::string index_text(const SuiteIndex& index);
-
 /// Makes the suite in `folder`, which must not exist or be empty. suite.txt comes last, so a folder
 /// without it is not whole. Throws Error naming a path that the system refuses, and as
 /// make_pairs().
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
                          const Progress& progress = {});
-
-/// Reads a suite again, compares all sums and decides every label anew. Throws Error naming the
-/// file, and the line if there is one, at the first fault: a file that the readers refuse, a wrong
-/// kind, equal corners that are not called shared, or a list of colliding pairs that is wrong for
-/// its mesh. Unlabelled pairs and meshes count as right.
-SuiteSummary check_suite(const std::string& folder, const Progress& progress = {});
 
 }  // namespace farcull

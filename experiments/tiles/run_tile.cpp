@@ -70,19 +70,18 @@ Box box_of(const Scene& scene, std::uint32_t triangle) { return grown_box(scene,
 class Loads {
  public:
   Loads(const Cuts& cuts, double clearance)
-      : cuts_(cuts), clearance_(clearance), step_(cuts.tiles() + 1, 0), home_(cuts.tiles()) {}
+      : cuts_(cuts), clearance_(clearance), step_(cuts.tiles() + 1, 0) {}
   void add(const Box& box) {
-    const std::size_t first = tile_at(cuts_, box.lo[cuts_.axis]);
-    ++home_[first];
-    ++step_[first];
+    ++step_[tile_at(cuts_, box.lo[cuts_.axis])];
     --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
-  std::vector<TileCount> counts() const {
-    std::vector<TileCount> out(cuts_.tiles());
-    std::int64_t now = 0;
-    for (std::size_t k = 0; k < out.size(); ++k) {
-      now += step_[k];
-      out[k] = {.triangles = static_cast<std::uint64_t>(now), .home = home_[k]};
+  // Of the fullest tile, and of all tiles together.
+  std::pair<std::uint64_t, std::uint64_t> most_and_all() const {
+    std::pair<std::uint64_t, std::uint64_t> out;
+    std::uint64_t now = 0;
+    for (std::size_t k = 0; k < cuts_.tiles(); ++k) {
+      now += static_cast<std::uint64_t>(step_[k]);
+      out = {std::max(out.first, now), out.second + now};
     }
     return out;
   }
@@ -91,7 +90,6 @@ class Loads {
   const Cuts& cuts_;
   double clearance_;
   std::vector<std::int64_t> step_;
-  std::vector<std::uint64_t> home_;
 };
 
 }  // namespace
@@ -150,27 +148,12 @@ Cuts choose_cuts(const Census& census, std::size_t tiles) {
     for (std::size_t k = 1; k < tiles; ++k) cuts.at.push_back(places[places.size() * k / tiles]);
     Loads loads(cuts, census.clearance);
     for (const Box& box : census.sample) loads.add(box);
-    auto load = std::pair(std::uint64_t{0}, std::uint64_t{0});
-    for (const TileCount& count : loads.counts()) {
-      load.first = std::max(load.first, count.triangles);
-      load.second += count.triangles;
-    }
-    if (load < least) {
+    if (const auto load = loads.most_and_all(); load < least) {
       least = load;
       best = std::move(cuts);
     }
   }
   return best;
-}
-
-std::vector<TileCount> count_tiles(const SceneSource& source, const Census& census,
-                                   const Cuts& cuts) {
-  Loads loads(cuts, census.clearance);
-  source([&](Scene& part) {
-    const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    for (std::uint32_t t = 0; t < count; ++t) loads.add(box_of(part, t));
-  });
-  return loads.counts();
 }
 
 namespace {
@@ -422,14 +405,6 @@ Json list_json(const TileList& list) {
           {"sha256", sha256(list.text)}};
 }
 
-// Bytes of memory for each triangle of a tile, without the accounting: more than was measured on
-// large tiles (docs/tiles.md).
-constexpr double kBytesPerTriangle = 100;
-
-double expected_mib(const TileCount& count) {
-  return kBytesPerTriangle * static_cast<double>(count.triangles) / (1 << 20);
-}
-
 }  // namespace
 
 std::string interval_text(const Tile& tile) {
@@ -514,36 +489,6 @@ std::string tile_lines(const TileRun& run) {
       counted(run.census.triangles, "triangle", "triangles"), grouped(run.part.home),
       counted(run.elsewhere, "candidate pair is", "candidate pairs are"), peak_memory_mib(),
       run.read_ms);
-}
-
-std::string tiles_table(const Census& census, const Cuts& cuts,
-                        const std::vector<TileCount>& counts) {
-  Table table("rrrrr");
-  table.add({"tile", axis_name(cuts.axis) + " from", "triangles", "begin in it", "about MiB"});
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    table.add({fmt::format("{}/{}", k + 1, counts.size()),
-               k == 0 ? "-inf" : fmt::format("{}", cuts.at[k - 1]), grouped(counts[k].triangles),
-               grouped(counts[k].home), fmt::format("{:.0f}", expected_mib(counts[k]))});
-  }
-  return fmt::format("{}: {}, {}, {} along {}\n\n{}", census.name,
-                     counted(census.objects, "object", "objects"),
-                     counted(census.triangles, "triangle", "triangles"),
-                     counted(cuts.tiles(), "tile", "tiles"), axis_name(cuts.axis), table.text());
-}
-
-Json tiles_json(const Census& census, const Cuts& cuts, const std::vector<TileCount>& counts) {
-  Json tiles = Json::array();
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    const Tile tile = tile_of(cuts.axis, cuts.at, k);
-    tiles.push_back({{"k", k + 1},
-                     {"from", end_json(tile.from)},
-                     {"to", end_json(tile.to)},
-                     {"triangles", counts[k].triangles},
-                     {"home_triangles", counts[k].home},
-                     {"expected_mib", expected_mib(counts[k])}});
-  }
-  return {{"scene", census.name}, {"objects", census.objects},    {"triangles", census.triangles},
-          {"n", cuts.tiles()},    {"axis", axis_name(cuts.axis)}, {"tiles", tiles}};
 }
 
 }  // namespace farcull

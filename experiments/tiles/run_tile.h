@@ -76,15 +76,6 @@ struct Cuts {
 /// Only time and memory depend on the cuts. Precondition: tiles >= 1.
 Cuts choose_cuts(const Census& census, std::size_t tiles);
 
-/// Triangles of a tile.
-struct TileCount {
-  std::uint64_t triangles = 0;  // that meet the tile
-  std::uint64_t home = 0;       // whose box begins in the tile: in one tile each
-};
-/// Reads the scene once more and counts the triangles of each tile. Memory O(tiles).
-std::vector<TileCount> count_tiles(const SceneSource& source, const Census& census,
-                                   const Cuts& cuts);
-
 /// "x from 1.5 to below 3".
 std::string interval_text(const Tile& tile);
 
@@ -170,14 +161,6 @@ std::string tile_lines(const TileRun& run);
 
 /// The largest resident memory of this process so far, MiB.
 double peak_memory_mib();
-
-/// The table of `farcull plan --tiles`: the cuts, the triangles of each tile, and about how much
-/// memory a run on it takes.
-std::string tiles_table(const Census& census, const Cuts& cuts,
-                        const std::vector<TileCount>& counts);
-/// The same for programs.
-nlohmann::ordered_json tiles_json(const Census& census, const Cuts& cuts,
-                                  const std::vector<TileCount>& counts);
 
 // Joins the results of runs on all tiles of a scene.
 

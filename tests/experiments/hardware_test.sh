@@ -104,8 +104,8 @@ holds "goes on" "$work/said" 'bench-funnel-[0-9]+ .*: status 2: farcull: no'
 holds "goes on" "$page" '[1-9] failed: .*reliability-dragon-bunny'
 holds "goes on" "$page" '^# A Device \(R\) 1.0$'
 holds "goes on" "$page" 'suite \(the test suite\): left out'
-for part in doctor misses bench-two-bunnies field-10000000 family-one reliability-near-copy motion-one \
-  bench-fans studies report; do
+for part in doctor misses bench-two-bunnies field-10000000 reliability-near-copy motion-one \
+  bench-spheres studies report; do
   compgen -G "$out/steps/$part*" >/dev/null || fail "goes on: $part is not done"
 done
 holds "goes on" "$CALLS" 'experiment all --devices software,native --resume --out .*/out/results$'

@@ -16,7 +16,7 @@ import warnings
 from collections import Counter
 
 LINES = {"oriented": 20000, "contained": 20000, "welded": 20000, "distances": 20000, "frames": 20000, "kinds": 20000,
-         "certificates": 20000, "options": 2000, "hostile": 20000}
+         "certificates": 20000, "drawn": 10000, "options": 2000, "hostile": 20000}
 PLANTED = 10  # of each fault, where there are ENOUGH scenes for them
 ENOUGH = 100
 TRIES = 3000  # scenes at most in which a fault is planted
@@ -80,7 +80,7 @@ def apart(name, scenes, seed):
 def main():
     parser = argparse.ArgumentParser(prog="tests/oracles.sh", description="Compares the product with independent oracles.")
     parser.add_argument("lines", nargs="*", metavar="LINE", help=f"of {', '.join(LINES)}; default all")
-    parser.add_argument("--scenes", type=int, help="of each line; default 20,000, of options 2,000")
+    parser.add_argument("--scenes", type=int, help="of each line; default 20,000, of drawn 10,000, of options 2,000")
     parser.add_argument("--seed", type=int, default=20261129)
     given = parser.parse_args()
     for line in given.lines:

@@ -5,10 +5,10 @@ const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
 const digits = new Intl.NumberFormat("en");
 const MOST_LISTED = 1000;
-const state = { row: -1, search: "", ghosts: true, through: false, theme: "" };
+const state = { row: -1, search: "", ghosts: true, through: false };
 let view = null, curves = null, ends = null;
 
-const nameOf = (object) => about.frames[0].objects[object][0];
+const nameOf = (object) => about.frame.objects[object][0];
 const length = (x) => `${Number(x.toPrecision(6))}${about.unit ? " " + about.unit : ""}`;
 
 function element(tag, text, properties) {
@@ -167,18 +167,6 @@ function choose(triangle) {
   if (numbers.length > 0) chooseRow(numbers[(numbers.indexOf(state.row) + 1) % numbers.length]);
 }
 
-function setTheme(theme) {
-  state.theme = theme;
-  if (theme) document.documentElement.dataset.theme = theme;
-  if (!view) return;
-  view.paper = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim());
-  view.ask();
-}
-
-function isDark() {
-  return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-}
-
 function writeAddress() {
   history.replaceState(null, "", state.row < 0 ? "#" : `#row=${state.row}`);
 }
@@ -196,7 +184,6 @@ function standIn(why) {
 
 const KEYS = {
   n: () => go(1), p: () => go(-1), Escape: () => chooseRow(-1), 0: () => resetView(),
-  t: () => setTheme(isDark() ? "light" : "dark"),
   ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
   ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
   ArrowUp: (shift) => (shift ? view.move(0, 0.05) : view.turn(0, 0.1)),
@@ -223,7 +210,6 @@ function connect() {
     showParts();
   });
   on("reset", "click", () => { chooseRow(-1); if (view) resetView(); });
-  on("theme", "click", () => setTheme(isDark() ? "light" : "dark"));
   on("licence-button", "click", () => byId("licence").showModal());
   on("controls", "submit", (e) => e.preventDefault());
   document.addEventListener("keydown", onKey);
@@ -242,13 +228,12 @@ async function start() {
   connect();
   try {
     view = new SceneView(byId("canvas"), about);
-    frame = await loadFrame(0);
+    frame = await loadFrame();
     ends = await numbersOf(about.segments);
     view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
     connectCanvas();
     resetView();
     showParts();
-    setTheme("");
     readAddress();
     view.onDraw = () => {
       view.onDraw = () => {};

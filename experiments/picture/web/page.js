@@ -1,5 +1,4 @@
 // The controls of the page: the answer, the visible parts of the scene, and the clicked triangle.
-// The address holds all choices behind the #, so that an address reproduces a view.
 
 const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
@@ -8,12 +7,12 @@ const digits = new Intl.NumberFormat("en");
 // ---- state --------------------------------------------------------------------------------------
 
 const methods = [...new Set(about.steps.map((step) => step.method))];
-const state = { method: methods[0], resolution: Infinity, frame: 0, hidden: new Set(), explode: 0, axis: "", cut: 500,
-  side: false, triangle: -1, theme: "" };
-let view = null, answer = null, loading = 0, shownFrame = -1;
+const state = { method: methods[0], resolution: Infinity, hidden: new Set(), axis: "", cut: 500, side: false,
+  triangle: -1 };
+let view = null, answer = null, loading = 0;
 
 function stepsOf(method) {
-  return about.steps.filter((step) => step.method === method && step.frame === state.frame);
+  return about.steps.filter((step) => step.method === method);
 }
 
 // The step of the state, at the resolution nearest to the requested one.
@@ -146,12 +145,6 @@ function showControls() {
   const has = step.resolution > 0;
   byId("resolution").hidden = byId("resolution-label").hidden = !has;
   byId("resolution-value").textContent = has ? `${step.resolution} px` : "";
-  const moves = about.frames.length > 1;
-  byId("frame").hidden = byId("frame-label").hidden = byId("play").hidden = !moves;
-  byId("frame").value = state.frame;
-  byId("frame-value").textContent = about.frames[state.frame].frame ?? "";
-  byId("explode").value = Math.round(100 * state.explode);
-  byId("explode-value").textContent = `${Math.round(100 * state.explode)} %`;
   byId("axis").value = state.axis;
   byId("cut").value = state.cut;
   byId("side").checked = state.side;
@@ -163,7 +156,6 @@ function showControls() {
   headline.textContent = `${step.title}: ${step.headline}`;
   headline.className = step.missedPairs > 0 ? "missed" : "";
   if (view) {
-    view.uniforms.explode.value = state.explode;
     const plane = [0, 0, 0], sign = state.side ? -1 : 1;
     if (k >= 0) plane[k] = sign;
     view.uniforms.cut.value.set(...plane, k < 0 ? 1 : sign * state.cut / 1000);
@@ -175,22 +167,14 @@ function showControls() {
 // one.
 async function update() {
   const turn = ++loading;
-  const of = await loadFrame(state.frame);
   const step = currentStep();
-  const given = answer && answer.step === step ? answer : await loadStep(step, of);
+  const given = answer && answer.step === step ? answer : await loadStep(step);
   if (turn !== loading) return;
-  const changed = shownFrame !== state.frame, topology = !frame || frame.given !== of.given;
-  frame = of;
   answer = given;
-  shownFrame = state.frame;
-  if (state.triangle >= frame.triangles) state.triangle = -1;
-  if (changed && view) view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
-  if (topology) showObjects();
   showStates();
   showControls();
   showLegend();
   showChosen();
-  writeAddress();
 }
 
 // ---- actions of the reader ----------------------------------------------------------------------
@@ -199,7 +183,6 @@ function choose(triangle, centred = false) {
   state.triangle = triangle;
   showStates();
   showChosen();
-  writeAddress();
   if (view && centred && triangle >= 0) view.centre(triangle);
 }
 
@@ -208,7 +191,6 @@ function hide(object, hidden) {
   const box = byId("list").querySelector(`[data-object="${object}"]`);
   if (box) box.checked = !hidden;
   if (view) view.hide(object, hidden);
-  writeAddress();
 }
 
 function showAll() {
@@ -227,11 +209,6 @@ function setResolution(by) {
   update();
 }
 
-function setFrame(number) {
-  state.frame = Math.min(about.frames.length - 1, Math.max(0, number));
-  return update();
-}
-
 // Chooses the next missed triangle after the chosen one; a colliding one if none is missed.
 function next() {
   let first = -1, after = -1;
@@ -247,113 +224,12 @@ function next() {
   if (found >= 0) choose(found, true);
 }
 
-function setTheme(theme) {
-  state.theme = theme;
-  if (theme) document.documentElement.dataset.theme = theme;
-  else delete document.documentElement.dataset.theme;
-  if (view) {
-    view.paper = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim());
-    view.ask();
-  }
-  writeAddress();
-}
-
-function isDark() {
-  return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-}
-
-// Plays the frames; a frame that is slow to unpack delays the next one. `plays` is odd meanwhile.
-let plays = 0;
-async function play() {
-  const turn = ++plays;
-  byId("play").textContent = turn % 2 === 1 ? "Stop" : "Play the frames";
-  while (turn % 2 === 1 && turn === plays) {
-    await setFrame((state.frame + 1) % about.frames.length);
-    await new Promise((done) => setTimeout(done, 200));
-  }
-}
-
-// ---- the address --------------------------------------------------------------------------------
-
-const short = (x) => Number(x.toPrecision(5));
-
-function addressOf() {
-  const out = new URLSearchParams();
-  out.set("method", state.method);
-  if (answer.step.resolution) out.set("px", answer.step.resolution);
-  if (about.frames.length > 1) out.set("frame", about.frames[state.frame].frame);
-  if (state.hidden.size > 0) out.set("hide", [...state.hidden].sort((a, b) => a - b).join("."));
-  if (state.explode > 0) out.set("explode", state.explode);
-  if (state.axis) out.set("cut", `${state.side ? "-" : ""}${state.axis}${state.cut}`);
-  if (state.triangle >= 0) out.set("triangle", state.triangle);
-  if (state.theme) out.set("theme", state.theme);
-  if (view) {
-    const target = view.controls.target;
-    const offset = view.camera.position.clone().sub(target).normalize();
-    out.set("eye", offset.toArray().map(short).join("_"));
-    out.set("middle", target.toArray().map(short).join("_"));
-    out.set("zoom", short(view.camera.zoom));
-  }
-  return "#" + out.toString();
-}
-
-let writing = 0, written = location.hash;
-function writeAddress() {
-  if (!answer) return;  // nothing is shown yet
-  clearTimeout(writing);
-  writing = setTimeout(() => {
-    written = addressOf();
-    history.replaceState(null, "", written);
-  }, 250);
-}
-
-const finite = (list) => list.length === 3 && list.every(Number.isFinite);
-
-// Applies the parts of the address that this page can show, and ignores the rest. An address may be
-// anything.
-function readAddress() {
-  const given = new URLSearchParams(location.hash.slice(1));
-  const number = (name, least, most) => {
-    const x = given.has(name) ? Number(given.get(name)) : NaN;
-    return Number.isFinite(x) && x >= least && x <= most ? x : undefined;
-  };
-  if (methods.includes(given.get("method"))) state.method = given.get("method");
-  state.resolution = number("px", 1, 1e9) ?? state.resolution;
-  const at = about.frames.findIndex((f) => String(f.frame) === given.get("frame"));
-  if (at >= 0) state.frame = at;
-  state.hidden = new Set((given.get("hide") ?? "").split(".").filter((x) => /^\d{1,6}$/.test(x)).map(Number));
-  state.explode = number("explode", 0, 1) ?? 0;
-  const cut = /^(-?)([xyz])(\d{1,4})$/.exec(given.get("cut") ?? "");
-  state.axis = cut ? cut[2] : "";
-  state.side = cut !== null && cut[1] === "-";
-  if (cut) state.cut = Math.min(1000, Number(cut[3]));
-  const triangle = number("triangle", 0, 4294967295);
-  state.triangle = triangle !== undefined && Number.isInteger(triangle) ? triangle : -1;
-  if (["light", "dark"].includes(given.get("theme"))) setTheme(given.get("theme"));
-  return given;
-}
-
-function readCamera(given) {
-  if (!view) return;
-  const list = (name) => (given.get(name) ?? "").split("_").map(Number);
-  const eye = list("eye"), middle = list("middle"), zoom = Number(given.get("zoom"));
-  if (!given.has("eye") || !finite(eye) || !finite(middle) || !(zoom > 0 && zoom < 1e6)) return;
-  const offset = new THREE.Vector3().fromArray(eye);
-  if (!(offset.length() > 1e-3)) return;
-  view.controls.target.fromArray(middle);
-  view.camera.position.copy(view.controls.target).add(offset.setLength(30));
-  view.camera.zoom = zoom;
-  view.resize();
-  view.controls.update();
-}
-
 // ---- start --------------------------------------------------------------------------------------
 
 function fillPage() {
   document.title = `${about.title}: collisions by farcull`;
   byId("title").textContent = about.title;
   byId("method").replaceChildren(...methods.map((m) => element("option", m, { value: m })));
-  byId("frame").max = about.frames.length - 1;
   byId("about").textContent = `farcull ${about.commit.slice(0, 10)}; scene hash ${about.hash}; ` +
     `the flat picture: ${about.command}. ${about.notAsked}`;
   const longest = Math.max(...about.hi.map((x, k) => x - about.lo[k]));
@@ -366,42 +242,23 @@ function connectControls() {
   const on = (id, event, act) => byId(id).addEventListener(event, act);
   on("method", "change", (e) => { state.method = e.target.value; update(); });
   on("resolution", "input", (e) => { state.resolution = stepsOf(state.method)[e.target.value].resolution; update(); });
-  on("frame", "input", (e) => setFrame(Number(e.target.value)));
-  on("play", "click", play);
-  on("explode", "input", (e) => { state.explode = e.target.value / 100; showControls(); writeAddress(); });
-  on("axis", "change", (e) => { state.axis = e.target.value; showControls(); writeAddress(); });
-  on("cut", "input", (e) => { state.cut = Number(e.target.value); showControls(); writeAddress(); });
-  on("side", "change", (e) => { state.side = e.target.checked; showControls(); writeAddress(); });
+  on("axis", "change", (e) => { state.axis = e.target.value; showControls(); });
+  on("cut", "input", (e) => { state.cut = Number(e.target.value); showControls(); });
+  on("side", "change", (e) => { state.side = e.target.checked; showControls(); });
   on("reset", "click", resetView);
   on("show-all", "click", showAll);
   on("hide-idle", "click", showColliding);
-  on("theme", "click", () => setTheme(isDark() ? "light" : "dark"));
   on("help", "click", () => byId("keys").showModal());
   on("licence-button", "click", () => byId("licence").showModal());
-  on("link", "click", copyLink);
   on("controls", "submit", (e) => e.preventDefault());
-}
-
-async function copyLink() {
-  history.replaceState(null, "", addressOf());
-  try {
-    await navigator.clipboard.writeText(location.href);
-    byId("link").textContent = "Copied";
-  } catch (refused) {
-    byId("link").textContent = "Copy it from the address bar";
-  }
-  setTimeout(() => { byId("link").textContent = "Copy a link"; }, 2000);
 }
 
 const KEYS = {
   "[": () => setResolution(-1), "]": () => setResolution(1),
   m: () => { state.method = methods[(methods.indexOf(state.method) + 1) % methods.length]; update(); },
-  ",": () => setFrame(state.frame - 1), ".": () => setFrame(state.frame + 1),
   n: next,
   h: () => { if (state.triangle >= 0) hide(frame.owner[state.triangle], true); },
   a: showAll,
-  e: () => { state.explode = state.explode >= 1 ? 0 : Math.min(1, short(state.explode + 0.25)); showControls(); writeAddress(); },
-  t: () => setTheme(isDark() ? "light" : "dark"),
   Escape: () => choose(-1),
   "?": () => byId("keys").showModal()
 };
@@ -421,12 +278,10 @@ function onKey(event) {
   if ("xyz".includes(key) && key.length === 1) {
     state.axis = state.axis === key ? "" : key;
     showControls();
-    writeAddress();
   } else if (Object.hasOwn(KEYS, key)) {
     KEYS[key]();
   } else if (view && Object.hasOwn(VIEW_KEYS, key)) {
     VIEW_KEYS[key](event.shiftKey);
-    writeAddress();
   } else {
     return;
   }
@@ -443,7 +298,6 @@ function standIn(why) {
 
 async function start() {
   fillPage();
-  const given = readAddress();
   if (typeof DecompressionStream === "undefined") {
     standIn("This browser is too old to unpack the scene.");
     byId("headline").textContent = "";
@@ -455,15 +309,15 @@ async function start() {
   } catch (error) {
     standIn(error.message);
   }
+  frame = await loadFrame();
+  if (view) view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
+  showObjects();
   await update();
   connectControls();
   document.addEventListener("keydown", onKey);
   if (view) {
     connectCanvas();
     resetView();
-    readCamera(given);
-    setTheme(state.theme);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => setTheme(state.theme));
     view.onDraw = () => {
       view.onDraw = () => {};
       document.documentElement.dataset.ready = String(Math.round(performance.now()));
@@ -471,13 +325,6 @@ async function start() {
   } else {
     document.documentElement.dataset.ready = String(Math.round(performance.now()));
   }
-  window.addEventListener("hashchange", async () => {
-    if (location.hash === written) return;
-    const other = readAddress();
-    await update();
-    showObjects();
-    readCamera(other);
-  });
 }
 
 // For tests and the console.

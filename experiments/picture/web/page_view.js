@@ -134,8 +134,7 @@ class SceneView {
   // owner: the object of each triangle; objects: [name, first, count].
   setFrame(corners, positions, owner, objects) {
     const triangles = owner.length, vertices = positions.length / 3;
-    const same = this.points && this.points.count === 3 * triangles;
-    const array = same ? this.points.array : new Uint16Array(12 * triangles);
+    const array = new Uint16Array(12 * triangles);
     const box = objects.map(() => new THREE.Box3());
     const at = new THREE.Vector3(), ratio = this.uniforms.ratio.value;
     for (let i = 0; i < 3 * triangles; ++i) {
@@ -151,16 +150,12 @@ class SceneView {
       for (const p of [b.min, b.max]) p.multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
     }
     this.boxes = box;
-    if (same) {
-      this.points.needsUpdate = true;
-    } else {
-      this.points = new THREE.BufferAttribute(array, 4, true);
-      const rows = Math.max(1, Math.ceil(triangles / STATE_WIDTH));
-      this.states = new THREE.DataTexture(new Uint8Array(rows * STATE_WIDTH), STATE_WIDTH, rows,
-        THREE.RedFormat, THREE.UnsignedByteType);
-      this.states.unpackAlignment = 1;
-      this.uniforms.states.value = this.states;
-    }
+    this.points = new THREE.BufferAttribute(array, 4, true);
+    const rows = Math.max(1, Math.ceil(triangles / STATE_WIDTH));
+    this.states = new THREE.DataTexture(new Uint8Array(rows * STATE_WIDTH), STATE_WIDTH, rows,
+      THREE.RedFormat, THREE.UnsignedByteType);
+    this.states.unpackAlignment = 1;
+    this.uniforms.states.value = this.states;
     this.triangles = triangles;
     this.setPlaces(objects);
     this.setIndices();
@@ -170,7 +165,6 @@ class SceneView {
   // move in directions of their own.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
-    const old = this.places && this.places.image.height === rows ? this.places.image.data : null;
     const data = new Float32Array(4 * rows * OBJECT_WIDTH);
     const middle = new THREE.Vector3();
     for (let o = 0; o < objects.length; ++o) {
@@ -181,10 +175,8 @@ class SceneView {
         middle.set(radius * Math.cos(turn), 0.7 * height, radius * Math.sin(turn));
       }
       middle.multiplyScalar(1.6).toArray(data, 4 * o);
-      data[4 * o + 3] = old ? old[4 * o + 3] : 0;
       middle.set(0, 0, 0);
     }
-    if (this.places) this.places.dispose();
     this.places = new THREE.DataTexture(data, OBJECT_WIDTH, rows, THREE.RGBAFormat, THREE.FloatType);
     this.uniforms.places.value = this.places;
     this.places.needsUpdate = true;
@@ -445,13 +437,20 @@ function connectCanvas() {
     choose(view.pick(e.clientX - place.left, e.clientY - place.top));
     canvas.focus();
   });
-  view.controls.addEventListener("end", writeAddress);
-  canvas.addEventListener("wheel", writeAddress, { passive: true });
   canvas.addEventListener("webglcontextlost", (e) => {
     e.preventDefault();
     standIn("The browser took the graphics away. Load the page again to look around.");
   });
   new ResizeObserver(onResize).observe(byId("stage"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showPaper);
+  showPaper();
+}
+
+// The background of the scene is that of the page, light or dark.
+function showPaper() {
+  if (!view) return;
+  view.paper = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim());
+  view.ask();
 }
 
 // ---- data ---------------------------------------------------------------------------------------
@@ -478,27 +477,23 @@ async function numbersOf(name) {
   return out;
 }
 
-// All data of a frame; only the last frame is kept.
+// All data of the scene.
 let frame = null;
 
-async function loadFrame(number) {
-  if (frame && frame.number === number) return frame;
-  let given = number;  // the frame whose triangles these are
-  while (!about.frames[given].corners) --given;
-  const entry = about.frames[number], same = frame && frame.given === given;
+async function loadFrame() {
+  const { objects, triangles, ...entry } = about.frame;
   const [positions, a, b, contacts, corners] = await Promise.all([
     numbersOf(entry.positions), numbersOf(entry.a), numbersOf(entry.b), bytesOf(entry.contacts),
-    same ? frame.corners : numbersOf(about.frames[given].corners)]);
-  const objects = about.frames[given].objects, triangles = about.frames[given].triangles;
+    numbersOf(entry.corners)]);
   const owner = new Uint32Array(triangles);
   objects.forEach(([, first, count], o) => owner.fill(o, first, first + count));
-  return { number, given, positions, a, b, contacts, corners, objects, triangles, owner };
+  return { positions, a, b, contacts, corners, objects, triangles, owner };
 }
 
 // The pairs that a step missed (a byte each), and the triangles that it kept in vain (a bit each).
-async function loadStep(step, of) {
+async function loadStep(step) {
   const lost = step.missed ? await numbersOf(step.missed) : [];
-  const missed = new Uint8Array(of.a.length);
+  const missed = new Uint8Array(frame.a.length);
   for (const pair of lost) missed[pair] = 1;
   return { step, missed, kept: step.kept ? await bytesOf(step.kept) : null };
 }

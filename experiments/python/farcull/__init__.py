@@ -36,18 +36,18 @@ except ImportError as error:  # pip cannot install libraries of the system
 _farcull.require_main_interpreter()  # before the import of numpy, which needs it too
 
 from ._clash import Clash, clash, show
-from ._collide import KINDS, Collider, Part, Report, Result, Stream, collide, join, stream
+from ._collide import KINDS, Collider, Report, Result, collide, join
 from ._distances import FEATURES, INSIDE, Distance, DistanceFinder, Distances, distances
-from ._runs import Check, Picture, Plan, Record, check, picture, plan
+from ._runs import Check, Picture, Record, check, picture
 from ._scenes import Frames, Scene, builtin_scenes
 
 __version__ = "0.1"
 
 __all__ = [
     "Check", "Clash", "Collider", "Distance", "DistanceFinder", "Distances", "Error", "FEATURES", "Frames",
-    "INSIDE", "InputError", "KINDS", "MissingFileError", "Part", "Picture", "Plan", "Record", "Report",
-    "Result", "Scene", "Stream", "builtin_scenes", "check", "clash", "collide", "distances", "join",
-    "picture", "plan", "show", "stream",
+    "INSIDE", "InputError", "KINDS", "MissingFileError", "Picture", "Record", "Report",
+    "Result", "Scene", "builtin_scenes", "check", "clash", "collide", "distances", "join",
+    "picture", "show",
 ]
 
 del _farcull

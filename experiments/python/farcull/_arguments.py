@@ -30,15 +30,33 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
 
 
 def array(name: str, given: Any) -> np.ndarray:
-    """The argument as an array, without a copy if it is one. An empty list becomes (0, 3)."""
+    """Vertices as contiguous doubles, or triangles as contiguous int64 or uint32; without a copy if they are so.
+    An empty list becomes (0, 3)."""
     if hasattr(given, "faces") or hasattr(given, "cells"):
         raise InputError(name, "is a mesh", "give V, F and object_starts of farcull.join(mesh, ...)")
     out = read(name, given, "give rows of three numbers")
-    if not out.dtype.isnative:
-        out = out.astype(out.dtype.newbyteorder("="))
+    indices = name == "F"
     if out.shape == (0,) and out.dtype == np.float64:  # an empty list
-        out = np.empty((0, 3), np.int64 if name == "F" else np.float64)
-    return out
+        out = np.empty((0, 3), np.int64 if indices else np.float64)
+    kind, size = out.dtype.kind, out.dtype.itemsize
+    if size > 8 or kind not in ("iu" if indices else "iuf"):
+        remedy = "give whole numbers, as in numpy.int64" if indices else "give doubles"
+        raise InputError(name, f"are of type {out.dtype}", remedy)
+    if out.ndim != 2 or out.shape[1] != 3:
+        raise InputError(name, "have no three columns", "give an array of shape (n, 3)")
+    if indices:
+        if kind == "u" and size == 8 and out.size and out.max() > np.iinfo(np.int64).max:
+            row = int(np.argmax((out > np.iinfo(np.int64).max).any(axis=1)))
+            reason = f"triangle {row} names vertex {out[row].max()}"
+            raise InputError(name, reason, "give indices from 0 to the number of vertices - 1")
+        return np.require(out, np.uint32 if kind == "u" and size == 4 else np.int64, ["C", "A"])
+    _refuse_rounding(name, out)
+    return np.require(out, np.float64, ["C", "A"])
+
+
+def _refuse_rounding(name: str, given: np.ndarray) -> None:
+    if given.dtype.kind in "iu" and given.size and max(-int(given.min()), int(given.max())) > 2**53:
+        raise InputError(name, "hold what a double may not hold exactly", "give doubles")
 
 
 def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
@@ -128,8 +146,7 @@ def poses(given: Any) -> np.ndarray:
     out = read("poses", given, remedy)
     if out.shape[1:] not in ((3, 4), (4, 4)) or not np.can_cast(out.dtype, np.float64):
         raise InputError("poses", f"have the shape {out.shape} and the type {out.dtype}", remedy)
-    if out.dtype.kind in "iu" and out.size and max(-int(out.min()), int(out.max())) > 2**53:
-        raise InputError("poses", "hold what a double may not hold exactly", "give doubles")
+    _refuse_rounding("poses", out)
     if not len(out):
         raise InputError("poses", "are none", "give one for each object, or leave them out")
     if out.shape[1] == 4 and not (out[:, 3] == (0, 0, 0, 1)).all():

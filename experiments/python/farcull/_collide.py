@@ -108,7 +108,7 @@ def _question(
     self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
     contacts: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
 ) -> _farcull.Question:
-    """What a collider and a stream are asked, checked."""
+    """What a collider is asked, checked."""
     all_objects, each = _arguments.selves(self)
     return {
         "all_objects": all_objects,
@@ -251,84 +251,6 @@ def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Part:
-    """Pairs of a stream, which follow those of the part before."""
-
-    pairs: NDArray[np.int64]  # (k, 2), rows sorted, as in Result; neighbours among them
-    neighbours: NDArray[np.bool_]  # (k,): which pairs are of neighbours
-    kinds: Optional[NDArray[np.uint8]]  # (k,): places in KINDS; None unless asked for
-    segments: Optional[NDArray[np.float64]]  # (k, 2, 3), as in Result
-
-    def __repr__(self) -> str:
-        return f"<farcull.Part: {len(self.pairs)} pairs>"
-
-
-class Stream:
-    """The pairs of :func:`stream`, as an iterator over :class:`Part`. One thread at a time."""
-
-    __slots__ = ("_stream", "_grouped")
-
-    def __init__(self, stream: Any, grouped: Any) -> None:
-        self._stream = stream
-        self._grouped = grouped
-
-    def __iter__(self) -> Stream:
-        return self
-
-    def __next__(self) -> Part:
-        while True:
-            found = self._stream.next()
-            if found is None:
-                raise StopIteration
-            part = Part(*self._grouped.pairs(*found))
-            some = len(part.pairs) > 0
-            self._stream.taken = True  # nothing is called from here on: Python checks for signals after calls
-            if some:
-                return part
-
-    @property
-    def decided(self) -> int:
-        """Candidates that exact tests have decided up to now."""
-        return self._stream.decided
-
-    @property
-    def complete(self) -> bool:
-        """After the end: False where there may be more pairs, which the limit leaves out."""
-        return self._stream.complete
-
-
-def stream(
-    V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
-    self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
-    threads: int = 0, contacts: bool = False, ignore: Optional[ArrayLike] = None,
-    limit: Optional[int] = None, labels: Optional[ArrayLike] = None, segments: bool = False,
-    poses: Optional[ArrayLike] = None,
-) -> Stream:
-    """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
-    rows: where they are too many for the memory, or the first ones are wanted at once. ::
-
-        for part in farcull.stream(V, F, object_starts):
-            use(part.pairs)
-
-    The arrays are copied. Memory does not grow with the number of pairs; a part has at most about
-    2^16. It is slower than :func:`collide` where all pairs are wanted, and uses the CPU alone. The
-    loop can be left at any time.
-
-    Parameters: those of :func:`collide`. With ``labels`` that do not ascend, rows are sorted within each
-    part alone.
-
-    Raises as :func:`collide`. After an exception in a part, Ctrl-C among them, what that part had is
-    lost: the stream then raises Error, so that nobody takes what is left for all.
-    """
-    grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
-    _refuse_limit(limit, labels)
-    question = _question(
-        self, clearance, neighbours, threads, contacts, segments, grouped.ignored(ignore), limit
-    )
-    return Stream(_farcull.Stream(*given, question), grouped)
-
-
 def join(
     *meshes: Any, weld: Union[None, float, str] = None
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
@@ -347,14 +269,8 @@ def join(
     first_vertex = first_triangle = 0
     for mesh in meshes:
         V, F = _arguments.mesh(mesh)
-        for name, given, kinds in (("V", V, "fiu"), ("F", F, "iu")):
-            if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in kinds:
-                raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
         if not F.size:
             raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
-        if V.dtype.kind in "iu" and V.size and max(-int(V.min()), int(V.max())) > 2**53:
-            # Beside another type numpy would round them.
-            raise InputError("V", "hold what a double may not hold exactly", "give doubles")
         if not (0 <= F.min() and F.max() < len(V)):
             raise InputError(
                 "F", "names a vertex that the mesh does not have", "correct the index"

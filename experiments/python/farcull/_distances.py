@@ -99,7 +99,7 @@ class DistanceFinder:
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
         finder, /, *, kind: Kind = "objects", k: int = 1, within: Optional[float] = None,
-        self: Union[bool, Sequence[bool]] = False, inside: Union[bool, Literal["parity"]] = True,
+        self: Union[bool, Sequence[bool]] = False, inside: bool = True,
         threads: int = 0, ignore: Optional[ArrayLike] = None,
     ) -> None:
         all_objects, each = _arguments.selves(self)
@@ -116,15 +116,12 @@ class DistanceFinder:
             raise InputError(
                 "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
             )
-        parity = isinstance(inside, str) and inside == "parity"
-        if parity and which == "all":
-            raise InputError("inside", "has no meaning with kind all", "leave it out")
         pairs = _arguments.ignored(ignore)
         finder._grouped: Any = None  # of the call before, if it had an answer; else None
         finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
-            which, wanted, limit, all_objects, each, parity or _arguments.flag("inside", inside),
-            parity, pairs, _arguments.threads(threads),
+            which, wanted, limit, all_objects, each, _arguments.flag("inside", inside), pairs,
+            _arguments.threads(threads),
         )
 
     def find(
@@ -155,7 +152,7 @@ class DistanceFinder:
 def distances(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None, kind: Kind = "objects",
     k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
-    inside: Union[bool, Literal["parity"]] = True, threads: int = 0,
+    inside: bool = True, threads: int = 0,
     labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
     poses: Optional[ArrayLike] = None,
 ) -> Distances:
@@ -171,8 +168,7 @@ def distances(
     k: how many others, 1 or more; with "nearest" alone.
     within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
     self: as in :func:`collide`, but not with "nearest".
-    inside: whether an object lies inside another, by winding numbers; "parity": by the parity of
-        crossings; False: not at all. Not with "all".
+    inside: whether an object lies inside another, by winding numbers.
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
 

@@ -13,7 +13,7 @@ options: Mapping[str, bool]
 def require_main_interpreter() -> None: ...
 
 class Question(TypedDict):
-    """What a collider or a stream is asked. For annotations alone: the module has no such name."""
+    """What a collider is asked. For annotations alone: the module has no such name."""
 
     all_objects: bool
     self_objects: Sequence[bool]
@@ -33,26 +33,6 @@ class Collider:
         poses: NDArray[float64],
     ) -> dict[str, Any]: ...
 
-class Stream:
-    taken: bool
-    decided: int
-    complete: bool
-    def __init__(
-        self,
-        vertices: NDArray[Any],
-        triangles: NDArray[Any],
-        starts: NDArray[int64],
-        poses: NDArray[float64],
-        question: Question,
-    ) -> None: ...
-    def next(
-        self,
-    ) -> Optional[
-        Tuple[
-            NDArray[int64], NDArray[bool_], Optional[NDArray[uint8]], Optional[NDArray[float64]]
-        ]
-    ]: ...
-
 class DistanceFinder:
     def __init__(
         self,
@@ -62,7 +42,6 @@ class DistanceFinder:
         all_objects: bool,
         self_objects: Sequence[bool],
         inside: bool,
-        parity: bool,
         ignore: Sequence[Sequence[int]],
         threads: int,
     ) -> None: ...
@@ -131,9 +110,6 @@ def run(
     ignore: Sequence[Sequence[int]],
     limit: int,
 ) -> Record: ...
-def plan(
-    scene: Scene, given: Mapping[str, str], threads: int, ignore: Sequence[Sequence[int]], limit: int
-) -> Tuple[str, str]: ...
 def check(
     scene: Scene,
     certificate: Optional[str],
@@ -146,7 +122,6 @@ def picture(
     view: str,
     up: str,
     zoom: bool,
-    depth_view: Optional[str],
     width: int,
     height: int,
     device: str,

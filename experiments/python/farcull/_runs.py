@@ -1,4 +1,4 @@
-"""Runs of any method with their records, plans, checks and pictures."""
+"""Runs of any method with their records, checks and pictures."""
 
 import json
 from dataclasses import dataclass
@@ -37,6 +37,21 @@ class Record:
 
     __slots__ = ("_record", "_options", "scene", "method")
 
+    pairs: NDArray[np.int64]  # (k, 2), as in Result: the pairs that collide among those that were kept
+    neighbour_pairs: NDArray[np.int64]  # the same of neighbours, as in Result
+    kinds: Optional[NDArray[np.uint8]]  # how each of pairs meets, as in Result; None without contacts=True
+    neighbour_kinds: Optional[NDArray[np.uint8]]  # the same of neighbour_pairs
+    complete: bool  # False: the limit was reached, and there may be more pairs behind the last one
+    candidates: int  # how many pairs culling left to the exact tests
+    kept_triangles: NDArray[np.uint32]  # ascending; a view that cannot be written to
+    bits: NDArray[np.uint8]
+    """Of a method that draws, per triangle: 1 fully visible in the first pass, 2 in the second, 3 culled. Empty for
+    other methods. A view that cannot be written to."""
+    views: List[Dict[str, Any]]  # name, width and height (px) of each view, and whether it was looked at
+    promises: bool  # whether the method promises to miss nothing, and its device keeps what that rests on
+    promises_reason: str
+    accounting: Optional[Dict[str, Any]]  # how many pairs are in which class; None with verify=False
+
     def __init__(
         self, record: Any, scene: "Scene", method: str, options: Optional[Dict[str, Any]]
     ) -> None:
@@ -45,65 +60,10 @@ class Record:
         self.scene = scene
         self.method = method
 
-    @property
-    def pairs(self) -> NDArray[np.int64]:
-        """(k, 2), as in :class:`Result`: the pairs that collide among those that were kept."""
-        return self._record.pairs
-
-    @property
-    def neighbour_pairs(self) -> NDArray[np.int64]:
-        """The same of neighbours, as in :class:`Result`."""
-        return self._record.neighbour_pairs
-
-    @property
-    def kinds(self) -> Optional[NDArray[np.uint8]]:
-        """How each of ``pairs`` meets, as in :class:`Result`; None without contacts=True."""
-        return self._record.kinds
-
-    @property
-    def neighbour_kinds(self) -> Optional[NDArray[np.uint8]]:
-        """The same of ``neighbour_pairs``."""
-        return self._record.neighbour_kinds
-
-    @property
-    def complete(self) -> bool:
-        """False: the limit was reached, and there may be more pairs behind the last one."""
-        return self._record.complete
-
-    @property
-    def candidates(self) -> int:
-        """How many pairs culling left to the exact tests."""
-        return self._record.candidates
-
-    @property
-    def kept_triangles(self) -> NDArray[np.uint32]:
-        """The triangles that were kept, ascending; a view that cannot be written to."""
-        return self._record.kept_triangles
-
-    @property
-    def bits(self) -> NDArray[np.uint8]:
-        """Of a method that draws, per triangle: 1 fully visible in the first pass, 2 in the second,
-        3 culled. Empty for other methods. A view that cannot be written to."""
-        return self._record.bits
-
-    @property
-    def views(self) -> List[Dict[str, Any]]:
-        """Name, width and height (px) of each view, and whether it was looked at."""
-        return self._record.views
-
-    @property
-    def promises(self) -> bool:
-        """Whether the method promises to miss nothing, and its device keeps what that rests on."""
-        return self._record.promises
-
-    @property
-    def promises_reason(self) -> str:
-        return self._record.promises_reason
-
-    @property
-    def accounting(self) -> Optional[Dict[str, Any]]:
-        """How many pairs are in which class; None with verify=False."""
-        return self._record.accounting
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._record, name)
 
     def missed(self) -> Optional[NDArray[np.int64]]:
         """(k, 2): all pairs that collide and that culling removed; None with verify=False."""
@@ -136,32 +96,6 @@ def run(
     )
     usual = ignore is None and limit is None and not options.get("clearance")
     return Record(made, scene, method, {"method": method, **options} if usual else None)
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a run would do, what it would leave out, and why."""
-
-    stages: Dict[str, Any]  # as ``farcull plan --json`` writes it
-    text: str  # as ``farcull plan`` prints it
-
-    def __str__(self) -> str:
-        return self.text
-
-
-def plan(
-    scene: "Scene", /, method: str = "boxes", *, threads: int = 0, ignore: Optional[Any] = None,
-    limit: Optional[int] = None, **options: Any,
-) -> Plan:
-    """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
-    since it stops what comes behind the culling; ``contacts`` is no part of one."""
-    given = _options(method, options)
-    made = scene_of(scene)
-    text, table = _farcull.plan(
-        made, given, _arguments.threads(threads), _arguments.ignored(ignore, made),
-        _arguments.limit(limit),
-    )
-    return Plan(json.loads(text), table)
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,14 +160,14 @@ class Picture:
 
 def picture(
     scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("boxes",), *,
-    view: str = "", up: str = "", zoom: bool = False, depth_view: Optional[str] = None,
+    view: str = "", up: str = "", zoom: bool = False,
     width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
     """Draws which triangles collide, which of them a method missed, and which it kept in vain.
 
     - ``methods``: a panel each: a name, or options as of :meth:`Scene.run` with ``method`` among them.
     - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and what is upwards.
-    - ``zoom``: only what collides. ``depth_view``: instead, the depth stored in this view.
+    - ``zoom``: only what collides.
     - ``width``, ``height``: px of a panel.
     - ``page``: True: also write a page in which the scene can be turned, as of ``farcull picture --html``;
       :func:`show` opens it.
@@ -249,7 +183,6 @@ def picture(
     pixels, shown, html = _farcull.picture(
         scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
         _arguments.flag("zoom", zoom),
-        None if depth_view is None else _arguments.text("depth_view", depth_view),
         _arguments.integer("width", width, 1, 10**6),
         _arguments.integer("height", height, 1, 10**6), _arguments.text("device", device),
         _arguments.threads(threads), _arguments.flag("page", page),

@@ -46,6 +46,14 @@ class Scene:
 
     __slots__ = ("_scene",)
 
+    name: str
+    vertices: NDArray[np.float64]  # (n, 3); a view that cannot be written to
+    triangles: NDArray[np.uint32]  # (m, 3) indices of vertices; a view that cannot be written to
+    object_starts: NDArray[np.int64]  # the number of the first triangle of each object
+    ignored: NDArray[np.int64]  # (k, 2) pairs of objects that the scene file ignores
+    names: List[str]  # of the objects
+    self: List[bool]  # which objects are tested against themselves
+
     def __init__(
         scene, /, *names: Union[str, os.PathLike[str]], self: bool = False,
         weld: Union[None, float, str] = None,
@@ -80,39 +88,10 @@ class Scene:
             )
         )
 
-    @property
-    def name(self) -> str:
-        return self._scene.name
-
-    @property
-    def vertices(self) -> NDArray[np.float64]:
-        """(n, 3); a view that cannot be written to."""
-        return self._scene.vertices
-
-    @property
-    def triangles(self) -> NDArray[np.uint32]:
-        """(m, 3) indices of vertices; a view that cannot be written to."""
-        return self._scene.triangles
-
-    @property
-    def object_starts(self) -> NDArray[np.int64]:
-        """The number of the first triangle of each object."""
-        return self._scene.object_starts
-
-    @property
-    def ignored(self) -> NDArray[np.int64]:
-        """(k, 2) pairs of objects that the scene file ignores."""
-        return self._scene.ignored
-
-    @property
-    def names(self) -> List[str]:
-        """Of the objects."""
-        return self._scene.names
-
-    @property
-    def self(self) -> List[bool]:
-        """Which objects are tested against themselves."""
-        return self._scene.self
+    def __getattr__(scene, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(scene._scene, name)
 
     def run(scene, /, method: str = "boxes", **options: Any) -> Record:
         """Culls the scene, tests what is left, and accounts for every pair.

@@ -101,8 +101,7 @@ def fill(chapter, study):
     add_missed(chapter, study.rows)
     add_quick(chapter, scenes)
     chapter.limits = [
-        "Scenes are far smaller than in the papers, so that a software device can draw them; `farcull experiment "
-        "family` takes any size.",
+        "Scenes are far smaller than in the papers, so that a software device can draw them.",
         "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
         "FAR and CULLIDE are measured between objects; scenes with objects that are tested against themselves are "
         "measured by I-COLLIDE and boxes alone.",

@@ -5,7 +5,6 @@ second are the parts of one answer about a mesh.
 """
 import csv
 import os
-from dataclasses import dataclass
 
 from frame import *  # noqa: F403: a chapter uses most of it
 from tables import table_csv
@@ -18,7 +17,6 @@ with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.cs
     # How each contestant of ours is called and what its documentation says. Others say it on their cards.
     DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
 CARD = ["library", "means", "called", "says", "source", "use"]
-FAULTS = {"missed": "missed", "false": "wrong", "death": "death"}  # each fault: the end of the name of its columns
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
 QUESTIONS = ["distance", "self", "inside", "clash"]
@@ -310,96 +308,6 @@ def add_others(chapter, rows, asks):
         chapter.find(f"Of {what}, {'; '.join(parts)}.")
 
 
-# ---- the smallest pair of each kind of fault of each library, as a table and in the format of the suite
-
-def decimal(x):
-    """The shortest decimal text of a double, with an exponent where that is shorter; no -0."""
-    return min(np.format_float_positional(x + 0.0, trim="-"),
-               np.format_float_scientific(x + 0.0, trim="-", exp_digits=2), key=len)
-
-
-@dataclass
-class Example:
-    contestant: str
-    fault: str
-    family: str
-    line: str  # as a suite has it: number, parameter, shared corners, kind, 18 coordinates
-
-    def __post_init__(self):
-        """Reads the line: corners has six points, those of the first triangle first; words has them in decimal."""
-        words = self.line.split()
-        try:
-            self.kind, self.corners = words[3], np.array([float.fromhex(word) for word in words[4:]]).reshape(6, 3)
-            good = self.kind in KINDS + ["?"] and np.isfinite(self.corners).all()
-        except (ValueError, IndexError, OverflowError):
-            good = False
-        if not good:
-            raise Damaged(f"the example of {self.contestant} is no pair: {self.line}")
-        self.words = " ".join("(" + ", ".join(map(decimal, corner)) + ")" for corner in self.corners)
-
-
-def examples_of(rows):
-    return [Example(row.method, fault, *example.split(" ", 1)) for row in rows.itertuples() if text(row, "library") != "farcull"
-            for fault, end in FAULTS.items() if " " in (example := text(row, "example_" + end))]
-
-
-def add_examples(chapter, examples):
-    if not examples:
-        return
-    add_file(chapter, Table(
-        "libraries-examples", "", columns(["contestant", "fault", "family", "kind", "coordinates"], []),
-        [[one.contestant, one.fault, one.family, one.kind, one.words] for one in examples]))
-    chapter.files["libraries-examples.txt"] = (
-        "farcull-pairs 1 libraries-examples\n# Pairs at which libraries err, minimized: whose fault, which, and the "
-        "family that the pair was made from.\n" + "".join(
-            f"# {one.contestant} {one.fault} {one.family}\n{number} {one.line.split(' ', 1)[1]}\n"
-            for number, one in enumerate(examples)))
-
-
-# ---- the page of cases: pairs in three dimensions, with what each contestant said
-
-def said_of(part, label):
-    """What a contestant said of one pair."""
-    if part.answered:
-        return "meets" if (label != "apart") != bool(part.missed + part.wrong) else "apart"
-    return next((name.replace("_", " ") for name in ("refused", "unanswered", "crashed", "hung", "no_memory")
-                 if getattr(part, name)), "not asked")
-
-
-def reported_cases(rows, folder):
-    """The cases of public trackers: the comments above each pair, its label and corners, and the answers."""
-    path, notes, out = f"{folder}/suite/pairs/reported.txt", {}, []
-    parts = parts_of(rows[rows.family == "pairs/reported"])
-    if not os.path.exists(path) or parts.empty:
-        return []
-    with open(path, encoding="utf-8") as file:
-        for line in file.read().split("\n")[1:]:
-            words = line.split()
-            if line.startswith("# "):
-                key, _, value = line[2:].partition(": ")
-                notes[key] = value
-            elif words:
-                label = "apart" if words[3] in ("apart", "neighbours-apart") else "meets"
-                of = parts[parts.parameter.astype(float) == float(words[1])]
-                out.append({**{key: notes.get(key, "") for key in ("source", "expected", "why")}, "kind": words[3],
-                            "exact": label, "corners": [float.fromhex(word) for word in words[4:]],
-                            "said": {part.contestant: said_of(part, label) for part in of.itertuples()}})
-                notes = {}
-    return out
-
-
-def add_cases(chapter, rows, examples, folder):
-    cases = reported_cases(rows, folder) + [
-        {"source": f"{one.contestant}, {one.family}", "expected": "", "kind": one.kind,
-         "why": "The smallest pair of this fault that the study found.",
-         "exact": "apart" if one.kind.endswith("apart") else "meets", "corners": list(one.corners.flatten()),
-         "said": {one.contestant: {"missed": "apart", "false": "meets", "death": "crashed"}[one.fault]}} for one in examples]
-    if cases:
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "cases.html"), encoding="utf-8") as file:
-            data = json.dumps(cases, separators=(",", ":")).replace("<", "\\u003c")
-            chapter.files["libraries-cases.html"] = file.read().replace("CASES", data)
-
-
 def add_file(chapter, table):
     """A table that is too wide for the page."""
     chapter.files[f"tables/{table.name}.csv"] = table_csv(table)
@@ -412,8 +320,7 @@ def fill(chapter, study):
         "questions a contestant gets wrong, not how often they come.",
         "Where the documentation of a library does not say whether touching counts, only pairs that cross or are apart count. "
         "Where it does not take degenerate triangles, they are left out.",
-        "How each was called, what its documentation says, and all rates by kind and family are in `tables/libraries-*.csv`. "
-        "`libraries-cases.html` shows pairs to turn in three dimensions, with what each contestant said."]
+        "How each was called, what its documentation says, and all rates by kind and family are in `tables/libraries-*.csv`."]
     add_gaps(chapter, study)
     if rows.empty:
         return
@@ -429,9 +336,6 @@ def fill(chapter, study):
     if len(pairs):
         files += [overview(pairs, True), kinds_table(pairs)]
         chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
-        examples = examples_of(study.rows)
-        add_examples(chapter, examples)
-        add_cases(chapter, pairs, examples, study.folder)
     if len(meshes):
         files.append(overview(meshes, False))
     if len(distances):

@@ -234,12 +234,6 @@ def fill(chapter, study):
         "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",
         "Most of the time of a library is that of building its trees, which a program that asks again would build "
         "once."]
-    if (apart.name == "embree-points").any():
-        chapter.limits.append(
-            "Embree has no query for the distance of two meshes. embree-points asks it from every vertex of each "
-            "object for the nearest point of the other one. That bounds the distance from above, but for the rounding "
-            "to floats: it is too large where the nearest points lie inside two edges, and above 0 where objects "
-            "cross. So its time is no time of the same question.")
     add_gaps(chapter, study)
     exponents = exponents_table("proximity-exponents", "the number of objects")
     figures = [lost_figure(rest), size_figure(rest),

@@ -1,5 +1,5 @@
-// Scenes for benchmarks with objects in contact: a crumpled sheet, a rope, a heap of spheres, and
-// the list, which includes those of contact_parts.cpp and funnel.cpp.
+// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, and the list,
+// which includes those of contact_parts.cpp and funnel.cpp.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -127,126 +127,6 @@ BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed) 
 
 namespace {
 
-// ---- the rope ----
-
-// A rope of three strands, wound in turns around a ring. The unit of length is the radius of a
-// strand. The strands are one closed tube: after the ring a strand continues as the next one.
-constexpr std::uint32_t kStrands = 3;
-constexpr double kApart = 1.05;  // distance of strands; 1 is contact
-constexpr double kWinding = 5;   // radius of the turns
-constexpr double kLay = 20;      // length of rope in which its strands turn once
-// Distance of a strand from the rope's middle; the factor is 2 / sqrt(3).
-constexpr double kStrandAt = kApart * 1.1547005383792517;
-constexpr double kRope = kStrandAt + 1;
-
-struct RopeShape {
-  std::uint32_t turns;
-  std::uint32_t sides;  // of a strand
-  std::uint32_t steps;  // of one turn
-  double ring;          // radius of the middle of the turns
-  double twist;         // turns of the strands in one way around the ring: a whole number and 1/3
-};
-
-// Below the usual size the rope is shorter; above it, it is divided more finely.
-RopeShape rope_shape(std::uint64_t triangles) {
-  constexpr double kUsual = 80'000, kUsualTurns = 24, kUsualSides = 12;
-  const auto wanted = static_cast<double>(triangles);
-  RopeShape out{};
-  out.turns = static_cast<std::uint32_t>(
-      std::clamp(std::round(kUsualTurns * wanted / kUsual), 6.0, kUsualTurns));
-  const double part = out.turns / kUsualTurns;
-  out.sides = static_cast<std::uint32_t>(
-      std::max(4.0, std::round(kUsualSides * std::sqrt(wanted / kUsual / part))));
-  out.steps = static_cast<std::uint32_t>(
-      std::max(8.0, std::round(wanted / (2.0 * kStrands * out.sides * out.turns))));
-  // At the inside of the ring, neighbouring turns are kApart + 0.02 times the rope's width apart.
-  out.ring = kWinding + out.turns * kRope * (kApart + 0.02) / std::numbers::pi;
-  const double length = out.turns * kTurn * kWinding;
-  out.twist = std::round(length / kLay) + 1.0 / kStrands;
-  return out;
-}
-
-// The middle of the rope and two directions across it, after a number of turns.
-struct RopeFrame {
-  Vec3 middle, out, aside;
-};
-
-RopeFrame rope_at(const RopeShape& shape, double turn) {
-  const double around = kTurn * turn / shape.turns;
-  const double wound = kTurn * turn;
-  const Vec3 radial(std::cos(around), std::sin(around), 0);
-  const Vec3 forward(-std::sin(around), std::cos(around), 0);
-  const Vec3 out = std::cos(wound) * radial + std::sin(wound) * Vec3::UnitZ();
-  const Vec3 up = std::cos(wound) * Vec3::UnitZ() - std::sin(wound) * radial;
-  const double far = shape.ring + kWinding * std::cos(wound);
-  const Vec3 along = (far / shape.turns * forward + kWinding * up).normalized();
-  return {far * radial + kWinding * std::sin(wound) * Vec3::UnitZ(), out, along.cross(out)};
-}
-
-// A smooth one-to-one map of space: the derivatives of its waves stay far below 1.
-class Bend {
- public:
-  Bend(double size, Random& random) {
-    for (Wave& wave : waves_) {
-      wave.along = random.direction() * (random.between(0.5, 1) * kTurn / size);
-      wave.by = random.direction() * (0.06 / wave.along.norm());
-      wave.phase = kTurn * random.unit();
-    }
-  }
-  Vec3 operator()(const Vec3& p) const {
-    Vec3 out = p;
-    for (const Wave& wave : waves_) out += std::sin(wave.along.dot(p) + wave.phase) * wave.by;
-    return out;
-  }
-
- private:
-  struct Wave {
-    Vec3 along, by;
-    double phase;
-  };
-  std::array<Wave, 4> waves_;
-};
-
-}  // namespace
-
-// Rings of a strand are perpendicular to the rope, not to the strand. They turn about the rope's
-// middle with all strands, so that strands stay apart between two rings as they do at the rings.
-BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed) {
-  Random random(seed);
-  const RopeShape shape = rope_shape(parameters.size);
-  const Bend bend(2 * (shape.ring + kWinding), random);
-  const double begin = random.unit();
-  const std::uint32_t around = shape.steps * shape.turns;  // cross-sections, once around the ring
-  const std::uint32_t rings = kStrands * around;
-  std::vector<Vec3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  vertices.reserve(std::size_t{rings} * shape.sides);
-  triangles.reserve(std::size_t{rings} * shape.sides * 2);
-  for (std::uint32_t ring = 0; ring < rings; ++ring) {
-    const RopeFrame frame = rope_at(shape, static_cast<double>(ring % around) / shape.steps);
-    const double turned = kTurn * (begin + shape.twist * ring / around);
-    const double c = std::cos(turned), s = std::sin(turned);
-    for (std::uint32_t side = 0; side < shape.sides; ++side) {
-      const double angle = kTurn * side / shape.sides;
-      const double x = kStrandAt + std::cos(angle), y = std::sin(angle);
-      vertices.push_back(
-          bend(frame.middle + (c * x - s * y) * frame.out + (s * x + c * y) * frame.aside));
-      const std::uint32_t next = (ring + 1) % rings * shape.sides;
-      const std::uint32_t a = ring * shape.sides + side;
-      const std::uint32_t b = ring * shape.sides + (side + 1) % shape.sides;
-      const std::uint32_t d = next + side;
-      const std::uint32_t e = next + (side + 1) % shape.sides;
-      triangles.push_back({a, b, d});
-      triangles.push_back({b, e, d});
-    }
-  }
-  SceneBuilder builder("rope", "rope");
-  builder.add(finished(std::move(vertices), std::move(triangles)), "rope", Split::kNone, {}, true);
-  return {builder.finish(), {}};
-}
-
-namespace {
-
 struct Ball {
   Vec3 centre;
   double radius;
@@ -347,16 +227,9 @@ std::vector<BuiltinScene> contact_scenes() {
             "a sheet of cloth crumpled to a ball, against itself: 57,243 pairs = 57,043 + 200 of "
             "neighbours collide",
             1, 91'592, "", {"triangles", 1000, 100'000'000, 92'000}, {}, kCostly),
-      entry("rope", 17, make_rope,
-            "a rope of three strands wound around a ring, against itself, where nothing collides",
-            1, 79'488, "", {"triangles", 2000, 100'000'000, 80'000}, {}, kCostly),
       entry("spheres", 18, make_spheres,
             "spheres of 320 triangles, settled in a heap: 23,513 pairs collide", 458, 146'560, "",
             {"triangles", 1000, 100'000'000, 146'560}, {}, kCostly),
-      entry("fans", 19, make_fans,
-            "a plug in its socket, triangulated in fans and slivers: 30,979,610 boxes overlap, "
-            "1164 collide",
-            2, 31'112, "", {"triangles", 2000, 10'000'000, 31'000}, {}, kCostly),
       entry("cad-cut", 21, make_cad_cut,
             "a part with a bore, cut in two, as slivers of its whole length: 34,488,537 boxes "
             "overlap, 2587 collide",

@@ -113,7 +113,7 @@ const std::vector<BuiltinScene>& builtin_scenes();
 std::vector<BuiltinScene> generated_scenes();
 /// For benchmarks; docs/results/bench.md has the same counts.
 std::vector<BuiltinScene> bench_scenes();
-/// Also for benchmarks, of common kinds: cloth, rope and parts in contact.
+/// Also for benchmarks, of common kinds: cloth, balls and parts in contact.
 std::vector<BuiltinScene> contact_scenes();
 /// Scenes that move, most of them of the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST 2004).
 /// Without frames they are halfway through their motion, except the cloth.
@@ -226,9 +226,7 @@ BuiltScene make_gap(const SceneParameters& parameters);
 
 /// The scenes of the same names in contact_scenes(). size: number of triangles.
 BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed);
-BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
-BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 

@@ -1,6 +1,6 @@
 // Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
-// meshes by their real paths. Compressed contents are decompressed first. Formats that are not read
-// are recognized, to name a converter.
+// meshes by their real paths. Compressed contents are decompressed first. Extensions of formats
+// that are not read are known, to name a converter.
 #include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>
@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -21,152 +20,30 @@
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/mesh/weld.h"
-#include "experiments/system/text_table.h"
 
 namespace farcull {
 
-// Formats that are not read: a table of their extensions, their first bytes, and the commands that
-// convert them. The commands were tried with assimp 5.2.5, meshio 5.0, Gmsh 4.8.4 and
-// Blender 3.4.1.
-
 namespace {
 
-using namespace std::string_view_literals;
-
-struct Converter {
-  // {0}: the file, {1}: the result, each as a shell reads it; {2}: a script for Blender.
-  const char* command;
-  const char* extension = "";  // of the result
-  const char* import = "";     // Blender's operator that reads the file; empty: Blender opens it
-  const char* verb = "convert it: ";
-};
-constexpr const char* kUnpack = "unpack it: ";
-
-constexpr Converter kAssimp = {"assimp export {0} {1} (Debian: assimp-utils)", ".obj"};
-constexpr Converter kMeshio = {"meshio convert {0} {1} (Debian: meshio-tools)", ".off"};
-constexpr Converter kGmshMesh = {"gmsh {0} -save -o {1} (Debian: gmsh)", ".stl"};
-constexpr Converter kGmshShape = {"gmsh {0} -2 -o {1} (Debian: gmsh)", ".stl"};
-constexpr Converter kBlender = {"blender -b {0} --python-expr {2} (Debian: blender)", ".obj"};
-constexpr const char* kNewBlender = "blender -b --python-expr {2} (Blender of blender.org)";
-
+// Formats that are not read, by their extensions, and what converts them.
 struct Foreign {
-  std::string_view name;
-  Converter by;
+  const char* by;
   std::string_view extensions;
-  // The file begins with one of these, or, if one begins with '<', has it in kTellingBytes bytes.
-  std::array<std::string_view, 2> signs = {};
 };
-
-constexpr std::array<Foreign, 29> kForeign = {{
-    {"glTF", kAssimp, ".gltf .glb", {"glTF"}},
-    {"FBX", kAssimp, ".fbx", {"Kaydara FBX Binary", "; FBX "}},
-    {"COLLADA", kAssimp, ".dae", {"<COLLADA"}},
-    {"X3D", kAssimp, ".x3d", {"<X3D"}},
-    {"VTK", kMeshio, ".vtk .vtu", {"# vtk DataFile", "<VTKFile"}},
-    {"a mesh of Gmsh", kGmshMesh, ".msh", {"$MeshFormat"}},
-    {"a mesh of Medit", kMeshio, ".mesh", {"MeshVersionFormatted"}},
-    {"STEP", kGmshShape, ".step .stp .p21", {"ISO-10303-21"}},
-    {"a shape of OpenCASCADE", kGmshShape, ".brep", {"DBRep_DrawableShape"}},
-    {"USD",
-     {kNewBlender, ".obj", "wm.usd_import"},
-     ".usd .usda .usdc .usdz",
-     {"PXR-USDC", "#usda"}},
-    {"Alembic", {kNewBlender, ".obj", "wm.alembic_import"}, ".abc", {"Ogawa"}},
-    {"a file of Blender", kBlender, ".blend", {"BLENDER"}},
-    {"compressed by xz",
-     {"xz -dk {0} (Debian: xz-utils)", "", "", kUnpack},
-     ".xz",
-     {"\xfd"
-      "7zXZ\0"sv}},
-    {"compressed by zstd",
-     {"zstd -d {0} (Debian: zstd)", "", "", kUnpack},
-     ".zst",
-     {"\x28\xb5\x2f\xfd"}},
-    {"a zip archive", {"unzip {0} (Debian: unzip)", "", "", kUnpack}, ".zip", {"PK\x03\x04"}},
-    {"compressed by bzip2", {"bzip2 -dk {0} (Debian: bzip2)", "", "", kUnpack}, ".bz2"},
-    {"3DS", kAssimp, ".3ds"},
-    {"3MF", kAssimp, ".3mf"},
-    {"an input file of Abaqus", kMeshio, ".inp"},
-    {"bulk data of Nastran", kMeshio, ".bdf .nas"},
-    {"a mesh of Netgen", kMeshio, ".vol"},
-    {"IGES", kGmshShape, ".iges .igs"},
-    {"IFC", {"IfcConvert {0} {1} (ifcopenshell.org)", ".obj"}, ".ifc"},
-    {"polygons of VTK",
-     {"open it in ParaView and save its data as PLY (Debian: paraview)", "", "", ""},
-     ".vtp"},
-    {"VRML", {kNewBlender, ".obj", "import_scene.x3d"}, ".wrl .vrml", {"#VRML"}},
-    {"AMF", kAssimp, ".amf", {"<amf"}},
-    {"a robot in URDF",
-     {"name the meshes that it names, or write a scene file (farcull help scene-file)", "", "", ""},
-     ".urdf",
-     {"<robot"}},
-    {"a document of FreeCAD",
-     {"open it in FreeCAD and export its shapes as STEP or STL (Debian: freecad)", "", "", ""},
-     ".fcstd"},
-    {"a document of a CAD program",
-     {"open it there and export its shapes as STEP or STL", "", "", ""},
-     ".sldprt .sldasm .x_t .x_b .ipt .iam .catpart .catproduct .prt .sat .3dm .jt .dxf .dwg .skp"},
+constexpr std::array<Foreign, 7> kForeign = {{
+    {"convert it with assimp export (Debian: assimp-utils)",
+     " .gltf .glb .fbx .dae .x3d .3ds .3mf .amf "},
+    {"convert it with meshio convert (Debian: meshio-tools)",
+     " .vtk .vtu .mesh .inp .bdf .nas .vol "},
+    {"convert it with gmsh -2 -o FILE.stl (Debian: gmsh)",
+     " .step .stp .p21 .brep .iges .igs .msh "},
+    {"export it from Blender", " .usd .usda .usdc .usdz .abc .blend .wrl .vrml "},
+    {"unpack it; gzip alone is read", " .xz .zst .zip .bz2 "},
+    {"name the meshes that it names, or write a scene file (farcull help scene-file)", " .urdf "},
+    {"export it as STL or OBJ from a program that opens it",
+     " .ifc .vtp .fcstd .sldprt .sldasm .x_t .x_b .ipt .iam .catpart .catproduct .prt .sat .3dm "
+     ".jt .dxf .dwg .skp "},
 }};
-
-// The text as a string literal of Python, in double quotes.
-std::string python_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
-  return out + "\"";
-}
-
-// The path with the extension in place of its own.
-std::string with_extension(const std::string& path, const std::string& extension) {
-  return (std::filesystem::path(path).parent_path() / (mesh_stem(path) + extension)).string();
-}
-
-// The command that converts the file to the path `to`, and the source of its program.
-std::string command(const Converter& by, const std::string& path, const std::string& to) {
-  std::string script = "import bpy; ";
-  if (*by.import != '\0') {
-    script +=
-        fmt::format("bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.{}(filepath={}); ",
-                    by.import, python_text(path));
-  }
-  script += "bpy.ops.wm.obj_export(filepath=" + python_text(to) + ")";
-  return fmt::format(fmt::runtime(by.command), quoted(path), quoted(to), farcull::quoted(script));
-}
-
-// A 3DS file is one chunk: it begins with that chunk's number ("MM") and length. The number of the
-// first chunk inside follows: that of the version, or of the editor's data.
-bool is_3ds(std::string_view bytes) {
-  if (bytes.size() < 16 || !bytes.starts_with("MM")) return false;
-  const std::string_view chunk = bytes.substr(6, 2);
-  return chunk == "\x02\0"sv || chunk == "\x3d\x3d"sv;
-}
-
-// No command may write to the file itself, or to another one that is there. A file with a wrong
-// extension is renamed first, also because converters go by the extension.
-Error refusal(const Foreign& format, const std::string& path, const char* how) {
-  const bool packed = format.by.verb == kUnpack;
-  const std::string_view extensions = format.extensions;
-  const std::string own(extensions.substr(0, extensions.find(' ')));
-  std::error_code error;
-  const bool known =
-      (std::string(extensions) + " ").find(lower_extension(path) + " ") != std::string::npos;
-  std::string from = path, remedy, to = with_extension(path, format.by.extension);
-  if (!known && *format.by.verb != '\0') {
-    from = packed ? path + own : with_extension(path, own);
-    if (std::filesystem::exists(from, error)) from = with_extension(path, "-renamed" + own);
-    remedy =
-        "rename it first: mv " + farcull::quoted(path) + " " + farcull::quoted(from) + ", then ";
-  }
-  if (to != path && std::filesystem::exists(to, error))
-    to = with_extension(path, std::string("-converted") + format.by.extension);
-  return Error(path,
-               fmt::format("{}{}, which is not read ({})", how, format.name,
-                           packed ? "gzip is" : "OBJ, OFF, PLY and STL are"),
-               remedy + format.by.verb + command(format.by, from, to));
-}
-
-const Foreign& named(std::string_view name) {
-  return *std::ranges::find(kForeign, name, &Foreign::name);
-}
 
 }  // namespace
 
@@ -182,39 +59,14 @@ std::string mesh_stem(const std::string& path) {
                                                         : name.stem().string();
 }
 
-std::optional<Error> foreign_name(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  if (extension.empty() || extension.ends_with(".gz")) return std::nullopt;
+std::optional<Error> foreign_mesh(const std::string& path) {
+  std::string extension = lower_extension(path);
+  if (extension.ends_with(".gz")) extension.resize(extension.size() - 3);
   for (const Foreign& format : kForeign) {
-    if ((std::string(format.extensions) + " ").find(extension + " ") != std::string::npos)
-      return refusal(format, path, "is ");
+    if (extension.empty() || format.extensions.find(" " + extension + " ") == std::string::npos)
+      continue;
+    return Error(path, "is a " + extension + " file; OBJ, OFF, PLY and STL are read", format.by);
   }
-  return std::nullopt;
-}
-
-std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path) {
-  bytes = bytes.substr(0, kTellingBytes);
-  // IFC is written in the form of STEP, and polygons of VTK in that of its grids.
-  const std::size_t schema = bytes.find("FILE_SCHEMA");
-  if (bytes.starts_with("ISO-10303-21") && schema != std::string_view::npos &&
-      bytes.find("IFC", schema) != std::string_view::npos)
-    return refusal(named("IFC"), path, "holds ");
-  if (bytes.find("<VTKFile") != std::string_view::npos &&
-      bytes.find("\"PolyData\"") != std::string_view::npos)
-    return refusal(named("polygons of VTK"), path, "holds ");
-  for (const Foreign& format : kForeign) {
-    for (const std::string_view sign : format.signs) {
-      const std::size_t at = sign.empty() ? std::string_view::npos : bytes.find(sign);
-      if (at == 0 || (at != std::string_view::npos && sign.starts_with('<')))
-        return refusal(format, path, "holds ");
-    }
-  }
-  // bzip2 begins with BZh, one digit for the size of its blocks, and the first digits of pi.
-  if (bytes.size() > 10 && bytes.starts_with("BZh") && bytes.substr(4, 3) == "1AY")
-    return refusal(named("compressed by bzip2"), path, "holds ");
-  if (is_3ds(bytes)) return refusal(named("3DS"), path, "holds ");
-  if (bytes.starts_with("{") && bytes.find("\"asset\"") != std::string_view::npos)
-    return refusal(named("glTF"), path, "holds ");
   return std::nullopt;
 }
 
@@ -242,15 +94,9 @@ std::optional<MeshFormat> find_format(const std::string& path) {
   return found == kReaders.end() ? std::nullopt : std::optional(found->format);
 }
 
-// If parsing fails, the contents may be in a known format that is not read: the error says so.
 Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& name) {
-  try {
-    if (bytes.empty()) throw Error(name, "the file is empty", "give a mesh with at least one face");
-    return kReaders.at(static_cast<std::size_t>(format)).parse(bytes, name);
-  } catch (const Error&) {
-    if (const std::optional<Error> foreign = foreign_contents(bytes, name)) throw *foreign;
-    throw;
-  }
+  if (bytes.empty()) throw Error(name, "the file is empty", "give a mesh with at least one face");
+  return kReaders.at(static_cast<std::size_t>(format)).parse(bytes, name);
 }
 
 // ---- names of files with a place for a number
@@ -317,17 +163,6 @@ MeshFormat mesh_format(const std::string& path) {
                   ? "a mesh file needs an extension that names its format"
                   : "no mesh format is known by the extension " + quote_token(extension),
               "give a file that ends in .obj, .off, .ply or .stl, or in one of these and .gz");
-}
-
-std::optional<Error> foreign_mesh(const std::string& path) {
-  if (std::optional<Error> by_name = foreign_name(path)) return by_name;
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::string bytes(kTellingBytes, '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return foreign_contents(bytes, path);
 }
 
 bool has_mesh_extension(const std::string& path) { return find_format(path).has_value(); }

@@ -1,5 +1,5 @@
-// Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip; OBJ and OFF are written
-// as well. Coordinates are the doubles of the file, never rounded through float: text is converted
+// Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip; OFF is written as
+// well. Coordinates are the doubles of the file, never rounded through float: text is converted
 // with correct rounding, binary floats widen exactly. Indices, finiteness and sizes are checked,
 // whatever the file claims; nothing is allocated because a header says so.
 #pragma once
@@ -49,9 +49,8 @@ MeshFormat mesh_format(const std::string& path);
 MeshFormat named_format(const std::string& name);
 /// True iff mesh_format(path) would not throw.
 bool has_mesh_extension(const std::string& path);
-/// The Error for a path or a file in a format that is not read but has a known converter. The Error
-/// names the format and the command that converts it. Looks into the file if the extension is
-/// unknown. Empty for an unknown format.
+/// The Error for a path whose extension is that of a format that is not read, compressed or not; it
+/// names what converts the file. Empty for other extensions.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// What load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that are not
@@ -70,8 +69,7 @@ std::vector<std::string> take_reading_notes();
 /// is not a regular file, cannot be read, is malformed or shorter or longer than it claims, has a
 /// face with a corner that is NaN, infinite or beyond double, an index out of range, a polygon of
 /// fewer than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip data that are cut,
-/// damaged or suspiciously small (text.h). The Error for contents of a known format that is not
-/// read names its converter.
+/// damaged or suspiciously small (text.h).
 Mesh load_mesh(const std::string& path);
 
 /// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
@@ -79,9 +77,6 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
 
 /// The part as OFF, each number with 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
-/// The part as an object of an OBJ file. first: number of its first vertex in the file, from 1.
-std::string obj_object(const MeshPart& part, const std::string& name, std::uint64_t first);
-
 /// Whether a name holds one place for a number: %d, or %0Nd for N digits (1 to 9) with leading
 /// zeros.
 bool is_numbered(const std::string& name);
@@ -132,15 +127,6 @@ class MeshCache {
   std::map<std::string, Mesh> meshes_;    // by the file's real path
   std::map<std::string, Moving> moving_;  // by the name
 };
-
-/// Number of bytes of a file that foreign_contents() examines.
-constexpr std::size_t kTellingBytes = 1024;
-
-/// The Error for a path whose extension names a format that is not read: it names the format and
-/// the command that converts the file. Empty for other extensions.
-std::optional<Error> foreign_name(const std::string& path);
-/// The Error for a file whose first bytes show such a format, whatever its name.
-std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path);
 
 /// The extension in lower case, with its dot; for a compressed file the last two: ".obj.gz" for
 /// "a.OBJ.gz".

@@ -205,9 +205,7 @@ Header read_header(TextReader& in) {
 
 }  // namespace
 
-namespace {
-
-Mesh parse_off_lines(std::string_view bytes, const std::string& name) {
+Mesh parse_off(std::string_view bytes, const std::string& name) {
   TextReader in(bytes, name, {.comment = '#'});
   const Header header = read_header(in);
   MeshBuilder mesh(name);
@@ -245,61 +243,6 @@ Mesh parse_off_lines(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Reads plain OFF without colours, whose numbers may stand on any lines: three counts, then
-// vertices and faces, and nothing else.
-Mesh parse_off_numbers(std::string_view bytes, const std::string& name) {
-  TextReader in(bytes, name, {.comment = '#'});
-  const auto go_on = [&] {
-    if (!in.seek()) in.fail("the file ends too early", kDamaged);
-  };
-  go_on();
-  if (in.token() != "OFF") in.fail("is not plain OFF", kDamaged);
-  go_on();
-  const std::uint64_t vertices = count(in, "vertices", 6);
-  go_on();
-  const std::uint64_t faces = count(in, "faces", 8);
-  go_on();
-  in.integer("the number of edges");
-  MeshBuilder mesh(name);
-  for (std::uint64_t i = 0; i < vertices; ++i) {
-    Vec3 p;
-    for (int axis = 0; axis < 3; ++axis) {
-      go_on();
-      p[axis] = in.coordinate("a coordinate");
-    }
-    mesh.add_vertex(p, in.line());
-  }
-  std::vector<std::uint32_t> corners;
-  for (std::uint64_t i = 0; i < faces; ++i) {
-    go_on();
-    corners.resize(count(in, "corners", 2));
-    for (std::uint32_t& corner : corners) {
-      go_on();
-      const std::int64_t index = in.integer("a vertex index of the face");
-      if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
-        in.fail(fmt::format("vertex index {} of {} vertices", index, vertices), kDamaged);
-      corner = static_cast<std::uint32_t>(index);
-    }
-    mesh.add_face(corners, in.line());
-  }
-  if (in.seek()) in.fail("more follows than the counts promise", kDamaged);
-  return mesh.finish();
-}
-
-}  // namespace
-
-Mesh parse_off(std::string_view bytes, const std::string& name) {
-  try {
-    return parse_off_lines(bytes, name);
-  } catch (const Error& of_lines) {
-    try {
-      return parse_off_numbers(bytes, name);
-    } catch (const Error&) {
-      throw of_lines;
-    }
-  }
-}
-
 namespace {
 
 void add_vertices(const MeshPart& part, const char* before, fmt::memory_buffer& out) {
@@ -318,15 +261,6 @@ std::string off_text(const MeshPart& part) {
   add_vertices(part, "", out);
   for (const auto& [a, b, c] : part.triangles)
     fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", a, b, c);
-  return fmt::to_string(out);
-}
-
-std::string obj_object(const MeshPart& part, const std::string& name, std::uint64_t first) {
-  fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "o {}\n", name);
-  add_vertices(part, "v ", out);
-  for (const auto& [a, b, c] : part.triangles)
-    fmt::format_to(std::back_inserter(out), "f {} {} {}\n", first + a, first + b, first + c);
   return fmt::to_string(out);
 }
 

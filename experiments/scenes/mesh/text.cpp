@@ -18,6 +18,7 @@
 #include <new>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -81,9 +82,9 @@ Error too_large(const std::string& path, std::uint64_t max_bytes) {
 
 void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
               std::string& bytes) {
-  char chunk[65536];
-  while (const std::size_t n = std::fread(chunk, 1, sizeof chunk, file)) {
-    bytes.append(chunk, n);
+  std::vector<char> chunk(1 << 16);  // not on the stack, which may be that small
+  while (const std::size_t n = std::fread(chunk.data(), 1, chunk.size(), file)) {
+    bytes.append(chunk.data(), n);
     if (bytes.size() > max_bytes) throw too_large(path, max_bytes);
   }
   if (std::ferror(file))

@@ -56,8 +56,8 @@ std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool
 
 std::vector<Scene> small_scenes() {
   std::vector<Scene> out;
-  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "rope:2000",
-                           "crumpled:1000", "crowd@far", "degenerate", "degenerate@huge"}) {
+  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "crumpled:1000",
+                           "crowd@far", "degenerate", "degenerate@huge"}) {
     Scene scene = make_builtin_scene(name);
     if (scene.triangles.size() > 12'000) continue;
     out.push_back(shuffled(scene, 1));

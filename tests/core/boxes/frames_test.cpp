@@ -66,8 +66,8 @@ void move(Random& random, Scene& scene) {
 
 std::vector<Scene> scenes() {
   std::vector<Scene> out;
-  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "rope:2000",
-                           "crumpled:1000", "degenerate", "needles"}) {
+  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "crumpled:1000",
+                           "degenerate", "needles"}) {
     const Scene scene = make_builtin_scene(name);
     out.push_back(scene);
     out.push_back(with_self(scattered(scene)));

@@ -43,7 +43,8 @@ std::vector<TrianglePair> pairs_of(const Scene& scene, const OrientedBlocks& blo
 
 std::vector<Scene> some_scenes() {
   std::vector<Scene> out;
-  for (const char* name : {"cad-cut:2000", "fans:2000", "needles", "crowd", "cad-cut:2000@far"}) {
+  for (const char* name :
+       {"cad-cut:2000", "cad-cut:3000", "needles", "crowd", "cad-cut:2000@far"}) {
     out.push_back(make_builtin_scene(name));
   }
   for (std::uint64_t seed = 0; seed < 20; ++seed)

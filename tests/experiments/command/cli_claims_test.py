@@ -117,8 +117,6 @@ $ ln -s report/results.sqlite results/results.sqlite
 bad {command} --json {scene} | --json: .* SCENE .*; choose another place for --json | {command} s.json --json {scene}
 bad {judge} {option} {scene} | {option}: .* SCENE[ ] | {judge} s.json {option} {scene}
 bad picture -o {scene} | -o: .* SCENE[ ] | picture s.json -o {scene}
-bad savings --json {scene} | --json: .* SCENE[ ] | experiment savings s.json --json {scene}
-bad family --csv {scene} | --csv: .* SCENE[ ] | experiment family s.json --csv {scene}
 bad {reader} over a mesh of the scene file by {mesh} | --json: .*obj, which SCENE reads | {*reader} s.json --json {mesh}
 bad picture over a mesh by {mesh} | -o: .*obj, which SCENE reads | picture s.json -o {mesh}
 bad run --pairs over a mesh by {mesh} | --pairs: .*obj, which SCENE reads | run sub/good.obj frame_7.obj --pairs {mesh}
@@ -132,8 +130,6 @@ bad check over the list | --json: pairs\.csv is pairs\.csv, which --pairs reads
   | check exact.json two-spheres --pairs pairs.csv --json pairs.csv
 bad check over the scene | --json: .* SCENE[ ] | check exact.json s.json --json link.json
 bad a packaged mesh | --json: packaged\.json is .*armadillo\.off, which SCENE | {meshes} run near-copy --json packaged.json
-bad a packaged mesh of any scene | --json: packaged\.json is .*armadillo\.off, which SCENE
-  | {meshes} experiment savings --json packaged.json
 bad a scene over the meshes that it is made of | --write: .*armadillo\.off, which SCENE reads
   | {meshes} scenes armadillo --write meshes
 bad results in the report | results/results\.sqlite: leads into DIR/report | report results
@@ -157,6 +153,6 @@ bad the table and the record into one file | --json: .*where standard output goe
 0 frames that are not read | run frame_%d.obj sub/good.obj --method boxes --frames 7:7 --json kept.json
 """, command=['run', 'verify', 'plan', 'compare', 'bench'], judge=['run', 'verify'], option=['--pairs', '--certificate'],
      scene=['s.json', './s.json', '{PWD}/s.json', 'sub/../s.json', 'link.json', 'hard.json'],
-     reader=['run', 'verify', 'plan', 'compare', 'bench', 'experiment savings'], mesh=['mesh_link.json', 'mesh_hard.csv'],
+     reader=['run', 'verify', 'plan', 'compare', 'bench'], mesh=['mesh_link.json', 'mesh_hard.csv'],
      moving='--method boxes --frames 7:7', exact=['exact.json', './exact.json'], meshes='FARCULL_MESHES={PWD}/meshes',
      other=['new.csv', './new.csv', '{PWD}/new.csv', 'sub/../new.csv'])

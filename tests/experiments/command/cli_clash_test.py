@@ -32,12 +32,12 @@ $ cp parts/a.obj cad/left/Gehäuse.OBJ
 $ cp parts/b.obj cad/right/Gehäuse.obj
 $ cp parts/c.obj "cad/right/100% c;3.obj"
 cad/left/bolt.step << ISO-10303-21;
-bad a part in a format that is not read | cad.left.bolt.step: is STEP | clash cad
+bad a part in a format that is not read | cad.left.bolt.step: is a .step file | clash cad
 $ cp parts/d.obj cad/right/bolt.obj
-bad a part in a format that is not read, with a mesh elsewhere | cad.left.bolt.step: is STEP | clash cad
+bad a part in a format that is not read, with a mesh elsewhere | cad.left.bolt.step: is a .step file | clash cad
 $ mv cad/left/bolt.step cad/right/bolt.step
 $ mkdir packed && cp parts/a.obj parts/b.obj packed && gzip -c cad/right/bolt.step > packed/bolt.step.gz
-bad a compressed part in a format that is not read | packed.bolt.step.gz: is STEP.* gzip -dk packed/bolt.step.gz, then | clash packed
+bad a compressed part in a format that is not read | packed.bolt.step.gz: is a .step file | clash packed
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 """, clearance=['-1', 'nan', 'inf', 'x', ''], word=['clear', 'clashes'])
 

@@ -23,8 +23,7 @@ bad k '{k}' | --k: | {two} --pairs nearest --k {k}
 bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
 bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
 bad threads '{threads}' | --threads: | {two} --threads {threads}
-bad inside maybe | --inside: .*give yes, parity or no | {two} --inside maybe
-bad parity with --verify | --inside: parity is not what | {two} --inside parity --verify
+bad inside maybe | --inside: .*give yes or no | {two} --inside maybe
 bad nearest of ignored objects | [^:]*: the scene ignores .* nearest objects .*; leave ignore out | {three} --ignore small:right --pairs nearest
 bad an accounting of ignored objects | [^:]*: the scene ignores .* accounting | {three} --ignore small:right --verify
 bad all ignored | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer | {two} --ignore small:right
@@ -67,11 +66,10 @@ rows(r"""
 0 inside | distance small.obj large.obj --csv - | ,a$
 0 outside in | distance large.obj small.obj --csv - | ,b$
 0 not closed | distance small.obj open.obj --csv - | ,not closed$
-# Two shells that overlap, in one file: inside both the winding number is 2, and the parity even.
+# Two shells that overlap, in one file: inside both the winding number is 2.
 shells.obj << {T}; v 0.1 0.1 0.1; v 9.1 0.1 0.1; v 0.1 9.1 0.1; v 0.1 0.1 9.1; {closed}
 point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
 0 inside two shells | distance point.obj shells.obj --csv - | ,a$
-0 by parity | distance point.obj shells.obj --inside parity --csv - --json parity.json | ,none$ | @parity.json "inside_by": "parity"
 0 ignored in each frame | distance cylinders:3 --frames 2 --ignore cylinder0:cylinder1 | ^ +0 +2 | ^ +1 +2
 0 ignored | {three} --ignore small:right --csv ignored.csv | ^ignored    1 pair of objects$
   | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && (($(wc -l <ignored.csv) == 3))
@@ -82,7 +80,7 @@ point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
 0 that meet | distance small.obj small.obj --csv - | ^0,0,1,0,0,0/1,
 0 nearest | distance small.obj right.obj large.obj --pairs nearest --k 4000000000 --verify | ^0 small +1  1 right +1[ ]
 0 all | distance crowd --pairs all --within 0.01 --verify --csv all.csv --json all.json | ^verified:
-0 self | distance rope:2000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
+0 self | distance crumpled:1000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
 0 threads | distance crowd --pairs nearest --k 2 --threads 1 --csv one.csv
 0 threads | distance crowd --pairs nearest --k 2 --threads 3 --csv three.csv | $ cmp -s one.csv three.csv
 moves_{i}.obj << v {i} 0 0; v 9 0 0; v 9 1 0; f 1 2 3

@@ -1,4 +1,4 @@
-"""The methods, the plan, the studies of the family and of savings."""
+"""The methods and the plan."""
 from cli_lab import rows
 
 # ---- bad input
@@ -20,6 +20,8 @@ bad clusters '{sizes}' | --clusters: | run two-spheres --method far --clusters {
 bad rounds '{rounds}' | --rounds: | run two-spheres --method cullide --rounds {rounds}
 bad boxes with {form} | {form0}: .*cullide | run two-spheres --method boxes {*form}
 bad compare without a use for {form} | {form0}: | compare two-spheres --methods boxes,exact {*form}
+each {0}: .*methods | compare two-spheres --methods boxes,exact | --resolutions 64 | --views x | --device native | --offsets exact
+bad compare s-cullide without self | --methods: .*--self | compare two-spheres --methods s-cullide,exact
 bad the old name of an option | --boxes: .*--broad-phase | run two-spheres --method far --boxes objects
 bad a broad phase '{phase}' | --broad-phase: .*objects or triangles | run two-spheres --method far --broad-phase {phase}
 bad a broad phase of what does not draw | --broad-phase: .*cullide | run two-spheres --broad-phase triangles
@@ -35,14 +37,7 @@ bad plan without a scene | SCENE: | plan
 bad plan of nothing known | nope: | plan nope
 bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
-bad an unknown study | nope: .*family | experiment nope
-bad family of what stands still | --frames: nothing[ ] | experiment family two-tori --frames 2
-each {0}: | experiment family two-spheres | --methods nope --frames 2 | --frames 0 | --resolution 0 | --query maybe | --views q
-bad family into a folder | \.: | experiment family two-spheres --frames 1 --csv .
-bad family of nothing to ask | --methods: .*--self | experiment family two-spheres --methods s-cullide --frames 1
-each nosuch: | experiment | family two-bunnies nosuch --frames 1000 | savings two-bunnies nosuch
-bad savings of nothing known | nope: | experiment savings nope
-each {0}: | experiment savings far-apart | --methods exact | --repeat 0 | --methods nope
+bad an unknown study | nope: .*lemma | experiment nope
 """, quick=['quick-cullide', 's-cullide'], sizes=['', '1', '0', 'x', '32,32', '16,32', '32,', '1e3'],
      objects=['i-collide', 'boxes', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
      form=['--rounds 1', '--clear all', '--level objects', '--conservative'], phase=['enough', 'boxes', ''])
@@ -87,8 +82,4 @@ rows(r"""
 0 full | verify far-apart --method boxes --full | ^colliding  0 pairs$
 0 compare the family | compare two-spheres --methods cullide,quick-cullide,i-collide,exact --resolutions 64
   --device software | ^i-collide +- +-[ ]
-0 family | experiment family two-spheres --methods boxes,i-collide --frames 3 --csv - --json family.json
-  | ^scene,method,offset,frame, | ^two-spheres,boxes,,2, | @family.json "missed": 0
-0 family for people | experiment family two-spheres --methods i-collide --frames 2 | ^two-spheres +10,240 +i-collide[ ]
-0 savings | experiment savings far-apart --methods i-collide --repeat 2 --json - | "same_pairs": true
 """, small='--resolution 64 --device software')

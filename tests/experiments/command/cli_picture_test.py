@@ -18,7 +18,7 @@ each {0}: | {p} | -o '' | -o --zoom | --html '' | --html - | --frames 5 -o new.p
   | --frame 5 --frames 5 -o new.png | --compare far:x -o new.png | --compare far --method far -o new.png
   | --radius 1 --method cullide -o new.png | --depth fixed --method cullide -o new.png | --depth deep --method far -o new.png
   | --resolution 0 -o new.png | --resolution 64 --method exact -o new.png | --view 0:0:0 -o new.png | --view '' -o new.png
-  | --up y --view y -o new.png | --view-depth top --method far -o new.png | --html new.html --method far --view-depth
+  | --up y --view y -o new.png
   | --resolutions 32,64 --method far -o new.png | --resolutions 32, --method far --html new.html
   | --resolutions 32 --compare exact,far:64 --html new.html | --device nope --method cullide -o new.png | --nope -o new.png
 bad an output named like a mesh | -o: .*mesh | {p} -o crossing.obj
@@ -33,7 +33,6 @@ bad seven panels | --compare: 7 | {p} --compare far,far,far,far,far,far,far -o n
 bad a radius of the default | --radius: .*--method far | {p} --radius 1 -o new.png
 bad the size '{size}' | --size | {p} --size {size} -o new.png
 bad an unknown direction | --view: 'up' | {p} --view up -o new.png
-bad the depth of exact | --view-depth: exact | {p} --method exact --view-depth -o new.png
 bad a page named like a mesh | --html: .*mesh | {p} --html crossing.obj
 bad a page and a picture in one file | --html | {p} --html new.png -o new.png
 bad s-cullide without self | two-spheres: | {p} --method s-cullide -o new.png
@@ -51,15 +50,13 @@ bad a folder without permission | locked/new.png: | picture two-spheres -o locke
 
 rows(r"""
 $ printf '\x89PNG\r\n\x1a\n' >signature
-0 help | picture --help | --view-depth
+0 help | picture --help | --zoom
 0 cullide | picture two-spheres --method cullide --resolution 64 {small} -o cullide.png | $ cmp -sn 8 signature cullide.png
   | ^cullide at 64 px: missed [1-9][0-9,]* of [0-9,]+ colliding pairs$ | ^The picture is in cullide.png$
 0 compare | picture two-spheres --compare cullide:32,far:64,exact {small} -o old.png | $ cmp -sn 8 signature old.png
   | ^far at 64 px: missed 0 of[ ] | ^exact: missed 0 of[ ] | @old.png Scene hash
 0 ignored | picture crowd:40 --method exact --ignore '*1:*2' {small} -o i.png | ^exact: missed 0 of[ ]
 0 standard output | picture crossing.obj --method exact --self {small} -o - | $ cmp -sn 8 signature "$out"
-0 a view of the method | picture two-spheres --method far --resolution 32 --view-depth=-x {small} -o v.png
-  | ^far at 32 px, along -x: this view loses 0 of[ ]
 0 a single mesh | picture crossing.obj --method boxes --self --view -z --up x {small} -o s.png
   | ^boxes: missed 0 of[ ]
 0 a frame | picture two-spheres --method exact --frame 3 --frames 10 {small} -o f.png

@@ -46,16 +46,13 @@ bad compare with an unknown method | --methods: | compare two-spheres --methods 
 bad scenes with an argument | extra: no built-in scene | scenes extra
 bad scenes with two arguments | far-apart: | scenes two-tori far-apart --write new
 bad a scene that is not written | two-spheres: .*--write | scenes two-spheres
-each {0}: | scenes | --write new | --frames 3
+each {0}: | scenes | --write new
 each {0}: | scenes two-spheres | --write ''
-each {0}: | scenes crowd | --frames 0 --write new
 each {0}: | scenes far-apart | --json - --write new
 bad writing into a missing folder | missing/new: the folder cannot be made: No such | scenes far-apart --write missing/new
 bad writing into a file | good\.obj: the folder cannot be made | scenes far-apart --write good.obj
-bad writing frames of what stands still | two-tori: nothing .*moves | scenes two-tori --write new --frames 3
 bad a suite into a folder with files | \.: is there already | suite .
-bad a suite that is not there | new/suite\.txt: | suite new --check
-each {0}: | suite new | --size large | --seed one | --check --seed 2
+each {0}: | suite new | --size large | --seed one | --ask cat --seed 2
 each {0}: | run | crowd:1 | crowd:400:nan | crowd:400:0.2:1 | crowd::1 | field:1e6 | two-tori:5 | shells:10:1
 each {0}: | doctor | extra | --device nope | --device 99
 bad help of nothing known | nope: no such .*terms | help nope
@@ -220,10 +217,6 @@ rows(r"""
 0 a scene as meshes again | scenes crowd:5:2@far --write crowd
 0 crowd:5:2@far | run crowd:5:2@far --method exact --json built.json
 0 crowd/scene.json | run crowd/scene.json --method exact --json read.json
-  | $ cmp -s <(grep '"hash"' built.json) <(grep '"hash"' read.json)
-0 frames as meshes | scenes cylinders:2@ground --write tubes --frames 9:11
-0 frames of these meshes | verify tubes/scene.json --method boxes --frames 9:11 --json read.json
-0 the same frames, built in | verify cylinders:2@ground --method boxes --frames 9:11 --json built.json
   | $ cmp -s <(grep '"hash"' built.json) <(grep '"hash"' read.json)
 0 run | run {spheres} | ^scene      two-spheres: 2 objects, 10,240 triangles$ | #0 ^colliding[ ] | ! .{81} | ! left out | [ ]\+ 0 missed$
 0 cullide misses | run {cullide} | [ ]\+ [1-9][0-9,]* missed$

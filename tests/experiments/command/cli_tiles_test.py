@@ -5,7 +5,7 @@ import os
 import re
 import shlex
 
-from cli_lab import bash, OUT, case, good, launch, read, rows, write
+from cli_lab import bash, case, good, launch, read, rows, write
 
 
 def same(tiles, scene):
@@ -22,7 +22,7 @@ def same(tiles, scene):
 
 # The built-in scenes, the large ones of a smaller size, in 1 to 5 tiles; those of packaged meshes, where they are.
 for number, scene in enumerate('''two-spheres two-tori random-soup needles degenerate ground crowd:60 far-apart field:3000
-    crumpled:2000 rope:3000 spheres:2000 fans:2000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000
+    crumpled:2000 spheres:2000 cad-cut:2000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000
     slivers stack mixed gap'''.split()):
     same(number % 5 + 1, scene)
 if launch(['run', 'bunny', '--no-verify']) == 0:
@@ -61,16 +61,6 @@ bad one name of two objects | .*was run with other options | merge t1.json t2.js
 """)
 same(2, f'{mesh} {mesh}')
 
-# The plan cuts where the runs cut, and counts what they read.
-rows('0 plan --tiles 3 | plan field:30000 --tiles 3 --json plan.json | ^ *3/3[ ]')
-ENTRIES = '"(from|to|triangles|home_triangles)": ([^,\n]*)'
-for k in 1, 2, 3:
-    launch(['run', 'field:30000', '--no-verify', '--tiles', f'{k}/3', '--json', '-'])
-    tile = re.findall('\n    ' + ENTRIES, re.search('\n  "tile": {.*?\n  }', read(OUT), re.DOTALL)[0])
-    case(f'the record of tile {k}', len(tile) == 4, f'it lacks an entry: {tile}')
-    plan = re.findall('\n      ' + ENTRIES, re.search(rf'"k": {k},.*?}}', read('plan.json'), re.DOTALL)[0])
-    case(f'the plan of tile {k}', plan == tile, f'{plan} instead of {tile}')
-
 rows(r"""
 0 the table | run field:30000 --tiles 2/3 | tile       2 of 3 | pairs of other tiles are not covered | memory    [ ]
   | accounted [ ]
@@ -78,8 +68,7 @@ rows(r"""
 bad far | --tiles: are of boxes | run two-spheres --tiles 1/2 --method far
 each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3
 bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
-bad a number that is none | .*'1/2' is no number of tiles | plan two-spheres --tiles 1/2
-each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*' | plan crowd --tiles 2 --ignore 'nobody:*'
+each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*'
 $ "$farcull" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv' 2>&1 >/dev/null | grep -qF 'no UTF-8'
 ignored.txt << tetrahedron0:*2
 each .*--ignore-file | run crowd --ignore-file ignored.txt | --tiles 1/2 --pairs ignored.txt | --json ignored.txt

@@ -86,23 +86,6 @@ TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
   expect(found.neighbour_pairs, found.neighbour_contacts);
 }
 
-TEST(LibraryContacts, OfAStreamWhoseCallerRoundsUpwardAreTheSame) {
-  const Flat flat(make_builtin_scene("two-tori"));
-  const auto streamed = [&](int rounding) {
-    std::vector<StreamedPair> out;
-    Stream stream(flat.input(), {.threads = 1, .contacts = Contacts::segments});
-    std::fesetround(rounding);
-    for (std::vector<StreamedPair> part; stream.next(part);)
-      out.insert(out.end(), part.begin(), part.end());
-    EXPECT_EQ(std::fegetround(), rounding);
-    std::fesetround(FE_TONEAREST);
-    return out;
-  };
-  const std::vector<StreamedPair> expected = streamed(FE_TONEAREST);
-  EXPECT_GT(expected.size(), 20u);
-  EXPECT_EQ(streamed(FE_UPWARD), expected);
-}
-
 /// The pairs whose objects are not these two.
 std::vector<Pair> without(const Scene& scene, std::vector<Pair> pairs,
                           const std::vector<std::array<std::uint32_t, 2>>& ignored) {

@@ -100,7 +100,6 @@ TEST(Library, WhatIsMisunderstoodIsAnErrorWithARemedy) {
       EXPECT_TRUE(has_text(reason, one.value("reason", "nothing was thrown"))) << reason;
     };
     expect([&] { Collider({.self = self}).find(input); });
-    expect([&] { Stream(input, {.self = self}); });
     expect([&] { distances(input, {.self = self}); });
   }
 }
@@ -308,104 +307,16 @@ TEST(Library, RefusesBadOptions) {
   EXPECT_EQ(with({.threads = 1025}), "threads");
 }
 
-// ---- Pairs that are streamed are those of Collider::find(), in order, whatever the options.
-
-/// What find() answers, as a stream would give it.
-std::vector<StreamedPair> found_by(const Options& options, const Input& input) {
-  const Result result = Collider(options).find(input);
-  std::vector<StreamedPair> out;
-  const auto append = [&](const auto& pairs, const auto& contacts, bool neighbours) {
-    for (std::size_t k = 0; k < pairs.size(); ++k)
-      out.push_back({pairs[k], neighbours, contacts.empty() ? Contact() : contacts[k]});
-  };
-  append(result.pairs, result.contacts, false);
-  append(result.neighbour_pairs, result.neighbour_contacts, true);
-  std::ranges::sort(out, {}, &StreamedPair::pair);
-  return out;
-}
-
-struct Streamed {
-  std::vector<StreamedPair> pairs;
-  std::size_t largest = 0;  // part
-  std::uint64_t decided = 0;
-  bool complete = false;
-};
-Streamed streamed(const Options& options, const Input& input) {
-  Stream stream(input, options);
-  Streamed out;
-  for (std::vector<StreamedPair> part; stream.next(part);) {
-    out.largest = std::max(out.largest, part.size());
-    out.pairs.insert(out.pairs.end(), part.begin(), part.end());
-  }
-  out.decided = stream.decided();
-  out.complete = stream.complete();
-  return out;
-}
-
-TEST(LibraryStream, GivesThePairsOfFindInOrder) {
-  for (const char* name : {"two-spheres", "degenerate", "random-soup", "crowd", "far-apart"}) {
-    const Flat flat(make_builtin_scene(name));
-    for (const Options& options : {Options{}, Options{.threads = 3, .self = true},
-                                   Options{.self = true, .neighbours = false},
-                                   Options{.clearance = 0.01, .contacts = Contacts::kinds},
-                                   Options{.self = true, .ignore = {{0, 1}}}}) {
-      const Streamed found = streamed(options, flat.input());
-      EXPECT_EQ(found.pairs, found_by(options, flat.input())) << name;
-      EXPECT_TRUE(found.complete);
-    }
-  }
-}
-
-TEST(LibraryStream, EndsAtTheLimit) {
-  const Flat flat(make_builtin_scene("random-soup"));
-  const Streamed all = streamed({}, flat.input());
-  ASSERT_GT(all.pairs.size(), 100u);
-  for (const std::size_t limit : {std::size_t{1}, std::size_t{50}, all.pairs.size() + 1}) {
-    const Streamed some = streamed({.limit = limit}, flat.input());
-    const std::size_t count = std::min(limit, all.pairs.size());
-    EXPECT_EQ(some.pairs, std::vector<StreamedPair>(all.pairs.begin(),
-                                                    all.pairs.begin() + static_cast<long>(count)));
-    EXPECT_EQ(some.complete, limit > all.pairs.size());
-    if (limit == 1) {
-      EXPECT_LT(some.decided, all.decided / 2);
-    }
-  }
-}
-
-/// Many triangles in one place: each collides with every other one.
-TEST(LibraryStream, HoldsAPartOfThePairsAtATime) {
-  RandomNumbers random(631);
-  std::vector<double> points;
-  std::vector<std::uint32_t> triangles;
-  for (std::uint32_t k = 0; k < 3 * 1200; ++k) {
-    for (int axis = 0; axis < 3; ++axis)
-      points.push_back((axis == static_cast<int>(k % 3) ? 1.0 : -0.5) + 0.1 * random.between(0, 1));
-    triangles.push_back(k);
-  }
-  const Input input{points, triangles, {}};
-  const Options options{.threads = 2, .self = true};
-  const Streamed found = streamed(options, input);
-  EXPECT_EQ(found.pairs, found_by(options, input));
-  EXPECT_GT(found.pairs.size(), 300'000u);
-  EXPECT_LT(found.largest, 80'000u);
-}
-
-TEST(LibraryStream, RefusesWhatTheColliderRefuses) {
-  const auto refused = [](const Options& options, const Input& input) {
-    return refusal([&] { Stream stream(input, options); })[0];
-  };
+TEST(Library, RefusesPairsOfObjectsThatAreAllIgnored) {
   const std::vector<double> points = {0, 0, 0};
-  const std::vector<std::uint32_t> triangles = {0, 0, 1};
-  EXPECT_EQ(refused({}, {points, triangles, {}}), "triangles");
-  EXPECT_EQ(refused({.clearance = -1}, {}), "clearance");
   const std::vector<std::uint32_t> two = {0, 0, 0, 0, 0, 0}, starts = {0, 1};
-  EXPECT_EQ(refused({.ignore = {{0, 2}}}, {points, two, starts}), "ignore");
-  // All pairs of objects are ignored, so 0 pairs would say nothing; with `self` there is a
-  // question.
-  EXPECT_EQ(refused({.ignore = {{0, 1}}}, {points, two, starts}), "ignore");
-  EXPECT_EQ(refused({.self = true, .ignore = {{0, 1}}}, {points, two, starts}),
-            "nothing was thrown");
-  EXPECT_EQ(refusal([&] { collide({points, two, starts}, {.ignore = {{1, 0}}}); })[0], "ignore");
+  const auto refused = [&](const Options& options) {
+    return refusal([&] { collide({points, two, starts}, options); })[0];
+  };
+  EXPECT_EQ(refused({.ignore = {{0, 2}}}), "ignore");
+  // 0 pairs would say nothing; with `self` there is a question.
+  EXPECT_EQ(refused({.ignore = {{1, 0}}}), "ignore");
+  EXPECT_EQ(refused({.self = true, .ignore = {{0, 1}}}), "nothing was thrown");
 }
 
 // ---- Distances as users of the library see them, held against those of the method.

@@ -114,20 +114,6 @@ TEST(LibraryPoses, FramesAreAsFresh) {
   EXPECT_GT(alone, 10);
 }
 
-TEST(LibraryPoses, OfAStreamAreThoseOfACollider) {
-  RandomNumbers random(41);
-  const Flat flat(make_builtin_scene("two-spheres"));
-  const std::vector<Pose> poses = {random_pose(random, 0.1), random_pose(random, 0.1)};
-  Input input = flat.input();
-  input.poses = poses;
-  std::vector<Pair> found;
-  Stream stream(input);
-  for (std::vector<StreamedPair> part; stream.next(part);)
-    for (const StreamedPair& one : part) found.push_back(one.pair);
-  EXPECT_EQ(found, collide(input).pairs);
-  EXPECT_NE(found, collide(flat.input()).pairs);
-}
-
 TEST(LibraryPoses, RefuseWhatIsBadAndGoOn) {
   const Flat flat(make_builtin_scene("two-spheres"));
   Collider collider;

@@ -99,38 +99,6 @@ TEST(LibraryThreads, DistanceFinderFromTwoThreadsAnswersRightlyOrRefuses) {
   race("DistanceFinder", [&] { return squares(finder.find(flat.input())) == expected; });
 }
 
-// The parts that two threads get are together what one thread gets.
-TEST(LibraryThreads, StreamFromTwoThreadsGivesEachPairOnceOrRefuses) {
-  const Flat flat(make_builtin_scene("two-spheres"));
-  const auto of = [&](bool two) {
-    Stream stream(flat.input(), {.threads = 1});
-    std::vector<Pair> pairs;
-    std::mutex mutex;
-    const auto read = [&] {
-      std::vector<StreamedPair> part;
-      while (true) {
-        try {
-          if (!stream.next(part)) return;
-          const std::lock_guard lock(mutex);
-          for (const StreamedPair& found : part) pairs.push_back(found.pair);
-        } catch (const Error& error) {
-          EXPECT_EQ(error.reason, kBusy);
-        }
-      }
-    };
-    std::thread other;
-    if (two) other = std::thread(read);
-    read();
-    if (two) other.join();
-    EXPECT_TRUE(stream.complete());
-    std::ranges::sort(pairs);
-    return pairs;
-  };
-  const std::vector<Pair> expected = of(false);
-  ASSERT_FALSE(expected.empty());
-  EXPECT_EQ(of(true), expected);
-}
-
 TEST(LibraryThreads, AnObjectThatWasMovedFromSaysSo) {
   const Flat flat(make_builtin_scene("two-spheres"));
   Collider collider;
@@ -146,14 +114,7 @@ TEST(LibraryThreads, AnObjectThatWasMovedFromSaysSo) {
   const DistanceFinder other = std::move(finder);
   EXPECT_EQ(refusal([&] { finder.find(flat.input()); }), moved("DistanceFinder"));
 
-  Stream stream(flat.input());
-  Stream taken = std::move(stream);
-  std::vector<StreamedPair> part;
-  EXPECT_EQ(refusal([&] { stream.next(part); }), moved("Stream"));
-  EXPECT_EQ(refusal([&] { static_cast<void>(stream.decided()); }), moved("Stream"));
-  EXPECT_EQ(refusal([&] { static_cast<void>(stream.complete()); }), moved("Stream"));
   // NOLINTEND(bugprone-use-after-move)
-  EXPECT_TRUE(taken.next(part));
 }
 
 }  // namespace

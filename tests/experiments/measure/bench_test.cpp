@@ -47,13 +47,6 @@ Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
   return lab::scene_of(objects);
 }
 
-// Whether CGAL's self_intersections() takes the scene, but for degenerate triangles.
-bool is_one_self_object(const Scene& scene) {
-  std::vector<Object> objects = scene.objects;
-  std::erase_if(objects, [](const Object& object) { return object.triangle_count == 0; });
-  return objects.size() == 1 && objects[0].self;
-}
-
 // All contestants that there are agree, and those that must be there are. `degenerate`: the scene
 // has triangles that not all peers take.
 BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
@@ -67,15 +60,12 @@ BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
     EXPECT_GE(row.candidate_pairs, row.pairs) << row.name;
     EXPECT_EQ(row.repeats, 1);
   }
-  for (const Peer& peer : all_peers(options.threads)) {
-    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
-    const bool one_mesh = peer.name.starts_with("cgal-self-intersections");
-    const bool refuses =
-        (degenerate && (oriented || one_mesh)) || (one_mesh && !is_one_self_object(scene));
+  for (const Peer& peer : all_peers()) {
+    const bool refuses = degenerate && peer.name == "fcl-obb";
     EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
-  for (const char* name : {"boxes", "exact", "cgal-boxes", "cgal-boxes-2000", "cgal-object-pairs",
-                           "cgal-aabb", "cgal-aabb-triangles"})
+  for (const char* name :
+       {"boxes", "exact", "cgal-boxes", "cgal-boxes-2000", "cgal-object-pairs", "cgal-aabb"})
     EXPECT_TRUE(ran.contains(name)) << name;
   EXPECT_TRUE(result.fastest_peer);
   return result;
@@ -110,8 +100,8 @@ TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
   EXPECT_EQ(expect_agreement(some).rows[0].pairs, 0u) << "an object that is not self has no pairs";
 }
 
-// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a mesh takes
-// none of these, and self_intersections() must report their pairs all the same, no neighbour.
+// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a
+// manifold has none of these.
 TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
   Scene scene;
   scene.name = "book";
@@ -139,9 +129,9 @@ TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
   const Scene scene = lab::scene_of(objects);
   const std::vector<TrianglePair> all = brute_force(scene);
   ASSERT_EQ(all.size(), pairs);
-  for (const Peer& peer : all_peers(2)) {
-    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
-    if (!peer.missing.empty() || oriented || (peer.refuses && !peer.refuses(scene).empty()))
+  for (const Peer& peer : all_peers()) {
+    if (!peer.missing.empty() || peer.name == "fcl-obb" ||
+        (peer.refuses && !peer.refuses(scene).empty()))
       continue;
     EXPECT_EQ(peer.set_up(2)(scene).pairs, all) << peer.name;
   }
@@ -323,8 +313,7 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
         has_text(bench_table(scene, options, result), "left out: " + contestant.name + ": "));
   }
   EXPECT_FALSE(out.contains("far")) << "the native canvas draws on the CPU";
-  EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";
-  EXPECT_TRUE(out.contains("cgal-self-intersections")) << "of several objects";
+  EXPECT_TRUE(out.contains("fcl-obb")) << "not exact here, or not in this build";
   options.methods = "far";
   EXPECT_NO_THROW(contestants(scene, options));
   Scene with_self = scene;
@@ -335,9 +324,6 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   options = quick();
   options.peers = "fcl-obb,cgal-aabb";
   EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--peers");
-  options.peers = "cgal-self-intersections";
-  EXPECT_EQ(error_of([&] { contestants(make_builtin_scene("crowd"), options); }).reason,
-            "cgal-self-intersections: it takes one object, tested against itself");
 }
 
 TEST(Bench, RefusesWhatItDoesNotKnow) {
@@ -415,58 +401,24 @@ TEST(DistancePeers, FindWhatCanBeReadOffATower) {
   }
 }
 
-bool from_vertices_alone(const DistancePeer& peer) { return peer.name == "embree-points"; }
-
 TEST(DistancePeers, CallObjectsThatMeetZero) {
   const Scene scene = make_builtin_scene("two-spheres");
   for (const DistancePeer& peer : distance_peers()) {
-    if (!peer.missing.empty() || from_vertices_alone(peer)) continue;
+    if (!peer.missing.empty()) continue;
     const PeerDistances answer = peer.run(scene, {}, 1);
     ASSERT_EQ(answer.distances.size(), 1u) << peer.name;
     EXPECT_EQ(answer.distances[0].distance, 0) << peer.name;
   }
 }
 
-// Where the nearest points are inside two edges that cross at a distance of 1, and where triangles
-// pierce each other, the distance from vertices is larger. Where a vertex is nearest it is right.
-TEST(DistancePeers, FromVerticesAloneTheyBoundFromAbove) {
-  const auto wedge = [](double z, double up, bool turned) {
-    const auto at = [turned](double x, double y, double w) {
-      return turned ? Vec3(y, x, w) : Vec3(x, y, w);
-    };
-    return std::vector<std::array<Vec3, 3>>{{at(-2, 0, z), at(2, 0, z), at(0, 0, z + up)},
-                                            {at(-2, 0, z), at(0, 0, z + up), at(-2, 0, z + up)}};
-  };
-  const Scene edges = lab::scene_of({wedge(0, -3, false), wedge(1, 3, true)});
-  const Scene pierced = lab::scene_of({wedge(0, 3, false), wedge(1, -3, true)});
-  const Scene vertex = lab::scene_of({wedge(0, 3, false), wedge(7, -3, true)});
-  for (const DistancePeer& peer : distance_peers()) {
-    if (!peer.missing.empty()) continue;
-    SCOPED_TRACE(peer.name);
-    const auto asked = [&peer](const Scene& scene) {
-      const Distances all = peer.run(scene, {}, 1).distances;
-      return all.size() == 1 ? static_cast<float>(all[0].distance) : -1.0F;
-    };
-    EXPECT_EQ(asked(vertex), 1);
-    if (from_vertices_alone(peer)) {
-      EXPECT_EQ(asked(edges), std::sqrt(5.0F)) << "from an end of one edge to the other edge";
-      EXPECT_GT(asked(pierced), 0);
-      EXPECT_FALSE(peer.comparable);
-    } else {
-      EXPECT_EQ(asked(edges), 1);
-      EXPECT_EQ(asked(pierced), 0);
-    }
-  }
-}
-
 // The fastest peer is one that answers the same question in doubles.
-TEST(DistanceBench, ABoundOrFloatsAreNotCalledTheFastestPeer) {
+TEST(DistanceBench, FloatsAreNotCalledTheFastestPeer) {
   const auto fastest = [](const char* peers) {
     const DistanceBenchResult result = bench_distances(tower(), {.peers = peers, .repeat = 1});
     return result.fastest_peer ? result.rows[*result.fastest_peer].name : "none";
   };
-  EXPECT_EQ(fastest("embree-points,fcl-float"), "none");
-  EXPECT_EQ(fastest("embree-points,cgal-aabb,fcl-float"), "cgal-aabb");
+  EXPECT_EQ(fastest("fcl-float"), "none");
+  EXPECT_EQ(fastest("cgal-aabb,fcl-float"), "cgal-aabb");
 }
 
 TEST(DistancePeers, RefuseDegenerateTriangles) {

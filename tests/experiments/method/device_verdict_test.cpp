@@ -136,11 +136,9 @@ TEST(DeviceVerdict, DependsOnDeviceDriverAndEnvironment) {
   ::setenv("lower_depth_range_rate", "0.5", 1);  // an option of driconf
   EXPECT_TRUE(remade(device()));
   ::unsetenv("lower_depth_range_rate");
-  // What only says where caches lie changes nothing, and the first verdict is still there.
-  ::setenv("MESA_SHADER_CACHE_DIR", "/elsewhere", 1);
+  // Other variables change nothing, and the first verdict is still there.
   ::setenv("no_proxy", "localhost", 1);
   EXPECT_TRUE(ask(device()).remembered);
-  ::unsetenv("MESA_SHADER_CACHE_DIR");
   ::unsetenv("no_proxy");
   EXPECT_EQ(ask.runs, runs);
 }
@@ -171,18 +169,13 @@ TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
   for (std::size_t i = 0; i < good.size(); ++i) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (i % 2 ? 1 : 32));
-    if (bad[i] == '\n' || bad[i] == ' ') continue;  // other white space
     write_text(file, bad);
     const int runs = ask.runs;
     const DeviceVerdict verdict = ask(device());
     EXPECT_FALSE(verdict.holds) << i;
-    // White space outside of strings may become something that breaks the text, never a verdict.
-    if (ask.runs == runs) {
-      EXPECT_TRUE(verdict.remembered && verdict.failed.size() == 1) << i;
-    } else
-      EXPECT_TRUE(has_text(verdict.note, file)) << i;
+    EXPECT_EQ(ask.runs, runs + 1) << i;
   }
-  for (std::size_t length = 0; length < good.size() - 2; length += 7) {
+  for (std::size_t length = 0; length < good.size(); length += 7) {
     write_text(file, good.substr(0, length));
     const int runs = ask.runs;
     ask(device());
@@ -202,7 +195,6 @@ TEST(DeviceVerdict, AFileOfAnotherDeviceInItsPlaceIsMadeAnew) {
   write_text(file, read_text(others));
   const DeviceVerdict verdict = ask(device());
   EXPECT_FALSE(verdict.remembered);
-  EXPECT_TRUE(has_text(verdict.note, "about something else"));
   EXPECT_EQ(ask.runs, 3);
   EXPECT_TRUE(ask(device()).remembered);
 }
@@ -229,8 +221,8 @@ TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
     EXPECT_FALSE(verdict.note.empty());
     EXPECT_EQ(ask.runs, run);
   }
-  ASSERT_EQ(ask.said.size(), 2u);
-  EXPECT_TRUE(has_text(ask.said[0], "cannot be kept, so every run does it"));
+  ASSERT_EQ(ask.said.size(), 4u);
+  EXPECT_TRUE(has_text(ask.said[1], "cannot be kept, so every run probes the device"));
 }
 
 TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {

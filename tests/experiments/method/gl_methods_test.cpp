@@ -2,7 +2,6 @@
 // give the same, and the CULLIDE family is ordered as it should be.
 #include <nlohmann/json.hpp>
 
-#include "experiments/measure/family.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
@@ -320,30 +319,6 @@ TEST(GlMethods, FarFindsThePairsInsideObjectsToo) {
   EXPECT_EQ(apart.collisions.pairs, exact.collisions.pairs);
   EXPECT_EQ(apart.collisions.neighbours, 0u);
   EXPECT_LT(apart.found.count, exact.found.count / 2);
-}
-
-TEST(GlMethods, TheFamilyOfASceneInMotion) {
-  FamilyArguments arguments;
-  // A cloth against itself: far, with either offset, and cullide without that question.
-  arguments.scenes = {"cloth:200"};
-  arguments.methods = "far,cullide";
-  arguments.range = {0, 0};
-  arguments.options.resolution = 64;
-  EXPECT_EQ(run_family(arguments).size(), 3u);
-  arguments.scenes = {"crowd"};
-  arguments.methods.reset();
-  arguments.range = {0, 2};
-  const std::vector<FamilyCell> cells = run_family(arguments);
-  // far twice (obb, exact), the others once, S-CULLIDE not: nothing is tested against itself.
-  ASSERT_EQ(cells.size(), all_methods().size());
-  for (const FamilyCell& cell : cells) {
-    if (cell.promises) {
-      EXPECT_EQ(cell.missed(), 0u) << to_string(cell.method);
-    }
-    if (draws(cell.method)) {
-      EXPECT_GT(cell.frames[0].queries, 0u);
-    }
-  }
 }
 
 }  // namespace

@@ -173,8 +173,9 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
 // Where blocks decide a whole scene, along the axes or by oriented boxes, their pairs are decided
 // as they are found. The accounting, a limit and frames that follow one another ask for their list.
 TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
-  for (const Scene& scene : {self_scene("crumpled:6000"), self_scene("needles"),
-                             make_builtin_scene("spheres:6000"), make_builtin_scene("fans:4000")}) {
+  for (const Scene& scene :
+       {self_scene("crumpled:6000"), self_scene("needles"), make_builtin_scene("spheres:6000"),
+        make_builtin_scene("cad-cut:4000")}) {
     RunOptions options = on_cpu(Method::boxes);
     const Record listed = run(scene, options);
     EXPECT_FALSE(listed.found.given);

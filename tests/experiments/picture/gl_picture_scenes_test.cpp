@@ -105,17 +105,6 @@ TEST(GlPictureScenes, ManyMissesInOnePlaceHaveNoRing) {
             0u);
 }
 
-TEST(GlPictureScenes, AViewOfFarLosesNothingAndOneOfCullideDoes) {
-  const PictureResult r =
-      made("two-tori --compare cullide,far --resolution 64 --view-depth x --size 300x300");
-  EXPECT_GT(r.panels[0].missed, 0u);
-  EXPECT_GT(pixels(r, 0, kMissedColour), 100u);
-  EXPECT_EQ(r.panels[1].missed, 0u);
-  EXPECT_EQ(pixels(r, 1, kMissedColour), 0u);
-  EXPECT_GT(r.panels[1].culled, 0u);
-  EXPECT_EQ(r.panels[0].headline.substr(0, 15), "this view loses");
-}
-
 TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
   const PictureResult r =
       made("two-spheres --method far --resolution 64 --radius published --size 200x160");
@@ -139,7 +128,7 @@ TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
 TEST(GlPictureScenes, TheCommandInTheFileAsksForTheSame) {
   for (const char* words :
        {"two-tori --compare cullide:64,far:32,exact --offset exact --zoom --view -x --up z",
-        "mannequin-devil --method s-cullide --self --view-depth 1:1:0 --resolution 128",
+        "mannequin-devil --method s-cullide --self --resolution 128",
         "'a b.obj' c.off --method boxes --size 301x200",
         "two-bunnies --method far --frame 3 --frames 2:9 --radius 0.5 --depth fixed"}) {
     const std::string once = command_of(picture_arguments(words));
@@ -169,9 +158,6 @@ TEST(GlPictureScenes, FramesOfAMotionDiffer) {
 
 TEST(GlPictureScenes, RefusesWhatCannotBeShown) {
   EXPECT_EQ(error_of([] { made("far-apart --method exact --zoom"); }).where, "--zoom");
-  EXPECT_EQ(error_of([] { made("two-spheres --method i-collide --view-depth"); }).where,
-            "--view-depth");
-  EXPECT_EQ(error_of([] { made("far-apart --method far --view-depth"); }).where, "far-apart");
   EXPECT_EQ(error_of([] { made("two-spheres --method s-cullide"); }).where, "two-spheres");
   EXPECT_EQ(error_of([] { made("two-spheres --method cullide --self"); }).where, "two-spheres");
   EXPECT_EQ(error_of([] { made("two-spheres --frame 30"); }).where, "--frame");

@@ -1,7 +1,6 @@
 # Drives the page of `farcull picture --compare cullide,far,exact` of two tori in a browser.
-#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION KINDS PAIRS_OF_KINDS FLAT
-# SAID: what the command printed; PAIRS: all pairs with their kinds of contact as CSV; MOTION: the page of a scene
-# that moves; KINDS: that of a triangle with a pair of each kind; FLAT: the flat picture of cullide at 256 px
+#   page_test.py PAGE SAID PAIRS KINDS PAIRS_OF_KINDS FLAT
+# SAID: what the command printed; PAIRS: all pairs with their kinds of contact as CSV; KINDS: the page of a triangle with a pair of each kind; FLAT: the flat picture of cullide at 256 px
 import csv
 import os
 import re
@@ -40,7 +39,7 @@ def shown(b, path, fragment=""):
 # seen then is no answer, and fails.
 DRAWN = """new Promise((done) => {
   const end = performance.now() + 30000;
-  const is_shown = () => answer && answer.step === currentStep() && shownFrame === state.frame;
+  const is_shown = () => answer && answer.step === currentStep();
   const look = () => is_shown() || performance.now() > end
     ? requestAnimationFrame(() => requestAnimationFrame(() => done(1))) : setTimeout(look, 5);
   look();
@@ -97,12 +96,6 @@ def is_lit(pixel, colour):
 def set_value(b, name, value, event="input"):
     b.run(f"(() => {{ const e = document.getElementById('{name}'); e.value = {value!r};"
           f"e.dispatchEvent(new Event('{event}', {{ bubbles: true }})); }})()")
-
-
-def hash_of(b):
-    # The page writes its address a quarter of a second after the last change.
-    b.wait("written === addressOf() && location.hash === written")
-    return b.run("location.hash")
 
 
 def check_steps(b, said):
@@ -256,7 +249,10 @@ def shares_of(rows):
 def check_flat(b, page, flat):
     """The page shows what the flat picture of the same view shows, at another size. A pixel that is at no edge stands
     for its whole area, in both pictures. So the share of a class differs by no more than its edges do."""
-    shown(b, page, "#method=cullide&px=256")
+    shown(b, page)
+    set_value(b, "method", "cullide", "change")
+    drawn(b)
+    set_value(b, "resolution", 1)
     drawn(b)
     b.run("document.getElementById('legend').style.visibility = 'hidden'")
     left, top, width, height = place_of_canvas(b)
@@ -291,21 +287,19 @@ def check_view(b):
     for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
         acts[key] = lambda key=key: b.key(key)
         acts["Shift " + key] = lambda key=key: b.key(key, shift=True)
-    for key in "+-exyz":
+    for key in "+-xyz":
         acts[key] = lambda key=key: b.key(key)
-    address = "addressOf().replace(/&triangle.*?&/, '&')"
+    address = "cameraText() + state.axis"
     start, seen = b.run(address), set()
     for name, act in acts.items():
         b.run("document.getElementById('canvas').focus()")
         act()
         b.wait(f"{address} !== {start!r}")
         seen.add(b.run(address))
-        if name in ("a drag", "ArrowLeft", "e", "x"):
+        if name in ("a drag", "ArrowLeft", "x"):
             check(look(b) != before, f"{name} changes nothing that is seen")
         if name in ("x", "y", "z"):
             b.key(name)
-        while name == "e" and b.run("farcull.state.explode > 0"):
-            b.key("e")
         b.key("0")
         check(b.run(address) == start, f"the view after {name} is not that of before")
     check(len(seen) == len(acts), "two of the acts do the same")
@@ -314,7 +308,7 @@ def check_view(b):
 
 
 def check_objects(b):
-    """Hiding, exploding and cutting by their controls."""
+    """Hiding and cutting by their controls."""
     *_, width, height = place_of_canvas(b)
     before = look(b)
     b.run("document.querySelector('#list input').click()")
@@ -326,10 +320,6 @@ def check_objects(b):
     check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
     b.run("document.getElementById('show-all').click()")
     check(look(b) == before, "showing all does not bring object 0 back")
-    set_value(b, "explode", 60)
-    check(look(b) != before, "the slider does not explode")
-    set_value(b, "explode", 0)
-    check(look(b) == before, "the slider does not take the explosion back")
     set_value(b, "axis", "x", "change")
     cut = look(b)
     b.run("document.getElementById('side').click()")
@@ -342,45 +332,18 @@ def check_objects(b):
     check(look(b) == before, "the cut is not taken back")
 
 
-def check_address(b, page):
-    """The address of a view shows the same view, and a senseless one does no harm."""
-    set_value(b, "method", "cullide", "change")
-    drawn(b)
-    set_value(b, "resolution", 1)
-    b.key("0")
-    b.run("farcull.view.turn(0.3, 0.2)")
-    set_value(b, "explode", 30)
-    set_value(b, "axis", "y", "change")
-    set_value(b, "cut", 700)
-    b.run("document.getElementById('canvas').focus()")
-    b.key("n")
-    fragment = hash_of(b)
-    for part in ("method=cullide", "px=256", "explode=0.3", "cut=y700", "triangle=", "eye=", "zoom="):
-        check(part in fragment, f"the address {fragment} lacks {part}")
-    chosen, headline = text(b, "chosen"), text(b, "headline")
-    shown(b, page, fragment)
-    drawn(b)
-    check((text(b, "chosen"), text(b, "headline")) == (chosen, headline), "the address shows another answer")
-    b.run("writeAddress()")
-    check(hash_of(b) == fragment, f"{fragment} becomes {hash_of(b)}")
-    shown(b, page, "#method=%3Cb%3E&px=-1&eye=a_b_c&middle=1_2&zoom=NaN&hide=9999.x&cut=q9&triangle=1e99&explode=7&frame=x")
-    check(text(b, "headline").startswith("cullide at 512 px"), "a senseless address shows " + text(b, "headline"))
-
-
 def check_looks(b, page):
-    """Dark by the system and by the button; print; three sizes."""
+    """Dark by the system; print; three sizes."""
     b.media(prefers_color_scheme="dark")
     shown(b, page)
     check(pixel(b, 3, 3) == DARK, f"dark paper is {pixel(b, 3, 3)}")
-    b.run("document.getElementById('theme').click()")
-    check(pixel(b, 3, 3) == PAPER, "the button does not make it light")
     b.media(prefers_color_scheme="light")
     b.media("print")
     seen = b.run("['canvas', 'controls', 'legend', 'flat'].map((id) => getComputedStyle(document.getElementById(id)).display)")
     check(seen == ["none", "none", "none", "block"], f"printed: {seen}")
     check(b.run("document.getElementById('flat').naturalWidth") > 1000, "the flat picture is not printed")
     b.media("", prefers_color_scheme="light")
-    shown(b, page)  # the button's choice is forgotten
+    shown(b, page)
     for width, height in ((360, 740), (1024, 768), (1920, 1080)):
         for theme in ("light", "dark"):
             b.size(width, height)
@@ -398,40 +361,6 @@ def check_looks(b, page):
                     file.write(b.screenshot())
     b.media(prefers_color_scheme="light")
     b.size(800, 600)
-
-
-def check_frames(b, page, said):
-    """Frames by keys, slider, button and address; each shows the scene and the answer of its own."""
-    b.problems = []
-    shown(b, page)
-    seen, scenes = [], []
-    b.run("document.getElementById('canvas').focus()")
-    b.key("Escape")  # the ring of the focus is in every picture
-    for frame in (3, 4, 5, 6):
-        b.wait(f"document.getElementById('frame-value').textContent === '{frame}'")
-        scenes.append(look(b))
-        for method in ("cullide", "boxes"):
-            set_value(b, "method", method, "change")
-            b.wait(f"document.getElementById('headline').textContent.startsWith('{method}')")
-            seen.append(text(b, "headline").replace(":", f", frame {frame}:", 1))
-        set_value(b, "method", "cullide", "change")
-        drawn(b)
-        b.run("document.getElementById('canvas').focus()")
-        b.key(".")
-    check(seen == [line for line in said if " missed " in line], f"headlines of frames are {seen}")
-    check(all(a != c for a, c in zip(scenes, scenes[1:])), "a frame looks like the one before")
-    b.key(",")
-    b.wait("document.getElementById('frame-value').textContent === '5'")
-    check(look(b) == scenes[2], "frame 5 looks another way when it is shown again")
-    set_value(b, "frame", 0)
-    b.wait("document.getElementById('frame-value').textContent === '3'")
-    check(look(b) == scenes[0], "frame 3 looks another way when it is shown again")
-    b.run("document.getElementById('play').click()")
-    b.wait("document.getElementById('frame-value').textContent === '4'")
-    b.run("document.getElementById('play').click()")
-    shown(b, page, "#frame=6")
-    check(text(b, "frame-value") == "6", f"the address of frame 6 shows frame {text(b, 'frame-value')}")
-    check(not b.problems, f"the page of frames has problems: {b.problems}")
 
 
 def check_large(b, page):
@@ -519,15 +448,14 @@ def main():
         begun = time.monotonic()
         for act in (lambda: check_steps(b, said), lambda: check_click(b, pairs), lambda: check_colours(b, pairs),
                     lambda: check_view(b), lambda: check_objects(b), lambda: check_dialogs(b),
-                    lambda: check_address(b, page), lambda: check_looks(b, page)):
+                    lambda: check_looks(b, page)):
             act()
             print(f"picture.page: {time.monotonic() - begun:.1f} s", flush=True)
         check(not b.problems, f"the page has problems: {b.problems}")
-        check_frames(b, sys.argv[4], open(sys.argv[5], encoding="utf-8").read().splitlines())
-        with open(sys.argv[8], "rb") as file:
+        with open(sys.argv[6], "rb") as file:
             flat = Pixels(file.read())
         check_flat(b, page, flat)
-        kinds = (sys.argv[6], partners(sys.argv[7]))
+        kinds = (sys.argv[4], partners(sys.argv[5]))
         check_kinds(b, *kinds)
         check_twins(b, page, pairs, kinds, flat)
         if os.path.exists("large.html"):

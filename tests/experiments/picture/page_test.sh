@@ -44,8 +44,6 @@ if grep -q 'three.js' errors; then
 fi
 ((status == 0)) || { cat errors >&2; exit 1; }
 "$farcull" picture "${tori[@]}" --method cullide --resolution 256 --size 400x340 -o flat.png >/dev/null || exit 1
-"$farcull" picture cylinders:10 --compare cullide:64,boxes --frames 3:6 --size 200x160 \
-  --html moving.html >said-of-frames || exit 1
 # A scene of usual size, where its meshes are there.
 if ! "$farcull" picture two-bunnies --compare cullide:64,boxes --size 200x160 --html large.html \
   >/dev/null 2>errors; then
@@ -59,7 +57,7 @@ printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4
   '3 0 1 2' '3 3 4 5' '3 6 7 8' '3 9 10 11' '3 12 13 14' '3 15 16 17' >b.off
 "$farcull" picture a.off b.off --compare exact --size 200x160 --html kinds.html >/dev/null || exit 1
 "$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv moving.html said-of-frames \
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv \
   kinds.html kinds.csv flat.png || exit 1
 
 # The page of `farcull clash`.

@@ -44,17 +44,6 @@ def test_lemma():
     assert out[1].startswith("with a hundredth of the radius, far missed the triangles")
 
 
-def test_search_for_cliffs():
-    """The script uses the module as its users do; a few small scenes show that it still can."""
-    script = ROOT / "experiments" / "cliffs.py"
-    run = subprocess.run(
-        [sys.executable, script, "--question", "memory", "--seconds", "1", "--triangles", "300"],
-        capture_output=True, text=True,
-    )
-    assert run.returncode in (0, 1), run.stderr  # 1: a find above its limit
-    assert re.search(r"^question +ratio", run.stdout, re.MULTILINE)
-
-
 def cells():
     notebook = json.loads((EXAMPLES / "farcull.ipynb").read_text())
     return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

@@ -64,10 +64,6 @@ def good_triangles(rng, vertices):
     return np.array([[rng.randrange(vertices) for _ in range(3)] for _ in range(count)]).reshape(-1, 3)
 
 
-def streamed(**arguments):
-    return list(farcull.stream(**arguments))
-
-
 def one_call(rng):
     """Most of the arguments are good, so that each check is reached."""
     vertices = good_vertices(rng)
@@ -77,10 +73,9 @@ def one_call(rng):
     for name in ("V", "F", "object_starts"):
         if rng.random() < 0.25:
             arguments[name] = rng.choice([random_array, lambda r: r.choice(JUNK)])(rng)
-    call = rng.choice([farcull.collide, farcull.collide, streamed, farcull.distances])
+    call = rng.choice([farcull.collide, farcull.collide, farcull.distances])
     options = {
         farcull.collide: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
-        streamed: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
         farcull.distances: ("self", "kind", "k", "within", "inside", "threads", "ignore", "poses"),
     }[call]
     for name in options:

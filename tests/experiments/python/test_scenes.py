@@ -1,4 +1,4 @@
-"""Scenes, runs of every method, plans, checks and pictures, against the program's own answers."""
+"""Scenes, runs of every method, checks and pictures, against the program's own answers."""
 
 import csv
 import io
@@ -172,17 +172,6 @@ def test_a_bad_option_is_named_as_python_names_it(options):
     error = error_of(scene.run, **options)
     assert error.where == next(iter(options)) and isinstance(error, farcull.InputError)
     assert "--" not in str(error)
-
-
-def test_plans_are_those_of_the_program():
-    for method in "far", "cullide":
-        made = farcull.plan(farcull.Scene("two-tori"), method, resolution=64, device="cpu")
-        words = "plan", "two-tori", f"--method={method}", "--resolution=64", "--device=cpu"
-        assert str(made) == program(*words)[0]
-        said = json.loads(program(*words, "--json=-")[0])
-        assert set(made.stages) == set(said) and made.stages["misses"] == said["misses"]
-        assert (made.stages["misses"] is None) == (method == "far")
-    assert error_of(farcull.plan, "two-tori").where == "scene"
 
 
 def test_certificates_are_those_of_the_program(tmp_path):

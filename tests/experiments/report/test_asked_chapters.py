@@ -6,8 +6,7 @@ import json
 
 import pytest
 
-from made_up import chapter_of, figure, findings, row, study_of, table
-from frame import Chapter
+from made_up import chapter_of, figure, findings, row, table
 
 libraries_chapter = importlib.import_module("chapters.libraries")
 
@@ -92,17 +91,7 @@ def test_proximity_says_what_is_not_known():
     assert any("64 cells leave too many pairs" in limit for limit in chapter.limits)
 
 
-@pytest.mark.parametrize("more", [[], [row("field", "embree-points nearest", asked(3, 0.25), 5)]])
-def test_proximity_says_what_distances_from_vertices_are(more):
-    limits = chapter_of("proximity", proximity_rows() + more).limits
-    assert any(limit.startswith("Embree has no query") for limit in limits) == bool(more)
-
-
 # ---- libraries
-
-PAIR = "0 0 - crossing " + " ".join(x.hex() for x in (
-    0., 0., 0., 1., 0., 0., 0., 1., 0., .25, .25, -1., .25, .25, 1., 1e300, 2., 1.))
-
 
 def counts_of(family, kind, card, counts, parameter="0"):
     """Counts of one part."""
@@ -193,21 +182,6 @@ def test_contestants_are_sorted_into_those_that_err_or_do_not():
         libraries(("theirs", of_pairs()), ("theirs", of_pairs(card={"library": "x 2"}))))
 
 
-def test_examples_are_a_table_and_a_file_of_the_suite():
-    example = {"example_missed": "pairs/random " + PAIR}
-    chapter = libraries(("theirs", of_pairs(missed=5, card=example)), ("others", of_pairs()),
-                        ("cullide", of_pairs(missed=5, card={"library": "farcull", **example})))
-    assert [*cells(chapter, "libraries-examples").values()] == [
-        "theirs", "missed", "pairs/random", "crossing",
-        "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]
-    assert '"exact":"meets"' in chapter.files["libraries-cases.html"]
-    assert chapter.files["libraries-examples.txt"].splitlines()[2:] == ["# theirs missed pairs/random", PAIR]
-    for wrong in ("0 0 - crossing 1 2 3", PAIR.replace("crossing", "guess"), PAIR + " 0x1p+0",
-                  PAIR.replace("0x0.0p+0", "nan", 1)):
-        with pytest.raises(ValueError, match="the example of liars is no pair"):
-            libraries(("liars", of_pairs(card={"example_missed": "pairs/random " + wrong})))
-
-
 def test_the_table_says_whom_to_trust_for_what():
     chapter = chapter_of("libraries", [
         row("small/pair", "theirs", of_pairs(missed=5), 1.0), row("small/pair", "boxes", of_pairs(True), 1.0),
@@ -224,20 +198,6 @@ def test_a_wrong_distance_of_ours_is_broken():
     wrong = counts_of("distance/random", "distance", {"promises": True, "library": "farcull"}, {"asked": 9, "answered": 9, "wrong": 1})
     said = findings(libraries(("exact", wrong)))
     assert said.startswith("BROKEN: exact: 1 of 9 other questions answered wrongly")
-
-
-def test_the_page_of_cases_has_what_each_contestant_said(tmp_path):
-    (tmp_path / "suite/pairs").mkdir(parents=True)
-    (tmp_path / "suite/pairs/reported.txt").write_text(
-        "farcull-pairs 1 reported\n# source: a/b#1\n# expected: They meet.\n# why: A line.\n" + PAIR.replace("0 0", "0 7", 1) + "\n")
-    said = of_pairs(missed=1, parameter="7", family="pairs/reported")
-    study = study_of("libraries", [row("small/pair", "theirs", said, 1.0)])
-    study.folder = str(tmp_path)
-    chapter = Chapter("libraries", "title", "question?", "command")
-    importlib.import_module("chapters.libraries").fill(chapter, study)
-    page = chapter.files["libraries-cases.html"]
-    for part in '"source":"a/b#1"', '"exact":"meets"', '"said":{"theirs":"apart"}', "A line.":
-        assert part in page
 
 
 def test_libraries_are_rows_from_the_best_to_the_worst():

@@ -334,26 +334,6 @@ class Ask(unittest.TestCase):
         self.assertEqual([answer.outcome for answer in answers], ['crashed'] * 2 + ['not asked'] * 2 + ['answered'] * 21)
         self.assertEqual([i for i, differ in enumerate(differs) if differ is not None], [4, 20, 24])
 
-    def test_faults_are_made_simpler_each_by_itself(self):
-        class Made:
-            """Dies at triangles with a 7, calls others with a 5 apart."""
-            asked = []
-
-            def __call__(self, command, questions, options):
-                self.asked.append(len(questions))
-                return [module.Answer('crashed', None, 0, '') if '7.0' in question.fields else
-                        module.Answer('answered', '5.0' not in question.fields, 1, '') for question in questions], None
-        pair = [0.0, 0, 0, 40.25, 0, 0, 0, 40.25, 0, 1, 1, -1, 1, 1, 1, 2, 2, 1]
-        with mock.patch.object(module, 'ask', Made()) as made:
-            faults = {name: module.Fault('few', '0', [*map(float, pair[:-1]), mark], True, fault) for name, mark, fault in (
-                ('death', 7.0, ('crashed', None)), ('missed', 5.0, ('answered', False)), ('wrong', 1.0, ('hung', None)))}
-            found = module.simplest([], module.CARD, faults, None)
-        self.assertEqual({*found}, {'death', 'missed'})  # the third has no such fault
-        for name, mark in ('death', 7.0), ('missed', 5.0):
-            self.assertIn(mark, found[name])
-        self.assertLess(module.cost(found['missed']), module.cost(faults['missed'].numbers))
-        self.assertEqual(made.asked[-2:], [1, 1])  # alone, at last
-
     def test_a_pair_of_a_mesh_has_four_numbers(self):
         for fields in ['1'] * 3, ['1'] * 5, ['1', '1', '1', '0_1'], ['1', '1', '1', '-1'], ['1', '1', '1', '1' * 19]:
             with self.assertRaises(ValueError):
@@ -363,14 +343,10 @@ class Ask(unittest.TestCase):
 
     def test_a_segment_through_a_triangle_counts_where_the_card_takes_segments(self):
         a, b = [[0.25, 0.25, -1], [0.25, 0.25, 1], [0.25, 0.25, 1]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
-        shifted = [[x + 1, y, z] for x, y, z in a]
         for s, t in (a, b), (b, a):
-            self.assertTrue(module.meets(s, t))
             for means, degenerate in ('closed', 'yes'), ('closed', 'no'), ('crossing', 'no'):
                 card = {**module.CARD, 'means': means, 'degenerate': degenerate}
                 self.assertEqual(module.promised(card, s, t, True, 'crossing'), degenerate == 'yes', card)
-        self.assertFalse(module.meets(shifted, b))
-        self.assertTrue(module.meets([*a[:2], [1, 1, 1]], b))
 
     def test_an_interrupt_ends_the_contestant(self):
         with subprocess.Popen(['python3', 'suite/ask.py', '--only', 'pair', 'python3 faulty.py stops'],
@@ -435,23 +411,6 @@ class Study(unittest.TestCase):
             self.assertEqual((counts['exact', kind]['answered'], counts['exact', kind]['missed']), (asked, 0), kind)
         self.assertEqual(counts['exact', 'distance']['points'], PAIRS)
         self.assertEqual({part[0] for part in json.loads(counts['exact', 'mesh']['scores'])}, {'meshes/cubes', 'meshes/cross'})
-
-    def test_a_fault_is_kept_with_its_smallest_pair(self):
-        os.makedirs('mine', exist_ok=True)
-        with open('mine/farcull_contestant_gts', 'w', encoding='utf-8') as file:  # in the place of a library
-            file.write(f'#!/bin/sh\nexec python3 {work}/faulty.py drops\n')
-        os.chmod('mine/farcull_contestant_gts', 0o755)
-        with mock.patch.dict(os.environ, FARCULL_CONTESTANTS=work + '/mine'):
-            counts = study('with-fault', '--suite', 'suite', '--contestants', 'gts')['gts', 'pair']
-        self.assertEqual((counts['missed'], counts['wrong'], counts['twice']), (4, 0, 3))
-        family, *words = counts['example_missed'].split()
-        self.assertEqual(family, 'pairs/few')
-        numbers = [float.fromhex(word) for word in words[4:]]
-        triangles = module.corners_of(numbers), module.corners_of(numbers[9:])
-        self.assertTrue(words[3] != 'apart' and (module.crosses(*triangles) or module.within(*triangles, 0)), words)
-        self.assertTrue(int(numbers[0]) % 10 == 4 or int(numbers[0]) % 2 == 1)  # where this contestant says 0
-        self.assertLess(len(' '.join(f'{x:g}' for x in numbers)), 45)
-        self.assertNotIn('example_wrong', counts)
 
     def test_the_frames_of_a_motion_are_asked_in_one_process(self):
         frames = {f'meshes/move-{n}/{name}': text for n in (1, 2, 10) for name, text in {

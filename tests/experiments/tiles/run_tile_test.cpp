@@ -201,9 +201,10 @@ TEST(Tiles, AreCutByAFixedRuleIntoEvenParts) {
   EXPECT_EQ(cuts.axis, 1);  // along x some boxes meet two tiles, along z all begin at one place
   EXPECT_EQ(cuts.at, choose_cuts(take_census(source_of(scene), 0), 4).at);
   std::uint64_t home = 0;
-  for (const TileCount& count : count_tiles(source_of(scene), census, cuts)) {
-    home += count.home;
-    EXPECT_NEAR(static_cast<double>(count.triangles), 25'000, 1'000);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const TileScene part = gather_tile(source_of(scene), census, tile_of(cuts.axis, cuts.at, k));
+    home += part.home;
+    EXPECT_NEAR(static_cast<double>(part.scene.triangles.size()), 25'000, 1'000);
   }
   EXPECT_EQ(home, 100'000);
 }

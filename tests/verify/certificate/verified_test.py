@@ -15,9 +15,9 @@ import sys
 import tarfile
 
 BUILT_IN = ['two-spheres', 'degenerate', 'needles:60', 'mixed:10', 'gap:216', 'gap:100:0', 'gap:100:-1', 'stack:4', 'slivers:40',
-            'shells:4', 'ground', 'fans:2000', 'cloth:8', 'crumpled:1000', 'rope:2000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
+            'shells:4', 'ground', 'cad-cut:2000', 'cloth:8', 'crumpled:1000', 'crowd:60', 'two-spheres@far', 'degenerate@tiny']
 SPOILED = ['degenerate', 'cloth:8']  # small, so that every change of their certificates is tried
-SLOW = ['shells:4', 'fans:2000', 'crumpled:1000', 'crowd:60']  # 100 s: not in ctest
+SLOW = ['shells:4', 'cad-cut:2000', 'crumpled:1000', 'crowd:60']  # 100 s: not in ctest
 VERDICT = re.compile(r'(?:verified +)?(proved|refuted|not proved|undecided)\b')
 
 

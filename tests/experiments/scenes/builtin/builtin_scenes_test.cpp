@@ -92,7 +92,7 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
   for (const std::string& name :
        listed("two-spheres,two-tori,random-soup,needles,degenerate,ground,crowd,far-apart,"
               "two-bunnies,armadillo-elephant,dragon-bunny,near-copy,bunnies-far-apart,"
-              "needles-layers,needles-crossed,field,crumpled,rope,spheres,fans,cad-cut,funnel,"
+              "needles-layers,needles-crossed,field,crumpled,spheres,cad-cut,funnel,"
               "mannequin-devil,armadillo,bunny,cylinders,torii,tree-leaves,shells,cloth,"
               "bunny-dragon,breaking-dragon,slivers,stack,mixed,gap"))
     EXPECT_TRUE(names.contains(name)) << name;

@@ -1,5 +1,5 @@
 // Files as people have them: forms that programs write although the formats do not quite say so,
-// corners that differ in the last digits, and files with a wrong extension.
+// and corners that differ in the last digits.
 #include "experiments/scenes/mesh/near_points.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/weld.h"
@@ -9,23 +9,6 @@
 
 namespace farcull {
 namespace {
-
-TEST(MeshHabits, OffIsFreeInItsLines) {
-  const Mesh lines =
-      off("OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n2 1 1\n3 0 1 2\n3 3 4 5\n");
-  for (const char* text :
-       {"OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n2 1 1\n3 0 1\n2\n3 3 4\n5\n",
-        "OFF 6 2 0 0 0 0 4 0 0 0 4 0 1 1 -1 1 1 1 2 1 1 3 0 1 2 3 3 4 5",
-        "OFF\n6\n2 # faces\n0\n0 0\n0 4 0 0 0 4 0\n\n1 1 -1 1 1 1 2\n1 1\n3\n0 1 2 3 3 4 5\n"}) {
-    const Mesh mesh = off(text);
-    EXPECT_EQ(mesh.vertices, lines.vertices);
-    EXPECT_EQ(mesh.triangles, lines.triangles);
-  }
-  // The twins: one number less or more is still refused, and colours need lines.
-  EXPECT_EQ(error_of([] { off("OFF 3 1 0 0 0 0 4 0 0 0 4 0 3 0 1"); }).where, "m.off");
-  EXPECT_EQ(error_of([] { off("OFF 3 1 0 0 0 0 4 0 0 0 4 0 3 0 1 2 7 3 0 1 2"); }).where, "m.off");
-  EXPECT_EQ(off("OFF\n3 1 0\n0 0 0\n4 0 0\n0 4 0\n3 0 1 2 7 3 0\n").triangles.size(), 1u);
-}
 
 TEST(MeshHabits, AnUnusedVertexMayBeNoNumber) {
   const std::string bad = "nan";
@@ -130,50 +113,6 @@ TEST(MeshHabits, StripsBesideFacesAreNotPassedOver) {
       "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n";
   EXPECT_TRUE(has_text(error_of([&] { ply(text); }).reason, "has triangle strips"));
-}
-
-// The command never writes to the file that it is about, nor to another that is there.
-TEST(MeshHabits, NoAdviceDestroysAFile) {
-  const ScratchFolder folder;
-  for (const auto& [contents, own] :
-       std::vector<std::pair<std::string, std::string>>{{"<?xml?><COLLADA>", ".dae"},
-                                                        {"{\"asset\": {}}", ".gltf"},
-                                                        {"ISO-10303-21;\nHEADER;\n", ".step"},
-                                                        {"BZh91AY&SYabcd", ".bz2"}}) {
-    for (const char* name : {"part.obj", "part.off", "part.stl"}) {
-      const std::string path = folder.write(name, contents);
-      const std::string remedy = error_of([&] { load_mesh(path); }).remedy;
-      const std::string from = own == ".bz2" ? path + own : folder.path("part" + own);
-      EXPECT_TRUE(remedy.starts_with("rename it first: mv " + path + " " + from + ", then "))
-          << remedy;
-      EXPECT_FALSE(has_text(remedy, "export " + path + " "));
-    }
-  }
-  const std::string dae = folder.write("both.dae", "<COLLADA>");
-  folder.write("both.obj", "v 0 0 0\n");
-  EXPECT_TRUE(
-      has_text(error_of([&] { load_mesh(dae); }).remedy, folder.path("both-converted.obj")));
-  const std::string wrong = folder.write("both.stl", "<COLLADA>");
-  EXPECT_TRUE(
-      has_text(error_of([&] { load_mesh(wrong); }).remedy, folder.path("both-renamed.dae")));
-}
-
-TEST(MeshHabits, FormatsAreToldApart) {
-  const ScratchFolder folder;
-  const std::string step = "ISO-10303-21;\nHEADER;\nFILE_SCHEMA((";
-  struct Case {
-    std::string name, contents, says;
-  };
-  for (const Case& c :
-       {Case{"a.ifc", "x", "IFC"}, Case{"b.stl", step + "'IFC4'));", "IFC"},
-        Case{"c.stl", step + "'AUTOMOTIVE_DESIGN'));", "STEP"}, Case{"d.vtp", "x", "ParaView"},
-        Case{"e.ply", "<VTKFile type=\"PolyData\">", "ParaView"},
-        Case{"f.stl", "<VTKFile type=\"UnstructuredGrid\">", "meshio"},
-        Case{"g.wrl", "x", "import_scene.x3d"}, Case{"h.amf", "x", "assimp"},
-        Case{"i.urdf", "x", "name the meshes"}, Case{"j.FCStd", "x", "FreeCAD"}}) {
-    const std::string path = folder.write(c.name, c.contents);
-    EXPECT_TRUE(has_text(error_of([&] { load_mesh(path); }).what(), c.says)) << c.name;
-  }
 }
 
 // Two triangles whose common edge is written twice, and differs in the last digits.
