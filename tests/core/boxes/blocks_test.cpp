@@ -37,18 +37,18 @@ Scene shuffled(Scene scene, std::uint64_t seed) {
 // Pairs that count whose boxes overlap, by comparing all with all.
 std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool neighbours) {
   const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+    boxes.push_back(grown_box(scene, t, clearance));
   std::vector<TrianglePair> out;
-  for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (!overlap(boxes[a], boxes[b])) continue;
       if (owner[a] == owner[b]) {
         if (!scene.objects[owner[a]].self) continue;
-        const auto& other = scene.triangles[b];
-        const bool shared = std::ranges::any_of(scene.triangles[a], [&](std::uint32_t v) {
-          return std::ranges::find(other, v) != other.end();
-        });
-        if (shared && !neighbours) continue;
+        if (!neighbours && share_index(scene.triangles[a], scene.triangles[b])) continue;
       }
-      if (boxes_meet(scene, {a, b}, half_of(clearance))) out.push_back({a, b});
+      out.push_back({a, b});
     }
   }
   return out;

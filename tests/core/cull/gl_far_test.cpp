@@ -177,13 +177,13 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
   lab::expect_far_survives_all_families(canvases(),
-                                        {.canvas = "gl", .scenes = 30 + trials(30, 10)});
+                                        {.canvas = "gl", .scenes = trials(60, 12)});
 }
 
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
   lab::expect_far_survives_all_families(
       canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}),
-      {.canvas = "gl24", .scenes = 12});
+      {.canvas = "gl24", .scenes = trials(12, 6)});
 }
 
 TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }

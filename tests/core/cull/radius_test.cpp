@@ -116,7 +116,7 @@ std::unique_ptr<Canvas> worst(const Fattener& fattener) {
 
 TEST(FarProperty, NoFamilyOfExtremeScenesLosesAPairOnTheWorstCanvas) {
   lab::expect_far_survives_all_families(
-      worst, {.canvas = "worst", .scenes = 8 + trials(8, 4), .most_px = 24});
+      worst, {.canvas = "worst", .scenes = trials(16, 6), .most_px = 24});
 }
 
 TEST(FarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(worst), 0); }

@@ -117,11 +117,11 @@ TEST(NativeLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvas
 
 TEST(NativeFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
   lab::expect_far_survives_all_families(canvases(),
-                                        {.canvas = "native", .scenes = 30 + trials(60, 10)});
+                                        {.canvas = "native", .scenes = trials(90, 12)});
 }
 TEST(NativeFarProperty, NorOn24BitDepth) {
   lab::expect_far_survives_all_families(canvases({.depth_bits = 24}),
-                                        {.canvas = "native24", .scenes = 17});
+                                        {.canvas = "native24", .scenes = trials(20, 6)});
 }
 TEST(NativeFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
 
