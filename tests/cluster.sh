@@ -6,8 +6,7 @@
 #   lost daemon    only the daemon of a node is killed and its task lives on; Slurm starts the task a
 #                  second time, which has to be refused, since the first one still writes the file
 #   killed task    its program is killed; it is put back in the queue by hand
-# Then the shards are merged, and the rows have to be equal to those of an undisturbed run. The same is
-# done with GNU parallel and with Open MPI, each with a process that is killed in the middle. At last
+# Then the shards are merged, and the rows have to be equal to those of an undisturbed run. At last
 # experiments/tiles.sbatch is submitted, the program of a tile is killed and put back, and the merged list
 # of pairs has to be that of one run. It is no part of CI.
 #   bash tests/cluster.sh                                 the study radius, --quick: some minutes
@@ -19,10 +18,10 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=../experiments/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
-farcull_packages+=(slurmctld slurmd slurm-client munge openmpi-bin parallel sqlite3)
+farcull_packages+=(slurmctld slurmd slurm-client munge sqlite3)
 farcull_setup
 farcull_build farcull
-unset "${!SLURM_@}" "${!OMPI_@}"
+unset "${!SLURM_@}"
 
 study=${STUDY:-radius}
 export STUDY=$study
@@ -144,8 +143,6 @@ merges() {
 merge() { build/farcull merge "$folder/$1" >>"$folder/merged.txt"; }
 not() { ! "$@"; }
 says() { grep -qE -- "$2" "$1"; } # FILE PATTERN
-is_zero() { [[ $1 == 0 ]]; }
-is_not_zero() { [[ $1 != 0 ]]; }
 refused_merge() { ! build/farcull merge "$folder/$1" >"$work/refused" 2>&1 && says "$work/refused" "$2"; }
 
 # process_of NAME VARIABLE=VALUE: the processes of that name that have the variable in their environment.
@@ -357,42 +354,6 @@ tiles() {
   sed -i '$d' "$folder/tiles/tile-3.csv"
   check "tiles: twin: a pair that is gone from a list is noticed" not merge_tiles
 }
-
-# ---- GNU parallel and Open MPI ----
-
-# disturbed NAME K N VARIABLE COMMAND...: runs the command, and kills the program of shard K in the
-# middle. The program is known by its environment.
-disturbed() {
-  local name=$1 variable=$4 program
-  local -i k=$2 n=$3 status=0 command
-  shift 4
-  "$@" >"$folder/$name.txt" 2>&1 &
-  command=$!
-  until_true 120 hold "$(shard "$name" "$k" "$n")" "$variable" || give_up "$name: shard $k gets no rows"
-  check "$name: shard $k is in the middle" in_the_middle "$(shard "$name" "$k" "$n")" "$k" "$n"
-  kill -KILL "$program"
-  wait "$command" || status=$?
-  check "$name: a program was killed, and the status says so ($status)" is_not_zero "$status"
-  check "$name: what is not complete is not merged" \
-    refused_merge "$name" "(results-[0-9]-of-$n.sqlite: has no row of|shard [0-9]/$n: of) $study"
-  status=0
-  waited "$@" >>"$folder/$name.txt" 2>&1 || status=$?
-  check "$name: the same line again completes" is_zero "$status"
-  check "$name: shard $k holds rows of two runs" test "$(runs_in "$(shard "$name" "$k" "$n")")" == 2
-  merges "$name" "$name"
-}
-
-say "GNU parallel: $(parallel --version | head -n 1)"
-disturbed parallel 2 4 PARALLEL_SEQ=2 parallel --lb -j 2 \
-  build/farcull experiment "$study" "${options[@]}" --out "$folder/parallel" --resume --shard '{}/4' ::: {1..4}
-
-# The processes are more than the cores, and root is allowed: it may be the only user of a container.
-say "Open MPI: $(mpirun --version | head -n 1)"
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-disturbed openmpi 2 4 OMPI_COMM_WORLD_RANK=1 mpirun --oversubscribe -n 4 \
-  bash -c 'exec "$@" --shard "$((OMPI_COMM_WORLD_RANK + 1))/$OMPI_COMM_WORLD_SIZE"' one \
-  build/farcull experiment "$study" "${options[@]}" --out "$folder/openmpi" --resume
-unset "${!OMPI_@}"
 
 slurm
 tiles

@@ -252,35 +252,21 @@ TREE = {'CMakeLists.txt': 'top', 'README.md': 'top', 'docs/index.md': 'page', 'b
         'tests/all_test.cpp': '#include "verify/exact.h"'}
 # Folders or files, what they include, and the reason why not; = stands for: the table does not let them; . for none.
 INCLUDING = [row.split(':') for row in r'''
-core/base:core/scene tests:= | core/scene:core/view core/boxes offsets experiments/command:=
-core/boxes:core/view:= | core/proximity:core/view:= | core/voronoi:core/proximity:=
-core/canvas:core/gl offsets:=
-core/view:core/canvas core/cull verify tests ../canvas/canvas.h:= | core/cull:offsets core/sweep experiments/command tests:=
-core/gl:offsets verify experiments/method tests:= | core/gl/canvas/cull.frag:offsets/obb.glsl:=
-offsets:core/gl verify experiments/command tests:= | verify/certificate:verify core/view:=
-verify:offsets core/cull core/sweep core/gl experiments/system tests ../offsets/obb.glsl:=
-verify/canvas.h verify/deep/canvas.h:<offsets/obb.h> offsets/obb.h:= | experiments/system:core/scene:=
-experiments/scenes:experiments/record:= | experiments/scenes/mesh:experiments/scenes:=
-experiments/scenes/cloth:experiments/scenes/builtin:= | experiments/method:experiments/record experiments/scenes:=
-experiments/library:experiments/scenes:= | experiments/record:experiments/scenes:= | experiments/lemma:experiments/measure:=
-experiments/peers:experiments/measure experiments/studies:= | experiments/generators:experiments/suite:=
-experiments/suite:experiments/lemma:= | experiments/studies:experiments/command:= | experiments/picture:experiments/studies:=
-experiments/command:tests:=
-verify:core/boxes/join.h core/view/budget.h core/view/plan.h:shares no code
-verify/certificate:core/boxes/join.h:shares no code | verify/all_pairs.cpp:core/boxes/join.h:.
+core/base:core/scene tests:= | core/boxes:core/view:= | core/view:core/canvas verify tests ../canvas/canvas.h:=
+core/cull:offsets core/sweep experiments/command:= | core/gl/canvas/cull.frag:offsets/obb.glsl:= | offsets:core/gl verify:=
+verify:offsets core/gl tests ../offsets/obb.glsl:= | verify/canvas.h verify/deep/canvas.h:<offsets/obb.h> offsets/obb.h:=
+experiments/scenes/mesh:experiments/scenes:= | experiments/method:experiments/record:= | experiments/command:tests:=
+verify:core/boxes/join.h core/view/budget.h:shares no code | verify/all_pairs.cpp:core/boxes/join.h:.
+verify/certificate:core/boxes/join.h:shares no code
 verify:<CGAL/box_intersection_d.h> <CGAL/AABB_tree.h>:it is under the GPL
 experiments/peers/cgal.cpp tests/core/boxes:<CGAL/box_intersection_d.h>:.
 verify:<CGAL/Exact_predicates_inexact_constructions_kernel.h>:. | core/scene:core/other/other.h:in no folder of the table
-core/scene core/canvas:core/base/error.h:. | core/view:core/scene/scene.h core/boxes/join.h:. | offsets:core/view/budget.h:.
-core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:. | verify/certificate:<gmpxx.h>:.
-verify:core/canvas/canvas.h verify/certificate/certificate.h <gmpxx.h>:. | experiments/method:core/gl/canvas/canvas.h:.
-experiments/suite:verify/certificate/integer_pair.h:. | experiments/peers:experiments/suite/label.h:.
-experiments/picture:experiments/measure/compare.h:. | experiments/command:experiments/studies/store.h:. | experiments/command:experiments/library/farcull.h:.
-experiments/peers/cgal.cpp experiments/peers/contest_cgal.cpp:<CGAL/Kernel.h>:.
+core/scene core/canvas:core/base/error.h:. | core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:.
+verify:core/canvas/canvas.h verify/certificate/certificate.h <gmpxx.h>:. | experiments/command:experiments/library/farcull.h:.
 tests/verify:offsets/obb.glsl <CGAL/Kernel.h>:. | tests/faults:<epoxy/gl.h>:.
-core/scene core/canvas core/cull offsets verify experiments/command tests/core/gl:<epoxy/gl.h> <EGL/egl.h>:may use EGL/OpenGL
-core/scene core/gl offsets verify/certificate experiments/command experiments/peers:<CGAL/box.h>:may use CGAL
-core/scene core/gl offsets experiments/command experiments/peers:<gmpxx.h> <mpfr.h>:may use GMP/MPFR
+core/scene offsets verify tests/core/gl:<epoxy/gl.h> <EGL/egl.h>:may use EGL/OpenGL
+core/scene core/gl verify/certificate experiments/peers:<CGAL/box.h>:may use CGAL
+core/scene offsets experiments/command:<gmpxx.h> <mpfr.h>:may use GMP/MPFR
 '''.strip().replace('\n', ' | ').split(' | ')]
 CYCLE = 'core/view/left: a cycle of includes, with .h and .cpp of one name as one file: core/view/left, core/view/'
 LEFT, TO_LEFT = {'core/view/left.h': '#include "core/view/right.h"'}, '#include "core/view/left.h"'

@@ -23,7 +23,6 @@ campaigns=(
   "rounding FARCULL_ROUNDING_PAIRS=320000 build/tests/farcull_tests --gtest_filter=WorstRounding.LosesNoPair*"
   "polygons FARCULL_POLYGONS=1000000 build/tests/farcull_tests --gtest_filter=Polygons.*"
   "model FARCULL_MODEL_TRIALS=1000000 ctest --test-dir build --output-on-failure -R CullModel"
-  "strays cmake --build build --target farcull_strays && build/tests/farcull_strays 100"
   "reliability bash experiments/reliability.sh"
   "reliability_boxes bash experiments/reliability.sh boxes"
   "reliability_motion bash experiments/reliability.sh motion"

@@ -66,28 +66,6 @@ class HostContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-TEST(Contexts, TwoSessionsInTurn) {
-  Drawer a, b;
-  for (int turn = 0; turn < 3; ++turn) {
-    EXPECT_TRUE(a.right());
-    EXPECT_TRUE(b.right());
-  }
-}
-
-TEST(Contexts, ASessionThatWasAssignedOrOutlivedAnother) {
-  Drawer a;
-  EXPECT_TRUE(a.right());
-  a = Drawer();
-  EXPECT_TRUE(a.right());
-  {
-    Drawer b;
-    EXPECT_TRUE(b.right());
-    std::swap(a, b);
-  }
-  EXPECT_TRUE(a.right());
-  EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
-}
-
 // The host's context, its rendering API and what it has bound are as they were.
 TEST(Contexts, TheCallersContextStaysCurrent) {
   for (const EGLenum api : {EGL_OPENGL_API, EGL_OPENGL_ES_API}) {
@@ -110,16 +88,6 @@ TEST(Contexts, TheCallersContextStaysCurrent) {
     EXPECT_EQ(bound, static_cast<GLint>(buffer));
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
   }
-}
-
-TEST(Contexts, ASessionGoesFromThreadToThread) {
-  std::optional<Drawer> drawer;
-  bool right = false;
-  std::thread([&] { drawer.emplace(); }).join();
-  EXPECT_TRUE(drawer->right());
-  std::thread([&] { right = drawer->right(); }).join();
-  EXPECT_TRUE(right);
-  std::thread([&] { drawer.reset(); }).join();
 }
 
 TEST(Contexts, TwoThreadsAtOnceAreRefusedByName) {

@@ -1,101 +1,29 @@
-// Distances in rationals, for tests: the least over all pairs of features, each by its formula.
-// Written apart from all other code that computes distances.
+// Small scenes for tests of the discrete Voronoi diagram, their nearest neighbours, and what it
+// misses.
 #pragma once
 
 #include "core/scene/scene.h"
 #include "core/voronoi/voronoi.h"
+#include "tests/lab/grid_distance.h"
 #include "tests/lab/rational.h"
-#include "tests/lab/reference.h"
 #include "tests/lab/scenes.h"
-#include "verify/rational.h"
 
 namespace farcull::exact_distance {
 
 // Number: rational::Q, or double for a first estimate.
 template <class Number>
-using Point = reference::Vector<Number>;
-template <class Number>
-using Corners = std::array<Point<Number>, 3>;
-using reference::cross;
-using reference::dot;
-using reference::minus;
+using Corners = near_lab::Corners<Number>;
 
 template <class Number>
 Corners<Number> converted(const std::array<Vec3, 3>& corners) {
   return reference::converted(corners, [](double x) { return Number(x); });
 }
 
-/// The square of the distance of a point from a segment, which may be a point.
-template <class Number>
-Number to_segment(const Point<Number>& p, const Point<Number>& a, const Point<Number>& b) {
-  const Point<Number> e = minus(b, a), from = minus(p, a);
-  const Number ee = dot(e, e), along = dot(from, e);
-  if (ee == 0 || along <= 0) return dot(from, from);
-  const Point<Number> to = minus(p, b);
-  if (along >= ee) return dot(to, to);
-  return Number(dot(from, from) - along * along / ee);
-}
-
-// Where a line through p along d meets the plane of the triangle is inside: by the two weights.
-template <class Number>
-bool inside(const Point<Number>& x, const Corners<Number>& t, const Point<Number>& normal) {
-  const Point<Number> e = minus(t[1], t[0]), f = minus(t[2], t[0]), from = minus(x, t[0]);
-  const Number nn = dot(normal, normal), s = dot(cross(from, f), normal),
-               w = dot(cross(e, from), normal);
-  return s >= 0 && w >= 0 && s + w <= nn;
-}
-
-/// The square of the distance of a point from a triangle, which may be a segment or a point.
-template <class Number>
-Number to_triangle(const Point<Number>& p, const Corners<Number>& t) {
-  Number out = to_segment(p, t[0], t[1]);
-  out = std::min(out, to_segment(p, t[1], t[2]));
-  out = std::min(out, to_segment(p, t[2], t[0]));
-  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  const Number nn = dot(normal, normal);
-  if (nn == 0 || !inside(p, t, normal)) return out;
-  const Number height = dot(minus(p, t[0]), normal);
-  return std::min(out, Number(height * height / nn));
-}
-
-// The square of the distance of two lines where both are nearest inside the segments.
-template <class Number>
-std::optional<Number> across(const Point<Number>& a, const Point<Number>& b, const Point<Number>& c,
-                             const Point<Number>& d) {
-  const Point<Number> e = minus(b, a), f = minus(d, c), from = minus(c, a), n = cross(e, f);
-  const Number nn = dot(n, n);
-  if (nn == 0) return std::nullopt;
-  const Number s = dot(cross(from, f), n), t = dot(cross(from, e), n);
-  if (s < 0 || s > nn || t < 0 || t > nn) return std::nullopt;
-  const Number height = dot(from, n);
-  return Number(height * height / nn);
-}
-
-// Whether the segment passes through the triangle from one side to the other.
-template <class Number>
-bool pierces(const Point<Number>& p, const Point<Number>& q, const Corners<Number>& t) {
-  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  const Number from = dot(normal, minus(p, t[0])), to = dot(normal, minus(q, t[0]));
-  if (!((from < 0 && to > 0) || (from > 0 && to < 0))) return false;
-  Point<Number> x;
-  for (std::size_t k = 0; k < 3; ++k) x[k] = p[k] + from / Number(from - to) * (q[k] - p[k]);
-  return inside(x, t, normal);
-}
-
 /// The square of the distance of two triangles.
 template <class Number>
 Number between(const Corners<Number>& a, const Corners<Number>& b) {
-  Number out = to_triangle(a[0], b);
-  for (std::size_t i = 0; i < 3; ++i) {
-    out = std::min(out, to_triangle(a[i], b));
-    out = std::min(out, to_triangle(b[i], a));
-    const std::size_t next = (i + 1) % 3;
-    if (pierces(a[i], a[next], b) || pierces(b[i], b[next], a)) return Number(0);
-    for (std::size_t j = 0; j < 3; ++j)
-      if (const auto of_edges = across(a[i], a[next], b[j], b[(j + 1) % 3]))
-        out = std::min(out, *of_edges);
-  }
-  return out;
+  const auto squared = near_lab::squared_distance(a, b);
+  return Number(squared.numerator / squared.denominator);
 }
 
 /// The nearest neighbours of an object.
@@ -148,8 +76,6 @@ inline std::vector<Nearest> nearest_neighbours(const Scene& scene) {
 }
 
 }  // namespace farcull::exact_distance
-
-// Small scenes for tests of the discrete Voronoi diagram, and what it misses.
 
 namespace farcull::lab {
 
@@ -217,13 +143,14 @@ inline void count_losses(const Scene& scene, const std::vector<exact_distance::N
 
 /// The square of the distance of a point of a grid from a triangle.
 inline rational::Q squared_distance(const GridPoint& point, const GridTriangle& triangle) {
-  exact_distance::Corners<rational::Q> corners;
-  exact_distance::Point<rational::Q> p;
+  exact_distance::Corners<rational::Q> corners, p;
   for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = static_cast<double>(point[k]);
-    for (std::size_t c = 0; c < 3; ++c) corners[c][k] = static_cast<double>(triangle.corners[c][k]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c][k] = static_cast<double>(triangle.corners[c][k]);
+      p[c][k] = static_cast<double>(point[k]);
+    }
   }
-  return exact_distance::to_triangle(p, corners);
+  return exact_distance::between(p, corners);
 }
 
 // A triangle in the unit cubes of a grid, often a needle, a segment or a point.

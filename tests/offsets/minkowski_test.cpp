@@ -228,73 +228,6 @@ TEST(ExactKernel, WithoutWideningAdversarialFloatsAreMissed) {
   std::cout << tally.violations << " of " << tally.checks << " points lost\n";
 }
 
-// The lemma as the kernel serves it: a point of the triangle in a pixel lies in the interval of
-// that pixel's centre, be it in the pixel's corner.
-TEST(ExactKernel, HoldsEveryPointOfThePixel) {
-  Random random(test_seed(608));
-  for (int n = 0; n < trials(140'000); ++n) {
-    const Triangle t = random_triangle(random, n % kKindCount);
-    const Solid solid = solid_of(t, 0.7072);
-    for (int k = 0; k < 4; ++k) {
-      const Weights w = random_weights(random);
-      const Vec3 q = t[0] + double(w.w1) * (t[1] - t[0]) + double(w.w2) * (t[2] - t[0]);
-      const float cx = number(std::floor(q[0]) + 0.5), cy = number(std::floor(q[1]) + 0.5);
-      const Answer a = answer(k == 0 ? kWorst : kFloat, cx, cy, solid);
-      ASSERT_TRUE(a.hit) << kKinds[n % kKindCount] << ", case " << n;
-      // q itself is rounded, by less than 2^-50 of the corners.
-      double off = 0;
-      for (const Vec3& p : t) off = std::max(off, 0x1p-50 * p.cwiseAbs().maxCoeff());
-      ASSERT_LE(a.entry, q[2] + off) << kKinds[n % kKindCount] << ", case " << n;
-      ASSERT_GE(a.exit, q[2] - off) << kKinds[n % kKindCount] << ", case " << n;
-    }
-  }
-}
-
-// ---- the worst device ----
-
-struct Pessimism {
-  long worst_hits = 0, contradictions = 0, strict = 0;
-};
-
-Pessimism compare(Kernel better, Kernel worse, int cases) {
-  Random random(609);
-  Pessimism out;
-  for (int n = 0; n < cases; ++n) {
-    Solid solid;
-    float cx, cy;
-    if (n % 3 == 0) {
-      adversarial(random, solid, cx, cy);
-    } else {
-      const Case c = random_case(random, n / 3 % kKindCount);
-      solid = solid_of(c.triangle, c.radius);
-      cx = c.cx;
-      cy = c.cy;
-    }
-    const Answer b = answer(better, cx, cy, solid), w = answer(worse, cx, cy, solid);
-    if (!w.hit) {
-      out.strict += b.hit;
-      continue;
-    }
-    ++out.worst_hits;
-    out.contradictions += !b.hit || b.entry > w.entry || b.exit < w.exit;
-    out.strict += b.hit && (b.entry < w.entry || b.exit > w.exit);
-  }
-  return out;
-}
-
-// The floats of this machine are among those that GLSL allows.
-TEST(ExactKernel, TheWorstDeviceIsAtLeastAsPessimisticAsThisOne) {
-  const int cases = trials(200'000);
-  const Pessimism found = compare(kFloat, kWorst, cases);
-  EXPECT_EQ(found.contradictions, 0);
-  EXPECT_GT(found.worst_hits, cases / 4);
-  std::cout << found.strict << " lines strictly worse, " << found.worst_hits << " hit\n";
-}
-
-TEST(ExactKernel, ThisDeviceIsNotAsPessimisticAsTheWorstOne) {
-  EXPECT_GT(compare(kWorst, kFloat, 20'000).contradictions, 5'000);
-}
-
 // ---- tightness: a kernel that always answers [zlo, zhi] passes all of the above ----
 
 struct Tightness {
@@ -363,18 +296,6 @@ TEST(ExactKernel, IsNotAbsurdlyLooseOnOrdinaryTriangles) {
       EXPECT_TRUE(is_tight(found));
     }
   }
-}
-
-TEST(ExactKernel, AKernelThatAnswersItsCutsIsLoose) {
-  const Kernel cuts = [](float, float, const Solid& solid, float& entry, float& exit) {
-    entry = solid[0][3];
-    exit = solid[2][3];
-    return true;
-  };
-  Tightness found = measure(cuts, 0, 0.7, 4'000);
-  EXPECT_FALSE(is_tight(found));
-  EXPECT_GT(found.rank(0.5), 1);
-  EXPECT_EQ(found.false_hits, found.clear_misses);
 }
 
 // Degenerate, thin and far triangles are reported; only the solid's own rounding may loosen them.

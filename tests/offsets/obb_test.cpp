@@ -227,34 +227,6 @@ TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
   }
 }
 
-// The lemma as the kernel serves it: a point of the polygon in a pixel lies in the interval of that
-// pixel's centre, be it in the pixel's corner.
-TEST(ObbKernel, HoldsEveryPointOfThePixel) {
-  Random random(test_seed(505));
-  for (int n = 0; n < trials(60'000); ++n) {
-    const Points points = random_points(random);
-    const Solid solid = obb_of(points, 0.7072);
-    for (int k = 0; k < 8; ++k) {
-      Vec3 q = Vec3::Zero();
-      double left = 1;
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const double w = i + 1 == points.size() ? left : left * random.uniform(0, 1);
-        q += w * points[i];
-        left -= w;
-      }
-      if (k == 0) q = points[0];
-      float entry, exit;
-      const float cx = static_cast<float>(std::floor(q[0]) + 0.5);
-      const float cy = static_cast<float>(std::floor(q[1]) + 0.5);
-      ASSERT_TRUE(obb_fattener().solid.interval(cx, cy, solid, entry, exit)) << "polygon " << n;
-      // q itself is rounded, by less than 2^-50 of its size.
-      const double off = 0x1p-50 * q.cwiseAbs().maxCoeff();
-      ASSERT_LE(entry, q[2] + off) << "polygon " << n;
-      ASSERT_GE(exit, q[2] - off) << "polygon " << n;
-    }
-  }
-}
-
 // A kernel that always answers [zlo, zhi] would pass all of the above.
 TEST(ObbKernel, IsNotAbsurdlyLooseOnOrdinaryBoxes) {
   Random random(506);

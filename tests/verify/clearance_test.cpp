@@ -161,30 +161,5 @@ TEST(ClearanceFilter, DecidesWhatIsNotClose) {
   EXPECT_EQ(filter_within(kUnit, beside, 3.1), Triage::yes);
 }
 
-TEST(Clearance, ZeroIsAPlainRun) {
-  std::vector<std::vector<Triangle>> objects(3);
-  RandomDraws random(9);
-  for (auto& triangles : objects) {
-    for (int n = 0; n < 150; ++n) {
-      const Vec3 at(random.whole(0, 9), random.whole(0, 9), random.whole(0, 9));
-      Triangle t;
-      for (Vec3& p : t) p = at + Vec3(random.whole(0, 2), random.whole(0, 2), random.whole(0, 2));
-      triangles.push_back(t);
-    }
-  }
-  Scene scene = reference::scene_of(objects);
-  scene.objects[1].self = true;
-  const ExactResult plain = all_colliding_pairs(scene);
-  const ExactResult zero = all_colliding_pairs(scene, {.clearance = 0});
-  const ExactResult tiny = all_colliding_pairs(scene, {.clearance = 1e-300});
-  for (const ExactResult* other : {&zero, &tiny}) {  // on a grid nothing is 1e-300 apart
-    EXPECT_EQ(plain.pairs, other->pairs);
-    EXPECT_EQ(plain.neighbour_pairs, other->neighbour_pairs);
-    EXPECT_EQ(plain.box_pairs, other->box_pairs);
-  }
-  EXPECT_GT(plain.pairs.size(), 100u);
-  EXPECT_GT(plain.neighbour_pairs.size(), 0u);
-}
-
 }  // namespace
 }  // namespace farcull

@@ -190,53 +190,6 @@ TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
   }
 }
 
-TEST(ClosestPoints, MovedAndScaledPairsHaveTheSameFeatures) {
-  RandomDraws random(22);
-  for (int n = 0; n < trials(2000); ++n) {
-    const DrawnPair pair = on_a_grid(random);
-    const Vec3 by(random.whole(-999, 999), random.whole(-999, 999), 0x1p40);
-    const int exponent = random.whole(-900, 900);
-    DrawnPair moved = pair, scaled = pair;
-    for (int i = 0; i < 3; ++i) {
-      moved.a[i] += by;
-      moved.b[i] += by;
-      scaled.a[i] *= std::ldexp(1, exponent);
-      scaled.b[i] *= std::ldexp(1, exponent);
-    }
-    const Closest plain = closest_points(pair.a, pair.b);
-    const Closest after = closest_points(moved.a, moved.b);
-    EXPECT_EQ(plain.squared, after.squared);
-    EXPECT_EQ(plain.distance, after.distance);
-    EXPECT_EQ(plain.features, after.features);
-    const Closest larger = closest_points(scaled.a, scaled.b);
-    EXPECT_EQ(plain.features, larger.features);
-    EXPECT_EQ(std::ldexp(plain.distance, exponent), larger.distance);
-    for (int side = 0; side < 2; ++side)
-      EXPECT_EQ(Vec3(plain.points[side] * std::ldexp(1, exponent)), larger.points[side]);
-  }
-}
-
-TEST(ClosestPoints, TheFirstFeaturesOfManyAreTheAnswer) {
-  const Triangle low = {Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)};
-  const auto features = [](const Triangle& a, const Triangle& b) {
-    const Closest c = closest_points(a, b);
-    return to_string(c.features[0]) + ", " + to_string(c.features[1]);
-  };
-  const Triangle above = {Vec3(1, 1, 3), Vec3(3, 1, 3), Vec3(1, 3, 3)};
-  EXPECT_EQ(features(low, above), "face, vertex 0");
-  EXPECT_EQ(features(above, low), "vertex 0, face");
-  EXPECT_EQ(features(low, low), "vertex 0, vertex 0");
-  EXPECT_EQ(features(low, {low[1], low[2], low[0]}), "vertex 0, vertex 2");
-  const Triangle star = {Vec3(5, 5, 3), Vec3(-3, 5, 3), Vec3(2, -4, 3)};
-  EXPECT_EQ(features(low, star), "vertex 0, face");
-  const Triangle through = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(1, 60, 2)};
-  EXPECT_EQ(features(low, through), "edge 1, face");
-  EXPECT_EQ(features(through, low), "edge 0, face");
-  EXPECT_EQ(closest_points(through, low).points[0], Vec3(1, 1, 0));
-  const Triangle point = {Vec3(4, 4, 0), Vec3(4, 4, -0.0), Vec3(4, 4, 0)};
-  EXPECT_EQ(features(low, point), "edge 1, vertex 0");
-}
-
 TEST(ClosestPoints, ZerosHaveNoSign) {
   const Triangle a = {Vec3(-0.0, -0.0, -0.0), Vec3(1, -0.0, 0), Vec3(0, 1, -0.0)};
   const Closest c = closest_points(a, {Vec3(-0.0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2)});

@@ -1,13 +1,12 @@
 // Kinds of contact and common segments: examples of each kind, CGAL's intersection of triangles in
-// rational numbers, and what other functions say of the same pairs.
+// rational numbers, and what other functions say of the same pairs. tests/oracles/kinds.py has
+// another reference.
 #include "verify/contact.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
 #include <CGAL/mpq_class.h>
 
-#include "experiments/scenes/builtin/scenes.h"
-#include "tests/lab/clipped_contact.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/test.h"
@@ -29,12 +28,14 @@ ContactShape expect_kind(const std::string& expected, int dimension, const Trian
   const ContactShape first = contact_shape(a, b);
   EXPECT_EQ(name_of(first.kind), expected);
   EXPECT_EQ(first.dimension, dimension) << expected;
+  EXPECT_EQ(intersects(a, b), first.kind != ContactKind::apart);
   for (const auto& i : kPermutations) {
     for (const auto& j : kPermutations) {
       EXPECT_EQ(contact_shape(reordered(a, i), reordered(b, j)), first);
       EXPECT_EQ(contact_shape(reordered(b, j), reordered(a, i)), first);
       EXPECT_EQ(contact_kind(reordered(a, i), reordered(b, j)), first.kind);
       EXPECT_EQ(contact_kind(reordered(b, j), reordered(a, i)), first.kind);
+      EXPECT_EQ(penetrate(reordered(a, i), reordered(b, j)), first.kind == ContactKind::crossing);
     }
   }
   return first;
@@ -145,7 +146,16 @@ bool as_cgal_says(const ContactShape& shape, const Triangle& a, const Triangle& 
     return shape.dimension == 0 && near(shape.ends[0], *p) && near(shape.ends[1], *p);
   if (const auto* s = boost::get<Kernel::Segment_3>(&*found))
     return shape.dimension == 1 && near(shape.ends[0], s->min()) && near(shape.ends[1], s->max());
-  return shape.dimension == 2;
+  std::vector<Kernel::Point_3> corners;
+  if (const auto* t = boost::get<Kernel::Triangle_3>(&*found))
+    corners = {t->vertex(0), t->vertex(1), t->vertex(2)};
+  else
+    corners = boost::get<std::vector<Kernel::Point_3>>(*found);
+  const std::vector<Vec3> polygon = contact_polygon(a, b);
+  return shape.dimension == 2 && polygon.size() >= 3 && polygon.size() <= corners.size() &&
+         std::ranges::all_of(polygon, [&](const Vec3& end) {
+           return std::ranges::any_of(corners, [&](const auto& p) { return near(end, p); });
+         });
 }
 
 /// Triangles with corners of few values, so that corners, edges and planes often coincide.
@@ -253,111 +263,6 @@ TEST(ContactKind, EveryPairOnAGridHasOneKind) {
     EXPECT_GT(of_kind[static_cast<std::size_t>(kind)], 0) << name_of(kind);
 }
 
-/// A triangle with corners on a grid. With a step of a tenth many determinants are 0 although the
-/// coordinates have all 53 digits.
-Triangle on_grid(RandomDraws& random, int planes, double step) {
-  Triangle out;
-  for (Vec3& p : out) p = step * Vec3(random.below(4), random.below(4), random.below(planes));
-  return out;
-}
-
-/// Two edges that have their middle in common. In some coordinates it is just between two doubles,
-/// so the last bits of an error decide how it is rounded.
-DrawnPair with_a_common_middle(RandomDraws& random) {
-  constexpr double kUlp = 0x1p-52;  // of doubles in [1, 2)
-  const auto whole = [&](double lo, double hi) {
-    return std::round(random.between(lo, hi) / kUlp) * kUlp;
-  };
-  DrawnPair out;
-  for (int k = 0; k < 3; ++k) {
-    const double middle = whole(1.4, 1.6), half = random.chance(2) ? kUlp : 0;
-    for (Triangle* t : {&out.a, &out.b}) {
-      const double along = whole(-0.3, 0.3);
-      (*t)[0][k] = middle - along;
-      (*t)[1][k] = middle + along + half;
-      (*t)[2][k] = middle + random.between(-1, 1);
-    }
-  }
-  return out;
-}
-
-/// Whether the numbers are the same to the bit, so that 0.0 and -0.0 differ.
-bool same(const Vec3& p, const Vec3& q) {
-  return p == q && std::signbit(p.x()) == std::signbit(q.x()) &&
-         std::signbit(p.y()) == std::signbit(q.y()) && std::signbit(p.z()) == std::signbit(q.z());
-}
-
-/// How many of the kinds, shapes and polygons differ from those that clipping gives.
-int differing(const Triangle& a, const Triangle& b) {
-  const ContactShape found = contact_shape(a, b), expected = clipping::contact_shape(a, b);
-  const std::vector<Vec3> polygon = contact_polygon(a, b);
-  return (contact_kind(a, b) != expected.kind) + (found.kind != expected.kind) +
-         (found.dimension != expected.dimension) + !same(found.ends[0], expected.ends[0]) +
-         !same(found.ends[1], expected.ends[1]) +
-         !std::ranges::equal(polygon, clipping::contact_polygon(a, b), same);
-}
-
-TEST(ContactShape, AsByClippingToTheBit) {
-  RandomDraws random(604);
-  int different = 0, pairs = 0;
-  const auto compare = [&](const Triangle& a, const Triangle& b) {
-    different += differing(a, b);
-    ++pairs;
-  };
-  for (const auto& [name, make] : hard_pairs::generators()) {
-    for (int n = 0; n < 60; ++n) {
-      DrawnPair pair = make(random);
-      if (!hard_pairs::finite(pair)) continue;
-      hard_pairs::share(static_cast<hard_pairs::Sharing>(n % 3), pair.a, pair.b);
-      compare(pair.a, pair.b);
-    }
-  }
-  Random numbers(605);
-  for (int n = 0; n < 2000; ++n) {
-    const auto [a, b] = draw(numbers, n);
-    compare(a, b);
-    const auto middle = with_a_common_middle(random);
-    compare(middle.a, middle.b);
-  }
-  EXPECT_EQ(different, 0);
-  EXPECT_GT(pairs, 4000);
-}
-
-TEST(ContactShape, OfScenesAsByClippingToTheBit) {
-  for (const char* name : {"two-tori@far", "degenerate", "crowd"}) {
-    const Scene scene = make_builtin_scene(name);
-    int different = 0;
-    const auto pairs = all_colliding_pairs(scene).pairs;
-    for (const TrianglePair& pair : pairs)
-      different += differing(scene.corners(pair.a), scene.corners(pair.b));
-    EXPECT_EQ(different, 0) << name;
-    EXPECT_GT(pairs.size(), 10u) << name;
-  }
-}
-
-TEST(ContactKind, OnGridsAsByClipping) {
-  RandomDraws random(604);
-  std::array<int, kContactKinds.size()> of_kind{};
-  int different = 0, noticed = 0;
-  for (int n = 0; n < 6000; ++n) {
-    const double step = n % 2 == 0 ? 0.1 : 0.125;
-    Triangle a = on_grid(random, 1 + n % 3, step), b = on_grid(random, 1 + n % 3, step);
-    if (n % 40 == 0) b = {a[1], a[2], a[0]};
-    for (Triangle* t : {&a, &b}) {
-      for (Vec3& p : *t) p.z() += n % 2 * 0.5 * p.x();  // exact: planes along no axis
-    }
-    const ContactKind kind = contact_kind(a, b);
-    ++of_kind[static_cast<std::size_t>(kind)];
-    different += differing(a, b);
-    // The twin: a corner that is moved by one unit in the last place is noticed.
-    b[0].y() = std::nextafter(b[0].y(), 1);
-    noticed += contact_kind(a, b) != kind;
-  }
-  EXPECT_EQ(different, 0);
-  EXPECT_GT(noticed, 100);
-  for (const int count : of_kind) EXPECT_GT(count, 20);
-}
-
 TEST(ContactShape, ThePolygonOfTrianglesInOnePlane) {
   const Triangle a = {Vec3(0, 0, 1), Vec3(6, 0, 1), Vec3(0, 6, 1)};
   const Triangle b = {Vec3(1, 1, 1), Vec3(7, 1, 1), Vec3(1, 7, 1)};
@@ -405,6 +310,37 @@ TEST(ContactKinds, HaveNamesThatAreReadBack) {
   for (const ContactKind kind : kContactKinds) EXPECT_EQ(parse_contact_kind(name_of(kind)), kind);
   EXPECT_FALSE(parse_contact_kind("touch"));
   EXPECT_FALSE(parse_contact_kind(""));
+}
+
+TEST(CountContacts, CountsEachPairWhateverTheThreads) {
+  Random random(502);
+  const Scene scene = reference::soup(random, 100, 5);
+  std::vector<TrianglePair> pairs;
+  ContactCounts expected;
+  for (std::uint32_t a = 0; a < 100; ++a) {
+    for (std::uint32_t b = a + 1; b < 100; ++b) {
+      if (!intersects(scene.corners(a), scene.corners(b))) continue;
+      pairs.insert(pairs.end(), 2, {a, b});  // a pair that is given twice counts twice
+      const ContactKind kind = contact_kind(scene.corners(a), scene.corners(b));
+      (kind == ContactKind::crossing ? expected.penetrating : expected.touching) += 2;
+    }
+  }
+  EXPECT_GT(pairs.size(), 2048u);  // enough for more than one thread
+  EXPECT_GT(expected.touching, 0u);
+  EXPECT_GT(expected.penetrating, 0u);
+  for (const unsigned threads : {0u, 1u, 2u, 7u})
+    EXPECT_EQ(count_contacts(scene, pairs, threads), expected);
+  EXPECT_EQ(count_contacts(scene, {}), ContactCounts{});
+}
+
+TEST(CountContacts, RefusesPairsThatAreNone) {
+  Scene scene;
+  scene.vertices = {kPlate[0], kPlate[1], kPlate[2]};
+  scene.triangles = {{0, 1, 2}, {0, 1, 2}};
+  scene.source_face = {0, 1};
+  scene.objects.push_back({"plate", 0, 2, true});
+  EXPECT_THROW(count_contacts(scene, std::vector<TrianglePair>{{0, 2}}), std::logic_error);
+  EXPECT_THROW(count_contacts(scene, std::vector<TrianglePair>{{1, 1}}), std::logic_error);
 }
 
 }  // namespace

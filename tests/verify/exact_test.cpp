@@ -78,21 +78,6 @@ TEST(Shape, IsExactWhereProductsUnderflowOrOverflow) {
   EXPECT_EQ(shape({Vec3(1e300, 0, 0), Vec3(0, 1e300, 0), Vec3(0, 0, 1e-300)}), Shape::triangle);
 }
 
-TEST(Intersects, CrossingTriangles) {
-  expect_intersects(true, kUnit, {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(9, 9, 1)});
-  expect_intersects(true, kUnit, {Vec3(1, -1, -1), Vec3(1, -1, 1), Vec3(1, 9, 0)});
-  expect_intersects(false, kUnit, {Vec3(3, 3, -1), Vec3(3, 3, 1), Vec3(9, 9, 1)});
-}
-
-TEST(Intersects, TouchingCounts) {
-  // Corner to corner, corner to edge, corner to face, edge across edge, edge along edge.
-  expect_intersects(true, kUnit, {Vec3(0, 0, 0), Vec3(-1, 0, 1), Vec3(0, -1, 1)});
-  expect_intersects(true, kUnit, {Vec3(2, 2, 0), Vec3(4, 4, 1), Vec3(4, 4, 2)});
-  expect_intersects(true, kUnit, {Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(2, 1, 1)});
-  expect_intersects(true, kUnit, {Vec3(1, 0, -1), Vec3(1, 0, 1), Vec3(1, -5, 0)});
-  expect_intersects(true, kUnit, {Vec3(1, 0, 0), Vec3(3, 0, 0), Vec3(2, -1, 3)});
-}
-
 TEST(Intersects, OneUlpDecides) {
   const auto standing = [](double z) {
     return Triangle{Vec3(1, 1, z), Vec3(1, 1, z + 1), Vec3(2, 1, z + 1)};
@@ -108,64 +93,6 @@ TEST(Intersects, OneUlpDecides) {
   expect_intersects(true, kUnit, corner(down(2)));
   expect_intersects(true, kUnit, corner(2));
   expect_intersects(false, kUnit, corner(up(2)));
-}
-
-TEST(Intersects, CoplanarTriangles) {
-  const auto at = [](double x, double y, double size) {
-    return Triangle{Vec3(x, y, 0), Vec3(x + size, y, 0), Vec3(x, y + size, 0)};
-  };
-  expect_intersects(true, kUnit, kUnit);
-  expect_intersects(true, kUnit, at(1, 1, 1));                                      // inside
-  expect_intersects(true, kUnit, at(-9, -9, 40));                                   // around
-  expect_intersects(true, kUnit, at(1, 1, 40));                                     // across
-  expect_intersects(true, kUnit, {Vec3(3, 3, 0), Vec3(3, -1, 0), Vec3(-1, 3, 0)});  // star
-  expect_intersects(true, kUnit, at(4, 0, 1));                                      // corner
-  expect_intersects(true, kUnit, {Vec3(1, 3, 0), Vec3(3, 1, 0), Vec3(4, 4, 0)});    // edge
-  expect_intersects(false, kUnit, at(4, 1, 1));
-  expect_intersects(false, kUnit, {Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3(0, 4, 1)});  // parallel
-}
-
-TEST(Intersects, DegenerateTrianglesAreSegmentsAndPoints) {
-  const Triangle diagonal = segment({0, 0, 0}, {4, 4, 4});
-  expect_intersects(true, diagonal, segment({0, 4, 0}, {4, 0, 4}));     // crossing inside
-  expect_intersects(true, diagonal, segment({2, 2, 2}, {0, 9, 0}));     // end on inside
-  expect_intersects(true, diagonal, segment({4, 4, 4}, {5, 0, 0}));     // end on end
-  expect_intersects(true, diagonal, segment({3, 3, 3}, {9, 9, 9}));     // collinear, overlapping
-  expect_intersects(true, diagonal, segment({-1, -1, -1}, {9, 9, 9}));  // collinear, around
-  expect_intersects(true, diagonal, segment({4, 4, 4}, {9, 9, 9}));     // collinear, touching
-  expect_intersects(false, diagonal, segment({up(4), up(4), up(4)}, {9, 9, 9}));
-  expect_intersects(false, diagonal, segment({0, 4, 0}, {4, 0, up(4)}));  // skew by one ulp
-  expect_intersects(false, diagonal, segment({1, 0, 0}, {5, 4, 4}));      // parallel
-  expect_intersects(false, diagonal, segment({5, 6, 5}, {6, 5, 6}));  // coplanar, beyond the end
-  expect_intersects(true, diagonal, single_point({3, 3, 3}));
-  expect_intersects(true, diagonal, single_point({4, 4, 4}));
-  expect_intersects(false, diagonal, single_point({up(4), up(4), up(4)}));
-  expect_intersects(false, diagonal, single_point({3, 3, down(3)}));
-  expect_intersects(true, single_point({1, 2, 3}), single_point({1, 2, 3}));
-  expect_intersects(true, single_point({0.0, -0.0, 0.0}), single_point({-0.0, 0.0, -0.0}));
-  expect_intersects(false, single_point({1, 2, 3}), single_point({1, 2, up(3)}));
-  // A segment given by three different corners, the middle one first: its ends are the outer two.
-  expect_intersects(true, {Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(4, 4, 4)}, single_point({3, 3, 3}));
-}
-
-TEST(Intersects, DegenerateAgainstTriangle) {
-  expect_intersects(true, kUnit, segment({1, 1, -1}, {1, 1, 1}));           // through the face
-  expect_intersects(true, kUnit, segment({1, 1, 0}, {1, 1, 1}));            // end on the face
-  expect_intersects(true, kUnit, segment({0, 0, -1}, {0, 0, 1}));           // through a corner
-  expect_intersects(true, kUnit, segment({2, 2, -1}, {2, 2, 1}));           // through an edge
-  expect_intersects(false, kUnit, segment({2, up(2), -1}, {2, up(2), 1}));  // just past the edge
-  expect_intersects(false, kUnit, segment({1, 1, kTiny}, {1, 1, 1}));       // just above the face
-  expect_intersects(true, kUnit, segment({1, 1, 0}, {2, 1, 0}));            // coplanar, inside
-  expect_intersects(true, kUnit, segment({-1, 1, 0}, {9, 1, 0}));           // coplanar, across
-  expect_intersects(true, kUnit, segment({-3, 0, 0}, {9, 0, 0}));      // coplanar, along an edge
-  expect_intersects(true, kUnit, segment({0, 8, 0}, {0, 4, 0}));       // coplanar, to a corner
-  expect_intersects(false, kUnit, segment({0, 8, 0}, {0, up(4), 0}));  // one ulp before it
-  expect_intersects(false, kUnit, segment({5, 0, 0}, {0, 5, 0}));      // coplanar, beside
-  expect_intersects(true, kUnit, single_point({1, 1, 0}));
-  expect_intersects(true, kUnit, single_point({4, 0, 0}));
-  expect_intersects(true, kUnit, single_point({2, 2, 0}));
-  expect_intersects(false, kUnit, single_point({2, up(2), 0}));
-  expect_intersects(false, kUnit, single_point({1, 1, -kTiny}));
 }
 
 TEST(Intersects, CoordinatesAtTheEndsOfTheDoubles) {
@@ -317,11 +244,6 @@ void check_many_pairs(const rc::Gen<double>& coordinate) {
   }
 }
 
-RC_GTEST_PROP(IntersectsProperty, AsTheReferenceOnTheIntegerGrid, ()) {
-  check_many_pairs(
-      rc::gen::map(rc::gen::inRange(-2, 3), [](int x) { return static_cast<double>(x); }));
-}
-
 RC_GTEST_PROP(IntersectsProperty, AsTheReferenceAnUlpOffTheGrid, ()) {
   check_many_pairs(nearly_grid_coordinate());
 }
@@ -335,28 +257,6 @@ TEST(Exact, CountsDegenerateTriangles) {
   const Scene scene = reference::scene_of(
       {{kUnit, single_point({1, 1, 1})}, {}, {segment({0, 0, 0}, {1, 0, 0}), kUnit}});
   EXPECT_EQ(degenerate_triangles(scene), 2u);
-}
-
-TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
-  std::mt19937 random(11);
-  std::vector<Triangle> triangles(60);
-  for (Triangle& t : triangles)
-    for (Vec3& p : t) p = Vec3(random() % 9, random() % 9, random() % 9);
-  std::vector<std::vector<Triangle>> objects;  // of one triangle, so that none are neighbours
-  for (const Triangle& t : triangles) objects.push_back({t});
-  const Scene scene = reference::scene_of(objects);
-  std::vector<TrianglePair> candidates(20'000);  // many blocks, in no order, with repetitions
-  for (TrianglePair& pair : candidates) {
-    pair.a = random() % 60;
-    pair.b = (pair.a + 1 + random() % 59) % 60;
-  }
-  std::vector<TrianglePair> expected;
-  for (const TrianglePair& pair : candidates)
-    if (reference::intersects(triangles[pair.a], triangles[pair.b])) expected.push_back(pair);
-  ASSERT_GT(expected.size(), 1000u);
-  ASSERT_LT(expected.size(), candidates.size() - 1000);
-  for (const unsigned threads : {0u, 1u, 2u, 7u})
-    EXPECT_EQ(decide(scene, candidates, {.threads = threads}).pairs, expected) << threads;
 }
 
 TEST(Exact, RefusesCandidatesOutOfRange) {
@@ -396,22 +296,6 @@ void expect_join_as_brute_force(const Scene& scene) {
   EXPECT_EQ(result.pairs, expected);
 }
 
-TEST(BoxJoin, FindsNothingWhereThereIsNothingToJoin) {
-  expect_join_as_brute_force(Scene{});
-  expect_join_as_brute_force(reference::scene_of({{}, {}, {}}));
-  expect_join_as_brute_force(reference::scene_of({{}, {kUnit, kUnit}, {}}));
-}
-
-TEST(BoxJoin, CountsFlatPointAndTouchingBoxes) {
-  const Triangle flat = {Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(4, 0, 4)};
-  const Scene scene = reference::scene_of(
-      {{kUnit, single_point({4, 0, 0})}, {}, {flat, single_point({4, 0, 0}), kUnit}});
-  const ExactResult result = all_colliding_pairs(scene);
-  EXPECT_EQ(result.box_pairs, 6u);
-  EXPECT_EQ(result.pairs.size(), 6u);
-  expect_join_as_brute_force(scene);
-}
-
 // Overlapping pairs are decided in portions of 2^18.
 TEST(BoxJoin, KeepsEveryPortion) {
   const Scene scene = reference::scene_of(
@@ -424,16 +308,6 @@ TEST(BoxJoin, KeepsEveryPortion) {
       scene, [&](const TrianglePair& pair, bool) { ASSERT_EQ(result.pairs[i++], pair); });
   EXPECT_GE(result.join_ms, 0);
   EXPECT_GT(result.predicates_ms, 0);
-}
-
-RC_GTEST_PROP(BoxJoinProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
-  const auto sizes = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 30));
-  const auto few =
-      std::vector<int>(sizes.begin(), sizes.begin() + std::min<std::size_t>(sizes.size(), 5));
-  const int extent = *rc::gen::inRange(1, 8);
-  const auto seed = *rc::gen::arbitrary<unsigned>();
-  expect_join_as_brute_force(reference::scene_of(grid_objects(few, extent, 3, seed)));
-  RC_ASSERT(!::testing::Test::HasFailure());
 }
 
 // Beyond the cutoff the join divides space; with every coordinate repeated hundreds of times it

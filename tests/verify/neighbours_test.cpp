@@ -55,44 +55,6 @@ TEST(Neighbours, OfOneSharedVertex) {
   expect_beyond(true, kUnit, {kO, Vec3(2, -1, 0), Vec3(-1, 2, 0)});  // around it
 }
 
-TEST(Neighbours, OfASharedEdge) {
-  expect_beyond(false, kUnit, {kO, kX, Vec3(0, -4, 0)});  // coplanar, the other side
-  expect_beyond(true, kUnit, {kO, kX, Vec3(9, 1, 0)});    // coplanar, this side
-  expect_beyond(false, kUnit, {kO, kX, Vec3(0, 4, std::nextafter(0.0, 1.0))});  // nearly folded
-  expect_beyond(false, kUnit, {kO, kX, Vec3(0, 4, 1)});
-  expect_beyond(false, kUnit, {kO, kX, Vec3(2, 0, 0)});  // degenerate, along the edge
-  expect_beyond(false, kUnit, {kO, kX, Vec3(9, 0, 0)});  // and beyond it, outside
-  expect_beyond(false, kUnit, {kO, kX, kX});
-}
-
-TEST(Neighbours, OfThreeSharedVertices) {
-  expect_beyond(true, kUnit, kUnit);
-  const Triangle flat = {kO, kX, Vec3(1, 0, 0)};
-  expect_beyond(false, flat, flat);  // the segment is an edge of both
-}
-
-TEST(Neighbours, DegenerateOnes) {
-  const Triangle point = {kO, kO, kO};
-  expect_beyond(false, kUnit, point);
-  expect_beyond(false, point, point);
-  expect_beyond(false, kUnit, {kO, kO, Vec3(1, 1, 1)});
-  expect_beyond(true, kUnit, {kO, kO, Vec3(1, 1, 0)});     // a segment into the face
-  expect_beyond(false, kUnit, {kO, kO, Vec3(-1, -1, 0)});  // out of it
-  // (v, a, b) with v inside ab: the opposite edge passes through the shared vertex.
-  expect_beyond(false, kUnit, {kO, Vec3(1, 1, 1), Vec3(-1, -1, -1)});
-  expect_beyond(true, kUnit, {kO, Vec3(1, 1, 0), Vec3(-1, -1, 0)});
-  expect_beyond(false, kUnit, {kO, Vec3(-2, 0, 0), Vec3(-1, 0, 0)});
-  const Triangle through = {kO, Vec3(1, 1, 1), Vec3(-2, -2, -2)};
-  expect_beyond(false, through, {kO, Vec3(1, 0, 0), Vec3(-1, 0, 0)});  // crossing in v
-  expect_beyond(true, through, {kO, Vec3(3, 3, 3), Vec3(3, 3, 3)});
-  expect_beyond(true, through, {kO, Vec3(-3, -3, -3), Vec3(0, 0, 0)});
-  // Segments with two shared vertices.
-  const Triangle along = {kO, kX, Vec3(6, 0, 0)};
-  expect_beyond(true, along, {kO, kX, Vec3(5, 0, 0)});    // both go on beyond kX
-  expect_beyond(false, along, {kO, kX, Vec3(-1, 0, 0)});  // at different ends
-  expect_beyond(false, along, {kO, kX, Vec3(1, 0, 0)});
-}
-
 TEST(Neighbours, NegativeZeroIsZero) {
   expect_beyond(false, kUnit, {Vec3(-0.0, 0.0, -0.0), Vec3(-1, 0, 1), Vec3(0, -1, 1)});
 }

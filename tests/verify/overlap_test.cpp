@@ -36,30 +36,6 @@ Overlap answer(const Scene& scene) {
                              {doubted_surface_of(scene, 0), doubted_surface_of(scene, 1)});
 }
 
-TEST(Overlap, BoxesSideBySideTouch) {
-  Parts parts;
-  parts.add_box("a", {0, 0, 0}, {1, 1, 1});
-  parts.add_box("b", {1, 0.25, 0}, {2, 1.25, 1});
-  EXPECT_EQ(answer(parts.scene), Overlap::no);
-}
-
-TEST(Overlap, APegThatFillsAHoleTouchesWithoutADividingPlane) {
-  Parts parts;
-  parts.add_ring("plate", {0, 0, 0}, {4, 4, 1}, {1, 1, 0}, {3, 3, 1});
-  parts.add_box("peg", {1, 1, -1}, {3, 3, 2});
-  EXPECT_FALSE(plane_divides(parts.scene, {0, 1}, case_of(parts.scene).contacts));
-  EXPECT_EQ(answer(parts.scene), Overlap::no);
-}
-
-TEST(Overlap, ABoxThatFillsAHollowTouches) {
-  Parts parts;
-  parts.box({0, 0, 0}, {3, 3, 3});
-  parts.box({1, 1, 1}, {2, 2, 2}, true);
-  parts.end("shell");
-  parts.add_box("filling", {1, 1, 1}, {2, 2, 2});
-  EXPECT_EQ(answer(parts.scene), Overlap::no);
-}
-
 // Each of these has only kinds of contact that boxes side by side have, too: a rule by kinds says
 // that they touch, which is what the proof must not say.
 TEST(Overlap, IsFoundWhereNoTrianglesCross) {
@@ -131,32 +107,6 @@ TEST(Overlap, NoPlaneDividesASheetFromTheBoxAroundIt) {
     ASSERT_FALSE(of.contacts.empty());
     EXPECT_FALSE(plane_divides(parts.scene, {0, 1}, of.contacts));
   }
-}
-
-// One face of two shells that overlap is turned over: a box inside both is inside by the winding
-// number and outside by parity. It also touches a wall with another box.
-TEST(Overlap, AFaceTurnedOverHidesNoBoxInTwoShells) {
-  for (const bool turned : {false, true}) {
-    Parts parts;
-    parts.box({0, 0, 0}, {4, 4, 4});
-    parts.box({1, 1, 1}, {5, 5, 5});
-    if (turned) std::swap(parts.scene.triangles[0][0], parts.scene.triangles[0][1]);
-    parts.end("shells");
-    parts.box({2, 2, 2}, {3, 3, 3});
-    parts.box({5, 2, 2}, {6, 3, 3});
-    parts.end("boxes");
-    EXPECT_EQ(answer(parts.scene), turned ? Overlap::unknown : Overlap::yes);
-  }
-}
-
-TEST(Overlap, OverlappingShellsHideNothing) {
-  // The first object's boxes overlap; by parity its inside ends where they do.
-  Parts parts;
-  parts.box({0, 0, 0}, {3, 3, 3});
-  parts.box({0, 0, 0}, {3, 3, 3});
-  parts.end("twice");
-  parts.add_box("b", {1, 0, 0}, {2, 3, 3});
-  EXPECT_EQ(answer(parts.scene), Overlap::unknown);
 }
 
 // Solids of unit cubes: they overlap iff they have a cube in common.

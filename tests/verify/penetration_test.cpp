@@ -93,29 +93,6 @@ Penetration bounds_of(const Scene& scene, double depth, const Vec3& start) {
   return found;
 }
 
-TEST(Penetration, OfBoxesIsKnown) {
-  RandomNumbers random(test_seed(3));
-  for (int k = 0; k < trials(40); ++k) {
-    std::array<std::array<Vec3, 2>, 2> boxes;
-    for (auto& [lo, hi] : boxes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        lo[axis] = random.between(0, 1);
-        hi[axis] = lo[axis] + random.between(1, 3);
-      }
-    }
-    Parts parts;
-    parts.add_box("a", boxes[0][0], boxes[0][1]);
-    parts.add_box("b", boxes[1][0], boxes[1][1]);
-    double depth = 1e9;
-    for (int axis = 0; axis < 3; ++axis) {
-      depth = std::min(
-          {depth, boxes[0][1][axis] - boxes[1][0][axis], boxes[1][1][axis] - boxes[0][0][axis]});
-    }
-    const Penetration found = bounds_of(parts.scene, depth, 0.5 * (boxes[0][0] + boxes[1][1]));
-    EXPECT_LT(found.hi, found.lo * (1 + 1e-8));
-  }
-}
-
 TEST(Penetration, OfConvexObjectsIsThatOfTheHullOfDifferences) {
   // FARCULL_PAIRS=10000 for the campaign.
   const char* const wish = std::getenv("FARCULL_PAIRS");
@@ -223,107 +200,6 @@ TEST(Penetration, OfSolidsOfCubesIsKnown) {
               above, ratios[count / 2], ratios.back());
   EXPECT_GE(above, 0.95 * count);
   EXPECT_LE(ratios[count / 2], 1.5);
-}
-
-/// The wall between two prisms of n sides.
-void add_washer(Parts& parts, double inner, double outer, int n) {
-  const std::uint32_t first = parts.next();
-  for (const double z : {0.0, 1.0}) {
-    for (const double r : {outer, inner}) {
-      for (int i = 0; i < n; ++i)
-        parts.vertex(r * std::cos(2 * M_PI * i / n), r * std::sin(2 * M_PI * i / n), z);
-    }
-  }
-  const auto m = static_cast<std::uint32_t>(n);
-  for (std::uint32_t i = 0; i < m; ++i) {
-    const std::uint32_t j = (i + 1) % m;
-    parts.quad(first, {j, i, m + i, m + j});
-    parts.quad(first, {2 * m + i, 2 * m + j, 3 * m + j, 3 * m + i});
-    parts.quad(first, {i, j, 2 * m + j, 2 * m + i});
-    parts.quad(first, {m + j, m + i, 3 * m + i, 3 * m + j});
-  }
-  parts.end("washer");
-}
-
-/// A prism of n sides, from z = -1 to z = 2, moved along x.
-void add_pin(Parts& parts, double radius, int n, double x) {
-  const std::uint32_t first = parts.next();
-  const auto m = static_cast<std::uint32_t>(n);
-  for (const double z : {-1.0, 2.0}) {
-    for (int i = 0; i < n; ++i)
-      parts.vertex(x + radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), z);
-  }
-  for (std::uint32_t i = 0; i < m; ++i) {
-    parts.quad(first, {i, (i + 1) % m, m + (i + 1) % m, m + i});
-    if (i < 2) continue;
-    parts.triangle(first, first + i, first + i - 1);
-    parts.triangle(first + m, first + m + i - 1, first + m + i);
-  }
-  parts.end("pin");
-}
-
-// A plate or a washer, 1 thick, with a hole, and a peg from 1 below to 1 above it. A press fit has
-// to leave along z, by 2, however little it is too wide. A loose peg goes back.
-TEST(Penetration, OfPegsInHolesIsKnown) {
-  RandomNumbers random(test_seed(12));
-  for (const bool turned : {false, true}) {
-    const auto expect_depth = [&](Parts parts, double depth, Vec3 start, const char* what) {
-      parts.vertex(start.x(), start.y(), start.z());
-      if (turned) turn(parts.scene, random);
-      const Penetration found = bounds_of(parts.scene, depth, parts.scene.vertices.back());
-      EXPECT_LT(found.hi, 1.1 * found.lo) << what;
-    };
-    for (const double wide : {0.2, 0.005, 1e-4}) {
-      Parts plate, washer;
-      plate.add_ring("plate", {0, 0, 0}, {4, 4, 1}, {1, 1, 0}, {3, 3, 1});
-      plate.add_box("peg", Vec3(1 - wide, 1 - wide, -1), Vec3(3 + wide, 3 + wide, 2));
-      expect_depth(plate, 2, {1 - wide / 2, 2, 0.5}, "press fit");
-      add_washer(washer, 1, 2, 16);
-      add_pin(washer, 1 + wide, 16, 0);
-      expect_depth(washer, 2, {(1 + wide / 2) * 0.99, 0.1, 0.5}, "press fit in a washer");
-    }
-    Parts off, turned_pin;
-    off.add_ring("plate", {0, 0, 0}, {4, 4, 1}, {1, 1, 0}, {3, 3, 1});
-    off.add_box("peg", {0.99, 1.2, -1}, {2.5, 2.8, 2});
-    expect_depth(off, 0.01, {0.995, 2, 0.5}, "one wall");
-    // The corner at (0.6 + 0.45, 0) is beyond the corner of the hole at (1, 0).
-    add_washer(turned_pin, 1, 2, 4);
-    add_pin(turned_pin, 0.6, 4, 0.45);
-    expect_depth(turned_pin, 0.05, {1.02, 0, 0.5}, "a corner in a corner");
-  }
-}
-
-// A dent does not make the bound of nearly convex objects wrong: it is less by the dent.
-TEST(Penetration, OfDentedBoxesIsBoundedByTheDent) {
-  for (const auto& [size, dent] : {std::pair(1.0, 1e-15),
-                                   {1.0, 1e-9},
-                                   {1.0, 1e-3},
-                                   {1.0, 0.3},
-                                   {0x1p255, 0.3},
-                                   {0x1p256, 0.3}}) {
-    Parts parts;
-    const std::uint32_t first = parts.next();
-    for (int k = 0; k < 8; ++k) parts.vertex(k & 1, (k & 2) / 2, (k & 4) / 4);
-    parts.vertex(0.5, 0.5, 1 - dent);
-    for (const auto& q : {std::array{0u, 2u, 3u, 1u},
-                          {0u, 1u, 5u, 4u},
-                          {2u, 6u, 7u, 3u},
-                          {0u, 4u, 6u, 2u},
-                          {1u, 3u, 7u, 5u}})
-      parts.quad(first, q);
-    for (const auto& [p, q] : {std::pair(4u, 5u), {5u, 7u}, {7u, 6u}, {6u, 4u}})
-      parts.triangle(first + p, first + q, first + 8);
-    parts.end("dented");
-    parts.add_box("b", {0.4, 0.4, 0.5}, {0.6, 0.6, 2});
-    for (Vec3& p : parts.scene.vertices) p *= size;
-    const Vec3 middle = Vec3::Constant(0.5 * size);
-    // The box leaves upwards; the surface is highest at the edge of its lower face. Its twin, the
-    // bound of the convex hull alone, is 0.5, which is too much.
-    const Penetration found = bounds_of(parts.scene, size * (0.5 - 0.8 * dent), middle);
-    if (size == 1) {
-      EXPECT_LT(found.hi, 1.05 * found.lo) << dent;
-    }
-  }
 }
 
 }  // namespace

@@ -93,17 +93,6 @@ TEST(Wide, RoundsAsRationalNumbersOrSaysThatItDoesNotKnow) {
   EXPECT_GT(twin.wrong, 500);
 }
 
-TEST(Wide, NumbersOfFewDigitsHaveNoError) {
-  RandomDraws random(612);
-  for (int n = 0; n < 1000; ++n) {
-    const auto draw = [&] { return wide::Number<wide::Bounds>(random.whole(-1000, 1000)); };
-    const auto a = draw(), b = draw(), c = draw(), d = draw();
-    const auto x = a * b * c - b * c * d;
-    EXPECT_EQ(x.error, 0);
-    EXPECT_EQ(x.hi, b.hi * c.hi * (a.hi - d.hi));
-  }
-}
-
 TEST(Wide, AtTheEndsOfItsRange) {
   RandomDraws random(613);
   Score score;

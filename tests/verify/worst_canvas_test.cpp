@@ -12,8 +12,6 @@
 namespace farcull {
 namespace {
 
-using lab::Random;
-
 lab::MakeCanvas canvases(const WorstCanvasOptions& options = {}) {
   return [options](const Fattener& fattener) {
     return std::make_unique<WorstCanvas>(fattener.solid, options);

@@ -24,16 +24,6 @@ TEST(FloatingPoint, ArithmeticShowsEveryEnvironment) {
   }
 }
 
-TEST(FloatingPoint, TextSaysWhatIsUnusual) {
-  EXPECT_EQ(to_string(kProved), "rounds to nearest, keeps subnormals");
-  EXPECT_EQ(to_string(FloatingPoint{Rounding::downward, true, false}),
-            "rounds downward, flushes subnormal results to zero");
-  EXPECT_EQ(to_string(FloatingPoint{Rounding::toward_zero, false, true}),
-            "rounds toward zero, flushes subnormal operands to zero");
-  EXPECT_EQ(to_string(FloatingPoint{Rounding::unknown, true, true}),
-            "rounds in no known way, flushes subnormal results and operands to zero");
-}
-
 TEST(FloatingPoint, GuardSetsAndRestoresAlsoWhereSomethingIsThrown) {
   for (const Environment& environment : environments()) {
     FloatingPoint inside, inner, after_inner, after, thrown_through;
@@ -85,24 +75,6 @@ TEST(FloatingPoint, TheCallersIsWhatTheOutermostGuardFound) {
   for (const FloatingPoint& found : {without, within, nested, after})
     EXPECT_EQ(found, downward.found);
   EXPECT_EQ(callers_floating_point(), kProved);
-}
-
-TEST(FloatingPoint, RequiringItThrowsElsewhere) {
-  EXPECT_NO_THROW(require_proved("here"));
-  for (const Environment& environment : environments()) {
-    std::string where, reason;
-    {
-      const Disturbed disturbed(environment);
-      try {
-        require_proved("a driver");
-      } catch (const Error& error) {
-        where = error.where;
-        reason = error.reason;
-      }
-    }
-    EXPECT_EQ(where, "a driver") << environment.name;
-    EXPECT_TRUE(has_text(reason, to_string(environment.found)));
-  }
 }
 
 // The twin is a thread that nobody guards: it starts with the environment of the one that made it.

@@ -37,18 +37,18 @@ Scene shuffled(Scene scene, std::uint64_t seed) {
 // Pairs that count whose boxes overlap, by comparing all with all.
 std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool neighbours) {
   const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+    boxes.push_back(grown_box(scene, t, clearance));
   std::vector<TrianglePair> out;
-  for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (!overlap(boxes[a], boxes[b])) continue;
       if (owner[a] == owner[b]) {
         if (!scene.objects[owner[a]].self) continue;
-        const auto& other = scene.triangles[b];
-        const bool shared = std::ranges::any_of(scene.triangles[a], [&](std::uint32_t v) {
-          return std::ranges::find(other, v) != other.end();
-        });
-        if (shared && !neighbours) continue;
+        if (!neighbours && share_index(scene.triangles[a], scene.triangles[b])) continue;
       }
-      if (boxes_meet(scene, {a, b}, half_of(clearance))) out.push_back({a, b});
+      out.push_back({a, b});
     }
   }
   return out;
@@ -132,41 +132,6 @@ TEST(Blocks, HoldEachTriangleOnceInItsBox) {
   }
   EXPECT_GT(gathered, 20u);
   EXPECT_GT(outside, 1000u);
-}
-
-// Objects whose blocks are scattered, by the boxes of all blocks.
-std::vector<std::uint32_t> scattered_objects(const Scene& scene) {
-  const TriangleBlocks blocks = make_blocks(scene, 0, 2);
-  const auto length = [](const Box& box) { return (box.hi - box.lo).sum(); };
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    double sum = 0;
-    for (std::uint32_t k = blocks.first[o]; k < blocks.first[o + 1]; ++k)
-      sum += length(blocks.boxes[k]);
-    if (sum > kScattered * std::sqrt(blocks.count(o)) * length(blocks.objects[o])) out.push_back(o);
-  }
-  return out;
-}
-
-TEST(Blocks, AreGatheredOnlyWhereTheFileScattersThem) {
-  std::size_t gathered = 0, others = 0;
-  for (const char* name :
-       {"crumpled:30000", "crumpled:60000", "crumpled:120000", "spheres:40000"}) {
-    const Scene scene = make_builtin_scene(name);
-    for (const Scene& either : {scene, shuffled(scene, 1)}) {
-      const std::vector<std::uint32_t> expected = scattered_objects(either);
-      TriangleBlocks blocks = make_blocks(either, 0, 2);
-      gather_scattered(either, 0, std::vector<Box>(blocks.objects), 2, blocks);
-      std::vector<std::uint32_t> found;
-      for (std::uint32_t o = 0; o < either.objects.size(); ++o)
-        if (blocks.is_gathered(o)) found.push_back(o);
-      EXPECT_EQ(found, expected) << name;
-      gathered += found.size();
-      others += scene.objects.size() - found.size();
-    }
-  }
-  EXPECT_GT(gathered, 4u);
-  EXPECT_GT(others, 4u);
 }
 
 TEST(Blocks, ThatOverlapAreFoundInTheTrees) {

@@ -164,6 +164,9 @@ TEST(FrameMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
       settings.neighbours = random.below(3) != 0;
       settings.full = random.below(6) == 0;
     }
+    if (random.below(4) == 0)  // all of these scenes have two objects
+      settings.ignored =
+          settings.ignored.empty() ? std::vector<ObjectPair>{{0, 1}} : std::vector<ObjectPair>{};
     film.show(scene, settings);
     if (testing::Test::HasFatalFailure()) return;
   }

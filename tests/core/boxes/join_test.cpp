@@ -40,13 +40,6 @@ Indices all(std::size_t count) {
   return items;
 }
 
-TEST(SweepJoin, NothingToJoin) {
-  EXPECT_TRUE(box_join({}, {}, {}).empty());
-  const std::vector<Box> boxes(3, Box{Vec3::Zero(), Vec3::Zero()});
-  EXPECT_TRUE(box_join(boxes, Indices{0, 1, 2}, Indices{1}).empty());
-  EXPECT_TRUE(box_join(boxes, Indices{4, 4, 4}, all(3)).empty());
-}
-
 TEST(SweepJoin, EqualPointsAllMeet) {
   const std::vector<Box> boxes(20, Box{Vec3(1, 2, 3), Vec3(1, 2, 3)});
   expect_as_brute_force(boxes, all(20), all(20));

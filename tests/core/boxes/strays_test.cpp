@@ -1,7 +1,5 @@
 // The method boxes takes no more work than `exact`, a constant factor apart, wherever triangles lie
-// and however large they are. Work is counted, so that a loaded machine changes nothing;
-// farcull_strays measures time and memory.
-#include "tests/lab/strays.h"
+// and however large they are. Work is counted, so that a loaded machine changes nothing.
 #include "core/boxes/block.h"
 #include "core/boxes/join.h"
 #include "core/proximity/near_pairs.h"
@@ -12,12 +10,110 @@
 namespace farcull {
 namespace {
 
-using lab::random_strays;
-using lab::stray_scene;
-using lab::Strays;
-using lab::with_self;
+using lab::Random;
 
 constexpr int kTriangles = 8000;  // of an object
+
+/// How a scene of strays is made.
+struct Strays {
+  int outliers = 0;      // 0 to 10: triangles, or corners of triangles
+  double decades = 0;    // 0 to 300: of the sizes of the others
+  bool spread = false;   // their places spread as their sizes do
+  bool surface = false;  // instead of triangles anywhere in a cube: two sheets, in any order
+  bool self = false;     // one object with itself, instead of two
+  double exponent = -1;  // of the size of outliers, to base 10; negative: each one of 0 to 300
+};
+
+Strays random_strays(std::uint64_t seed) {
+  Random random(seed);
+  Strays out;
+  out.outliers = random.below(11);
+  out.surface = random.below(3) == 0;
+  const double most[] = {0, 0, 8, 30, 300};
+  out.decades = out.surface ? 0 : random.between(0, most[random.below(5)]);
+  out.spread = random.below(2) == 0;
+  out.self = random.below(2) == 0;
+  return out;
+}
+
+Scene stray_scene(std::uint64_t seed, int triangles, const Strays& strays) {
+  Random random(seed);
+  const auto direction = [&] {
+    return Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  };
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(strays.self ? 1 : 2);
+  const int side = std::max(1, static_cast<int>(std::sqrt(0.5 * triangles)));
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    auto& object = objects[o];
+    for (int t = 0; t < triangles; ++t) {
+      if (strays.surface) {
+        const double x = (t / 2) % side, y = (t / 2) / side;
+        const auto at = [&](double i, double j) {
+          return Vec3(i, j, 3 * std::sin(0.21 * i + static_cast<double>(o)) * std::cos(0.17 * j));
+        };
+        object.push_back(t % 2 ? std::array<Vec3, 3>{at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)}
+                               : std::array<Vec3, 3>{at(x, y), at(x + 1, y), at(x, y + 1)});
+        continue;
+      }
+      // The largest is a tenth of the cube, so that most boxes meet few others.
+      const double size = std::pow(10, random.between(-strays.decades, 0) - 1);
+      const double scale = strays.spread ? 10 * size * std::pow(10, 0.5 * strays.decades) : 1;
+      const double part = strays.spread ? 0.05 * scale : size;
+      const Vec3 place = scale * direction();
+      object.push_back(
+          {place + part * direction(), place + part * direction(), place + part * direction()});
+    }
+    if (strays.surface) {
+      for (std::size_t k = object.size(); k > 1; --k)
+        std::swap(object[k - 1],
+                  object[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+    }
+  }
+  for (int k = 0; k < strays.outliers; ++k) {
+    auto& object =
+        objects[static_cast<std::size_t>(random.below(static_cast<int>(objects.size())))];
+    auto& one = object[static_cast<std::size_t>(random.below(static_cast<int>(object.size())))];
+    const double far =
+        std::pow(10, strays.exponent >= 0 ? strays.exponent : random.between(0, 300));
+    switch (random.below(3)) {
+      case 0:  // huge
+        for (Vec3& corner : one) corner = far * direction();
+        break;
+      case 1:  // a bad corner
+        one[0] = far * direction();
+        break;
+      default: {  // as large as before, far away
+        const Vec3 by = far * direction();
+        for (Vec3& corner : one) corner += by;
+      }
+    }
+  }
+  Scene scene = lab::scene_of(objects);
+  scene.objects[0].self = strays.self;
+  return scene;
+}
+
+/// What a run of boxes compared and listed.
+struct BoxesWork {
+  double tests = 0;  // boxes compared
+  double lists = 0;  // pairs in its longest list
+};
+
+BoxesWork work_of(const BoxesResult& result) {
+  const Stage& stage = result.stage;
+  const auto n = static_cast<double>(stage.n), m = static_cast<double>(stage.m);
+  const bool blocks = stage.kind == StageKind::blocks;
+  return {.tests = blocks ? 256 * n : 16 * m,
+          .lists = std::max(blocks ? n : 0, static_cast<double>(result.candidates.size()))};
+}
+
+/// What it may take. `exact` looks at each triangle and at each pair of boxes that overlap. A
+/// triangle costs it about as much time as 1,024 comparisons of boxes cost blocks, a pair as much
+/// as 64: three times that, and a constant for small scenes.
+BoxesWork most_work(std::size_t triangles, std::size_t box_pairs) {
+  const auto n = static_cast<double>(triangles), k = static_cast<double>(box_pairs);
+  return {.tests = 3 * (1024 * n + 64 * k) + 0x1p20, .lists = 3 * (24 * n + k) + 1e4};
+}
 
 BoxesResult found(const Scene& scene, const BoxesSettings& settings, unsigned threads) {
   return find_boxes(scene, plan_boxes(scene, settings, threads));
@@ -31,8 +127,8 @@ std::string wrong(const Scene& scene, const BoxesResult& result) {
   if (lab::missed(truth, result.candidates) > 0) return "missed a pair";
   for (const TrianglePair& pair : result.candidates)
     if (!boxes_meet(scene, pair, 0)) return "a candidate whose boxes are apart";
-  const lab::BoxesWork work = lab::work_of(result);
-  const lab::BoxesWork most = lab::most_work(scene.triangles.size(), exact.box_pairs);
+  const BoxesWork work = work_of(result);
+  const BoxesWork most = most_work(scene.triangles.size(), exact.box_pairs);
   if (work.tests > most.tests) return "too many tests: " + std::to_string(work.tests / most.tests);
   if (work.lists > most.lists) return "too long a list: " + std::to_string(work.lists / most.lists);
   return "";
@@ -64,43 +160,6 @@ TEST(StraysTwin, BlocksOfScatteredTrianglesTakeTooMuchWork) {
               pairs);
   result.stage.n = pairs.size();
   EXPECT_TRUE(wrong(scene, result).starts_with("too many tests"));
-}
-
-// The scenes in which a stray vertex took half a minute, smaller.
-TEST(Strays, OfAScanWithABadVertexOrTriangle) {
-  for (const double far : {1e4, 3e4, 1e30, 1e300}) {
-    for (const bool self : {true, false}) {
-      Scene scene = make_builtin_scene("two-spheres");
-      if (self) scene = with_self(std::move(scene));
-      for (const Object& object : scene.objects)
-        scene.vertices[scene.triangles[object.first_triangle + 77][1]] = Vec3(far, 1, -0.5 * far);
-      const BoxesResult result = found(scene, {}, 2);
-      EXPECT_EQ(wrong(scene, result), "") << far;
-      EXPECT_EQ(result.stage.reason, Reason::join_uneven);
-      EXPECT_EQ(planned_stage(plan_boxes(scene, {})).reason, Reason::join_uneven);
-    }
-  }
-}
-
-// Neighbours and ignored objects are left out of the tree as well, and a clearance finds more.
-TEST(Strays, KeepTheQuestion) {
-  Scene scene = with_self(make_builtin_scene("two-spheres"));
-  scene.vertices[scene.triangles[5][0]] = Vec3(1e9, 0, 0);
-  const std::size_t all = found(scene, {}, 2).candidates.size();
-  BoxesSettings settings{.neighbours = false};
-  const BoxesResult apart = found(scene, settings, 2);
-  EXPECT_LT(apart.candidates.size(), all);
-  for (const TrianglePair& pair : apart.candidates)
-    ASSERT_FALSE(share_index(scene.triangles[pair.a], scene.triangles[pair.b]));
-  settings = {.ignored = {{0, 1}}};
-  const std::vector<std::uint32_t> owner = owners(scene);
-  for (const TrianglePair& pair : found(scene, settings, 2).candidates)
-    ASSERT_EQ(owner[pair.a], owner[pair.b]);
-  settings = {.clearance = 0.01};
-  const BoxesResult wide = found(scene, settings, 2);
-  EXPECT_EQ(wide.stage.reason, Reason::join_uneven);
-  EXPECT_GT(wide.candidates.size(), all);
-  EXPECT_EQ(lab::missed(lab::truth_of(scene, 0.01), wide.candidates), 0u);
 }
 
 // A vertex that flies away and comes back, with what is kept of each frame.
@@ -143,25 +202,6 @@ TEST(Strays, StandApartInATree) {
   EXPECT_LE(pairs_and_blocks(needles).second, 3 * even);
   const Scene spread = stray_scene(1, kTriangles, {.decades = 300, .spread = true});
   EXPECT_LE(pairs_and_blocks(spread).second, 4 * even);
-}
-
-// The trees of streams and distances do not follow the extent either.
-TEST(Strays, SpoilNoTree) {
-  for (const double far : {1e4, 1e30}) {
-    Scene scene = make_builtin_scene("two-spheres"), other = scene;
-    for (const Object& object : scene.objects)
-      for (const std::uint32_t v : scene.triangles[object.first_triangle + 77])
-        scene.vertices[v] *= far;
-    const auto [count, blocks] = pairs_and_blocks(other);
-    const auto [more, more_blocks] = pairs_and_blocks(scene);
-    // Each huge box meets all blocks, of which there are a fifteenth of the triangles at most.
-    EXPECT_LE(more_blocks, 3 * blocks + more) << far;
-    const ProximityTrees trees(scene, 2), simple(other, 2);
-    const std::vector<ObjectPair> question = {{0, 1}};
-    trees.near_pairs(question, 1e300, {});
-    simple.near_pairs(question, 1e300, {});
-    EXPECT_LE(trees.counts().box_pairs, 3 * simple.counts().box_pairs + scene.triangles.size());
-  }
 }
 
 }  // namespace

@@ -206,16 +206,6 @@ TEST(Fatten, IsTheConcatenationOfItsItems) {
   }
 }
 
-TEST(Fatten, OfNothingHasOneFirst) {
-  const std::vector<Box> region{{Vec3::Constant(-1), Vec3::Constant(1)}};
-  const Window window = *fit_window(parse_view("z"), region, 8);
-  FattenCounts counts;
-  const Drawables drawables = fatten(Scene{}, {}, window, obb_fattener(), 0.75, counts);
-  EXPECT_EQ(drawables.first, (std::vector<std::uint32_t>{0}));
-  EXPECT_EQ(drawables.items(), 0u);
-  EXPECT_EQ(drawables.elements(), 0u);
-}
-
 TEST(RawTriangles, AreAFanOfThePatchInFloat) {
   Random random(404);
   for (int n = 0; n < 500; ++n) {

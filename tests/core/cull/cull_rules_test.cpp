@@ -1,11 +1,16 @@
-// The rules by which culling leaves out the level of objects and further rounds.
+// The rules by which culling leaves out levels, rounds and views; triangles as owners; forms of
+// CULLIDE.
 #include "core/cull/cull.h"
+
+#include "core/base/text.h"
+#include "core/boxes/join.h"
 #include "core/native/canvas.h"
 #include "core/view/regions.h"
 #include "experiments/record/stage_words.h"
 #include "offsets/offsets.h"
 #include "tests/lab/cull.h"
 #include "tests/lab/scenes.h"
+#include "verify/accounting.h"
 
 namespace farcull {
 namespace {
@@ -98,15 +103,6 @@ TEST(CullRules, ARoundFollowsOneThatCulledAnEighth) {
   EXPECT_GT(went_on, 5);
 }
 
-TEST(CullRules, FullLeavesNothingOutByThem) {
-  const Scene scene = stack(3);
-  CullSettings settings = settings_of(obb_fattener());
-  settings.full = true;
-  const CullResult result = cull_of(scene, settings);
-  const Stage* rounds = find_stage(result.stages, StageKind::further_rounds);
-  EXPECT_TRUE(rounds == nullptr || rounds->reason != Reason::little_culled);
-}
-
 // ---- Triangles as owners: S-CULLIDE with raw triangles and a strict test, and the same with
 // fattened ones, which promises.
 
@@ -119,34 +115,6 @@ CullSettings self_settings(const Drawing& drawing, bool touching) {
   settings.self = true;
   settings.touching = touching;
   return settings;
-}
-
-// A sheet of n x n squares in the plane z = 0, one object; `fold` turns its right half over, to lie
-// above the left one at that distance, tilted so that the depth order is one-sided.
-Scene sheet(int n, bool fold) {
-  std::vector<std::array<Vec3, 3>> triangles;
-  const auto at = [&](int i, int j) {
-    const double x = double(i) / n, y = double(j) / n;
-    if (!fold || x <= 0.5) return Vec3(x, y, 0);
-    return Vec3(1 - x, y, 0.5 * (x - 0.5));
-  };
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  Scene scene = lab::scene_of(std::vector<std::vector<std::array<Vec3, 3>>>{triangles});
-  scene.objects[0].self = true;
-  return scene;
-}
-
-TEST(CullSelf, AFlatSheetAndAFoldedOneAreCulledWholeByTheStrictTest) {
-  const Drawing raw = lab::raw_on_ideal();
-  for (const bool fold : {false, true}) {
-    const Trace run = lab::run_by(kQuickRule, sheet(8, fold), raw, self_settings(raw, false));
-    EXPECT_TRUE(run.result.live.empty()) << fold;
-  }
 }
 
 // Two sheets of one object at one depth touch: seen at the stored depth, not behind it.
@@ -164,24 +132,6 @@ TEST(CullSelf, TouchingContactsAreKeptOrIgnoredAsAsked) {
             (std::vector<std::uint32_t>{0, 1}));
   settings.touching = false;
   EXPECT_TRUE(lab::run_by(kQuickRule, scene, raw, settings).result.live.empty());
-}
-
-// What is in conflict on every view's canvas, by the test in use, is kept: theorem 2 with the
-// canvas's own notion of collision.
-TEST(CullSelf, ConflictsInsideObjectsAreKept) {
-  const Drawing raw = lab::raw_on_ideal();
-  for (const bool touching : {true, false}) {
-    std::size_t pairs = 0;
-    const auto check = [&] {
-      const Scene scene = lab::scene_of(*lab::small_triangles(), true);
-      const CullSettings settings = self_settings(raw, touching);
-      const lab::Pairs wanted = lab::conflicts(scene, raw, settings);
-      pairs += wanted.size();
-      for (const PassRule& rule : {kQuickRule, kPlainRule})
-        RC_ASSERT(lab::wrongly_cleared(lab::run_by(rule, scene, raw, settings), wanted) == 0);
-    };
-    lab::expect_property(821, 60, check, [&] { return pairs > 20; });
-  }
 }
 
 // The twin: the strict test loses conflicts at equal depth, and objects as owners lose all inside.
@@ -221,7 +171,9 @@ TEST(CullSelf, FattenedTrianglesAsOwnersMissNothing) {
 }
 
 TEST(CullSelf, ThePlanTakesTheWholeOfObjectsThatAreTestedAgainstThemselves) {
-  Scene scene = sheet(4, false);
+  const std::array<Vec3, 3> one = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  Scene scene = lab::scene_of(std::vector<std::vector<std::array<Vec3, 3>>>{{one, one, one}});
+  scene.objects[0].self = true;
   EXPECT_TRUE(find_regions(scene).triangles.empty());
   const Regions plan = find_regions(scene, {.self = true});
   EXPECT_EQ(plan.triangles.size(), scene.triangles.size());
@@ -231,17 +183,120 @@ TEST(CullSelf, ThePlanTakesTheWholeOfObjectsThatAreTestedAgainstThemselves) {
   EXPECT_TRUE(find_regions(scene, {.self = true}).triangles.empty());
 }
 
-TEST(CullSelf, NoLevelOfObjectsOrClustersWhereTrianglesAreOwners) {
-  const Drawing raw = lab::raw_on_ideal();
-  CullSettings settings = self_settings(raw, true);
-  settings.clusters = {.sizes = {4}, .reason = Reason::clusters_given};
-  for (const Stage& stage : lab::run_by(kQuickRule, sheet(4, true), raw, settings).result.stages) {
-    EXPECT_FALSE(has_text(name_of(stage), "objects"));
-    EXPECT_FALSE(has_text(name_of(stage), "clusters"));
-    if (name_of(stage) == "sub-object level") {
-      EXPECT_FALSE(stage.ran);
+// ---- forms: a limit of rounds, views that all have to clear, objects alone ----
+
+using namespace lab;
+using Indices = std::vector<std::uint32_t>;
+
+constexpr int kPixels = 24;
+constexpr std::uint64_t kScenes = 40;
+
+Scene scene_at(std::uint64_t seed) { return scene_of(random_small(seed, 50)); }
+
+Indices live(const Scene& scene, const Drawing& drawing, const CullSettings& settings) {
+  return cull(scene, find_regions(scene), settings, *drawing.canvas).live;
+}
+
+TEST(CullRules, ObjectsAloneNeedObjectsThatOwn) {
+  const Drawing drawing = raw_on_ideal();
+  const Scene scene = scene_of(random_small(1, 10), true);
+  CullSettings settings = cull_settings(drawing, "x", kPixels);
+  settings.self = settings.objects_alone = true;
+  EXPECT_THROW(cull(scene, find_regions(scene, {.self = true}), settings, *drawing.canvas),
+               std::logic_error);
+}
+
+// With offsets that promise, every form keeps the promise; raw triangles do not, on the same
+// canvas.
+TEST(CullRules, FarMissesNothingInAnyForm) {
+  const Drawing drawing = on_worst(obb_fattener());
+  const Drawing raw = on_worst(raw_triangles());
+  std::uint64_t missed_raw = 0;
+  std::array<int, 8> culled{};  // by FAR, in each form
+  for (std::uint64_t seed = 1; seed <= kScenes / 8; ++seed) {
+    const Scene scene = scene_at(seed);
+    for (int form = 0; form < 8; ++form) {
+      const auto missed = [&](const Drawing& of) {
+        CullSettings settings = cull_settings(of, "x,-x,z", kPixels / 2);
+        settings.rounds = form & 1;
+        settings.clear = form & 2 ? ClearRule::all : ClearRule::any;
+        settings.objects_alone = form & 4;
+        const Indices kept = live(scene, of, settings);
+        if (&of == &drawing) culled.at(form) += kept.size() < scene.triangles.size();
+        return account(scene, box_join(triangle_boxes(scene), owners(scene), kept)).false_negatives;
+      };
+      EXPECT_EQ(missed(drawing), 0u) << "seed " << seed << " form " << form;
+      missed_raw += missed(raw);
     }
   }
+  // Objects alone that all views have to clear (6 and 7) are never cleared in these scenes.
+  for (int form = 0; form < 6; ++form) EXPECT_GT(culled.at(form), 0) << "form " << form;
+  EXPECT_GT(missed_raw, 0u) << "the twin: raw triangles miss";
+}
+
+// A plan says what a run does, in every form.
+TEST(CullRules, PlansNameTheStagesOfTheFirstRound) {
+  const Drawing drawing = raw_on_ideal();
+  const Scene scene = scene_at(5);
+  for (int form = 0; form < 8; ++form) {
+    CullSettings settings = cull_settings(drawing, "x,z", kPixels);
+    settings.rounds = form & 1;
+    settings.clear = form & 2 ? ClearRule::all : ClearRule::any;
+    settings.objects_alone = form & 4;
+    settings.full = true;
+    std::vector<std::string> planned, went;
+    for (const Stage& stage : planned_stages(scene, find_regions(scene), settings))
+      if (stage.kind != StageKind::further_rounds) planned.push_back(name_of(stage));
+    for (const Stage& stage : cull(scene, find_regions(scene), settings, *drawing.canvas).stages)
+      if (stage.kind != StageKind::further_rounds && stage.round <= 1)
+        went.push_back(name_of(stage));
+    EXPECT_EQ(planned, went) << "form " << form;
+  }
+}
+
+// ---- what is left out ----
+
+const Stage* stage_named(const CullResult& result, const std::string& part) {
+  for (const Stage& stage : result.stages)
+    if (name_of(stage).find(part) != std::string::npos) return &stage;
+  return nullptr;
+}
+
+TEST(CullRules, NoLevelForAnEmptySet) {
+  // Two layers apart: the objects clear each other.
+  const auto layer = [](double z) {
+    return std::vector<std::array<Vec3, 3>>{{Vec3(0, 0, z), Vec3(1, 0, z + 1), Vec3(0, 1, z + 1)}};
+  };
+  const Drawing drawing = lab::raw_on_ideal();
+  const Scene scene =
+      lab::scene_of(std::vector<std::vector<std::array<Vec3, 3>>>{layer(0), layer(0.5)});
+  CullSettings settings = lab::cull_settings(drawing, "z,x", 16);
+  settings.clusters.sizes = {2};
+  const CullResult result = lab::run_by(kQuickRule, scene, drawing, settings).result;
+  EXPECT_TRUE(result.live.empty());
+  for (const char* level : {"cull triangles z, round 1", "view x, round 1", "further rounds"}) {
+    const Stage* stage = stage_named(result, level);
+    ASSERT_NE(stage, nullptr) << level;
+    EXPECT_FALSE(stage->ran);
+    EXPECT_TRUE(has_text(reason_of(*stage), "nothing is left"));
+  }
+}
+
+TEST(CullRules, EnoughEndsTheRunAfterAView) {
+  const Drawing drawing = lab::on_worst(obb_fattener());
+  const Scene scene = lab::scene_of(lab::random_small(5, 40));
+  CullSettings settings = lab::cull_settings(drawing, "x,y,z", 12);
+  const CullResult all = lab::run_by(kQuickRule, scene, drawing, settings).result;
+  EXPECT_EQ(stage_named(all, "further views"), nullptr);
+  settings.enough = 1000;
+  const CullResult one = lab::run_by(kQuickRule, scene, drawing, settings).result;
+  const Stage* stage = stage_named(one, "further views");
+  ASSERT_NE(stage, nullptr);
+  EXPECT_FALSE(stage->ran);
+  EXPECT_EQ(reason_of(*stage), counted(one.live.size(), "triangle is left", "triangles are left") +
+                                   ", at most 1,000 are enough");
+  EXPECT_EQ(stage_named(one, " y, round 1"), nullptr);
+  EXPECT_TRUE(std::ranges::includes(one.live, all.live));
 }
 
 }  // namespace

@@ -68,34 +68,5 @@ TEST(GlCull, TouchingContactsAreKeptOrIgnoredAsAsked) {
   }
 }
 
-TEST(GlCull, QuickIsAheadOfPlainAfterEveryStep) {
-  for (const Fattener& fattener : {raw_triangles(), obb_fattener()}) {
-    const Drawing drawing = on_gl(fattener, QueryMode::flags);
-    for (int n = 0; n < 12; ++n) {
-      const Scene scene = lab::scene_of(lab::random_small(3100 + n, 80));
-      CullSettings settings = lab::cull_settings(drawing, "x,y,z", 64);
-      if (n % 2) settings.clusters.sizes = {4};
-      const Trace quick = lab::run_by(kQuickRule, scene, drawing, settings);
-      const Trace plain = lab::run_by(kPlainRule, scene, drawing, settings);
-      EXPECT_EQ(lab::first_step_behind(quick, plain), "") << fattener.name << ", " << n;
-    }
-  }
-}
-
-// Twins: a rule that does not ask FFV where it has something to gain falls behind.
-TEST(GlCull, ABrokenRuleFallsBehind) {
-  PassRule rule = kQuickRule;
-  rule.asks[1][kF] = false;
-  const Drawing drawing = on_gl(raw_triangles(), QueryMode::flags);
-  int behind = 0;
-  for (int n = 0; n < 12; ++n) {
-    const Scene scene = lab::scene_of(lab::random_small(3100 + n, 80));
-    const CullSettings settings = lab::cull_settings(drawing, "x,y,z", 64);
-    behind += lab::first_step_behind(lab::run_by(rule, scene, drawing, settings),
-                                     lab::run_by(kPlainRule, scene, drawing, settings)) != "";
-  }
-  EXPECT_GT(behind, 0);
-}
-
 }  // namespace
 }  // namespace farcull

@@ -302,8 +302,6 @@ inline std::string difference(const Outcome& model, const Outcome& core) {
   return model.passes == core.passes ? "" : "the number of passes";
 }
 
-// Random worlds and schedules for the model and core/cull (model_lab.h).
-
 /// How each triangle takes part in a random case: by its object; by itself in some objects; by
 /// patches of some objects.
 enum class Owners { objects, selves, patches };
@@ -315,7 +313,7 @@ inline Set random_set(lab::Random& random, int n, double share) {
   return out;
 }
 
-inline View random_view(lab::Random& random, const World& world, int n) {
+inline View random_view(lab::Random& random, int n) {
   static constexpr double kShares[] = {0.03, 0.1, 0.2, 0.4, 0.8};
   View view;
   view.drawn = random.below(12) > 0;
@@ -323,12 +321,10 @@ inline View random_view(lab::Random& random, const World& world, int n) {
   view.undrawable = random_set(random, n, odd);
   view.shown = ~random_set(random, n, odd) & ~view.undrawable & (only(n) - 1);
   const double share = kShares[random.below(5)];
-  for (const Set owner : world.owners) {
-    for (int t = 0; t < n; ++t) {
-      view.elements[t] = 1 + random.below(3);
-      if ((owner & view.shown & only(t)) != 0)
-        view.behind[t] = random_set(random, n, share) & view.shown & ~owner;
-    }
+  for (int t = 0; t < n; ++t) {
+    view.elements[t] = 1 + random.below(3);
+    // Also of one owner: nobody is asked against its own.
+    if (view.shown & only(t)) view.behind[t] = random_set(random, n, share) & view.shown;
   }
   return view;
 }
@@ -439,7 +435,7 @@ inline Case random_case(std::uint64_t seed, int most) {
   if (random.below(4) == 0) c.start = {random_set(random, n, 0.3), random_set(random, n, 0.3)};
   const int views = random.below(40) == 0 ? 0 : 1 + random.below(4);
   for (int v = 0; v < views; ++v) {
-    c.world.views.push_back(random_view(random, c.world, n));
+    c.world.views.push_back(random_view(random, n));
     c.world.views.back().drawn &= c.places;
   }
   Schedule& s = c.schedule;
@@ -453,8 +449,8 @@ inline Case random_case(std::uint64_t seed, int most) {
   return c;
 }
 
-/// A world of the model, with each of its owners as an object. schedule.coarse: empty, or the
-/// owners as wholes.
+/// A world of the model, with each of its owners as an object, and a schedule without coarse
+/// levels.
 inline Case case_of(const World& world, const Schedule& schedule, const Bits& start) {
   Case c;
   c.world = world;
@@ -468,10 +464,7 @@ inline Case case_of(const World& world, const Schedule& schedule, const Bits& st
   std::vector<int> place(last.first_triangle + last.triangle_count);
   std::iota(place.begin(), place.end(), 1);
   add_points(place, c.scene);
-  if (schedule.coarse.empty())
-    c.least_objects = kMost;
-  else
-    c.levels.emplace_back("objects");
+  c.least_objects = kMost;
   c.levels.emplace_back("triangles");
   return c;
 }

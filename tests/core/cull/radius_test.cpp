@@ -79,20 +79,6 @@ TEST(Radius, AsPublishedItLosesAPairOnEveryGrid) {
   }
 }
 
-// No touching decides this: the pairs beside it are lost as well.
-TEST(Radius, AsPublishedItLosesPairsBesideThatPair) {
-  const Scene scene = piercing(0.99375);
-  const Fattener fattener = obb_surface_fattener();
-  NativeCanvas canvas(fattener.mode, fattener.solid, {.threads = 1});
-  lab::Random random(1);
-  for (int i = 0; i < 100; ++i) {
-    Scene moved = scene;
-    for (Vec3& p : moved.vertices)
-      for (double& x : p) x += random.grid(-0x1p-14, 0x1p-14, 0x1p-30);
-    EXPECT_EQ(kept(moved, fattener, canvas, {.published = true}), 0u) << i;
-  }
-}
-
 // Theorem 10: below sqrt(2)/2 + sqrt(2) 2^-bits a device that keeps A2 loses a pair. Its twins: the
 // same device a little above, and at the budget radius, which is 0.6 % above at the most.
 TEST(Radius, BelowTheBoundADeviceThatKeepsTheAssumptionsLosesAPair) {
@@ -130,7 +116,7 @@ std::unique_ptr<Canvas> worst(const Fattener& fattener) {
 
 TEST(FarProperty, NoFamilyOfExtremeScenesLosesAPairOnTheWorstCanvas) {
   lab::expect_far_survives_all_families(
-      worst, {.canvas = "worst", .scenes = 8 + trials(8, 4), .most_px = 24});
+      worst, {.canvas = "worst", .scenes = trials(16, 6), .most_px = 24});
 }
 
 TEST(FarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(worst), 0); }

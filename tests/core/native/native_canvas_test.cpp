@@ -323,28 +323,6 @@ TEST(NativeCanvas, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-// Elements beside the window have no rows; those above it begin behind the last one. (The
-// sanitizers see a write behind the counts of the rows.)
-TEST(NativeCanvas, ElementsBesideTheWindowTakePartInNothing) {
-  const Window w = lab::window(40, 10);
-  Drawables drawables;
-  drawables.mode = DepthMode::fixed;
-  for (const float y : {-30.0f, 0.0f, 30.0f}) {
-    for (const float x : {-30.0f, 0.0f, 30.0f}) {
-      drawables.triangles.push_back({x - 4, y - 4, 0, 0, x + 4, y - 4, 0, 0, x, y + 4, 0, 0});
-      drawables.first.push_back(static_cast<std::uint32_t>(drawables.triangles.size()));
-    }
-  }
-  Pass pass;
-  pass.slots = 9;
-  for (std::uint32_t i = 0; i < 9; ++i) pass.draws.push_back({i, i});
-  pass.draws.insert(pass.draws.end(), pass.draws.begin(), pass.draws.end());
-  pass.steps = {{Verb::store, 0, 9}, {Verb::ask, 9, 9}};
-  NativeCanvas canvas(DepthMode::fixed, {});
-  canvas.begin(w, drawables);
-  EXPECT_EQ(canvas.run(pass), (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0}));
-}
-
 TEST(NativeCanvas, HoldsTheSamplesUnderTheDepthMap) {
   const Fattener fattener = obb_fattener();
   for (const int bits : {32, 24}) {

@@ -12,69 +12,6 @@ namespace {
 using rational::Q;
 using rational::Random;
 
-double moved_by_ulps(double x, int ulps) {
-  for (; ulps > 0; --ulps) x = std::nextafter(x, HUGE_VAL);
-  for (; ulps < 0; ++ulps) x = std::nextafter(x, 0);
-  return x;
-}
-
-// Boxes with a gap along one axis or more; limits about as long as the gap.
-TEST(NearBounds, BoxesBeyondTheSquareLimitAreFartherApart) {
-  Random random(1);
-  int beyond = 0, wrong = 0, twin_wrong = 0, within = 0;
-  const auto seen = [&] { return twin_wrong > 20 && beyond > 200 && within > 200; };
-  for (int k = 0; more_cases(k, trials(200'000), seen()); ++k) {
-    const int axes = 1 + random.below(3);
-    double square = 0;
-    Q exact = 0;
-    const double size = std::exp2(random.uniform(-30, 0));
-    for (int axis = 0; axis < axes; ++axis) {
-      const double hi = random.uniform(-1, 1) * size, lo = random.uniform(1, 2) * size;
-      const double g = lo - hi;
-      square += g * g;
-      exact += (Q(lo) - Q(hi)) * (Q(lo) - Q(hi));
-    }
-    const double limit = moved_by_ulps(std::sqrt(square), random.below(20) - 14);
-    const bool is_beyond = exact > Q(limit) * Q(limit);
-    beyond += square > near::square_limit(limit);
-    within += !is_beyond;
-    wrong += square > near::square_limit(limit) && !is_beyond;
-    twin_wrong += square > limit * limit && !is_beyond;
-  }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_LT(near::square_limit(HUGE_VAL), HUGE_VAL);
-  EXPECT_GT(near::square_limit(HUGE_VAL), 3 * 8.0 * 8.0);
-  EXPECT_GT(near::square_limit(0), 0);
-}
-
-// Two points, relative to an origin; the gap along a direction of about the limit's length.
-TEST(NearBounds, PointsBeyondTheGapLimitAreFartherApartAlongTheDirection) {
-  Random random(2);
-  int beyond = 0, wrong = 0, twin_wrong = 0;
-  for (int k = 0; more_cases(k, trials(200'000), twin_wrong > 20 && beyond > 200); ++k) {
-    const Vec3 origin = random.cube(4), p = origin + random.cube(1e-3), q = random.cube(4);
-    const Vec3 d = random.scaled3(-20, 2);
-    const Vec3 x = p - origin, y = q - origin;
-    const double gap =
-        (d[0] * y[0] + d[1] * y[1] + d[2] * y[2]) - (d[0] * x[0] + d[1] * x[1] + d[2] * x[2]);
-    if (!(gap > 0)) continue;
-    const double doubt = near::kGap * d.cwiseAbs().dot(x.cwiseAbs().cwiseMax(y.cwiseAbs()));
-    const double limit = (gap - doubt * random.uniform(-0.5, 1.5)) / d.norm();
-    if (!(limit > 0)) continue;
-    Q exact = 0, squared = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      exact += Q(d[axis]) * (Q(q[axis]) - Q(p[axis]));
-      squared += Q(d[axis]) * Q(d[axis]);
-    }
-    const bool is_beyond = exact > 0 && exact * exact > Q(limit) * Q(limit) * squared;
-    const bool says = gap > near::gap_limit(limit, d.squaredNorm(), doubt);
-    beyond += says;
-    wrong += says && !is_beyond;
-    twin_wrong += gap > limit * d.norm() && !is_beyond;
-  }
-  EXPECT_EQ(wrong, 0);
-}
-
 using Triangle = std::array<Vec3, 3>;
 
 // Two triangles of very different shapes and places, some nearly touching, some with parts in

@@ -342,21 +342,6 @@ TEST(NearPairs, AHintOfAnotherObjectIsNoBound) {
   }
 }
 
-TEST(NearestObjects, OfAScatteredCrowdFewPairsOfObjectsAreSearched) {
-  GridScene grid;
-  Random random(4);
-  for (int o = 0; o < 3000; ++o) {
-    add_object(grid, near_lab::random_triangles(
-                         random, 2, 1, {o % 15 * 4 - 28, o / 15 % 15 * 4 - 28, o / 225 * 4 - 28}));
-  }
-  finish(grid, 1, 0, [] { return false; });
-  const ProximityTrees trees(grid.scene, 2);
-  const std::size_t found = trees.nearest_objects(1, kInfinite).size();
-  EXPECT_GE(found, 1500u);
-  // Of 4.5 million pairs of objects. Some are counted twice, once from each side.
-  EXPECT_LT(trees.counts().triangle_pairs, 3000u * 100);
-}
-
 // The same scenes with any number of threads, on any instruction set: the same bits and counts.
 TEST(NearPairs, AreTheSameForAnyThreadsAndInstructionSet) {
   Random random(5);
@@ -385,39 +370,6 @@ TEST(NearPairs, AreTheSameForAnyThreadsAndInstructionSet) {
     }
     use_lane_target("");
   }
-}
-
-// Two sheets that lie close to each other, each steep in some places, so that boxes overlap. Bounds
-// of boxes leave most of them; the normals of their triangles tell all but a few apart.
-TEST(NearPairs, SteepSheetsAreToldApartAlongTheirNormals) {
-  const auto sheet = [](int lift) {
-    std::vector<near_lab::Corners<near_lab::Integer>> out;
-    const auto at = [&](int x, int y) {
-      return near_lab::Triple<near_lab::Integer>{x, 4 * y, (x * x - 9 * y * y) / 3 + lift};
-    };
-    for (int x = -12; x < 12; ++x) {
-      for (int y = -4; y < 4; ++y) {
-        out.push_back({at(x, y), at(x + 1, y), at(x, y + 1)});
-        out.push_back({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
-      }
-    }
-    return out;
-  };
-  GridScene grid;
-  add_object(grid, sheet(0));
-  add_object(grid, sheet(1));
-  finish(grid, 1, 0, [] { return false; });
-  const ProximityTrees trees(grid.scene, 1);
-  const ObjectPair question = {0, 1};
-  const NearPairs answer = trees.near_pairs({&question, 1}, kInfinite, {}).front();
-  EXPECT_EQ(fault_of(grid, truth_of(grid, 0, 1), answer, kInfinite), "");
-  const std::vector<Box> boxes = triangle_boxes(grid.scene);
-  std::size_t overlapping = 0;
-  for (std::size_t a = 0; a < boxes.size() / 2; ++a) {
-    for (std::size_t b = boxes.size() / 2; b < boxes.size(); ++b)
-      overlapping += overlap(boxes[a], boxes[b]);
-  }
-  EXPECT_GT(overlapping, 5 * trees.counts().triangle_pairs);
 }
 
 // A hint changes what is looked at, not what is found; nonsense is no hint.
@@ -523,27 +475,6 @@ TEST(PairsWithin, MoreThanAskedForIsAnError) {
     EXPECT_THROW(trees.pairs_within(kInfinite, 1), std::logic_error);
     EXPECT_THROW(trees.pairs_within(-1, 1), std::logic_error);
   }
-}
-
-// Two rows of blades that cross each other everywhere: the first pair that meets is enough.
-TEST(NearPairs, OfObjectsThatMeetFewPairsAreLeft) {
-  GridScene grid;
-  std::vector<near_lab::Corners<near_lab::Integer>> along, across;
-  for (int k = -60; k <= 60; ++k) {
-    along.push_back({{{-62, k, -1}, {62, k, -1}, {0, k, 3}}});
-    across.push_back({{{k, -62, 2}, {k, 62, 2}, {k, 0, -2}}});
-  }
-  add_object(grid, along);
-  add_object(grid, across);
-  finish(grid, 0x1p-3, 5, [] { return false; });
-  const ProximityTrees trees(grid.scene, 1);
-  const ObjectPair question = {0, 1};
-  const NearPairs answer = trees.near_pairs({&question, 1}, kInfinite, {}).front();
-  const Truth truth = truth_of(grid, 0, 1);
-  EXPECT_GT(truth.pairs.size(), 1000u);
-  EXPECT_EQ(fault_of(grid, truth, answer, kInfinite), "");
-  EXPECT_LT(answer.pairs.size(), 10u);
-  EXPECT_LT(trees.counts().triangle_pairs, 2000u);
 }
 
 TEST(NearPairs, RefusesWhatIsNoQuestion) {

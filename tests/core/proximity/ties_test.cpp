@@ -42,16 +42,6 @@ TiedTriangles strips(int count, double z, bool along_x) {
   }
   return out;
 }
-// Two discs over one another, each of triangles that share its middle.
-TiedTriangles fan(int count, double z) {
-  TiedTriangles out;
-  for (int k = 0; k < count; ++k) {
-    const double a = 6.283185307179586 * k / count, b = 6.283185307179586 * (k + 1) / count;
-    out.push_back(
-        {Vec3(0, 0, z), Vec3(std::cos(a), std::sin(a), z), Vec3(std::cos(b), std::sin(b), z)});
-  }
-  return out;
-}
 
 struct TiesFound {
   NearPairs near;
@@ -74,22 +64,6 @@ TEST(Ties, OfCrossedStripsTakeWorkInProportionToTheTriangles) {
     EXPECT_EQ(found.near.pairs[0].a, 0u);
     EXPECT_EQ(found.near.pairs[0].b, 2u * static_cast<unsigned>(count));
   }
-}
-TEST(Ties, OfDiscsTakeWorkInProportionToTheTriangles) {
-  for (const int count : {200, 800}) {
-    const TiesFound found = ties_of(reference::scene_of({fan(count, 0), fan(count, 1)}), true);
-    EXPECT_LE(found.looked_at, 1200u + 4 * static_cast<unsigned>(count));
-    ASSERT_EQ(found.near.pairs.size(), 1u);
-    EXPECT_EQ(found.near.pairs[0].a, 0u);
-    EXPECT_EQ(found.near.pairs[0].b, static_cast<unsigned>(count));
-  }
-}
-// Of one plane: all strips meet, none for certain.
-TEST(Ties, OfStripsThatTouchOneIsLeft) {
-  const TiesFound found =
-      ties_of(reference::scene_of({strips(100, 0, true), strips(100, 0, false)}), true);
-  EXPECT_LE(found.looked_at, 2000u);
-  EXPECT_EQ(found.near.pairs.front(), (TrianglePair{0, 200}));
 }
 // Both layers in one object.
 TEST(Ties, WithinOneObject) {

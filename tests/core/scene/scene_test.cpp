@@ -44,29 +44,6 @@ TEST(Box, TouchingIsOverlapAndAnUlpApartIsNot) {
   EXPECT_TRUE(overlap(unit, box(1, 1, 1, 1, 1, 1)));
 }
 
-TEST(Box, NothingMeetsTheEmptyBox) {
-  const Box everything = {Vec3::Constant(-kInf), Vec3::Constant(kInf)};
-  EXPECT_TRUE(Box::empty().is_empty());
-  EXPECT_FALSE(overlap(Box::empty(), Box::empty()));
-  EXPECT_FALSE(overlap(Box::empty(), everything));
-  EXPECT_FALSE(overlap(everything, Box::empty()));
-  Box grown = Box::empty();
-  grown.add(Box::empty());
-  EXPECT_TRUE(grown.is_empty());
-  grown.add(Vec3(1, 2, 3));
-  EXPECT_FALSE(grown.is_empty());
-  EXPECT_EQ(grown.lo, grown.hi);
-}
-
-// The common part of disjoint boxes is empty along one axis only.
-TEST(Box, NothingMeetsABoxThatIsEmptyAlongOneAxis) {
-  const Box hollow = intersection(box(0, 0, 0, 1, 5, 5), box(2, 0, 0, 3, 5, 5));
-  ASSERT_TRUE(hollow.is_empty());
-  EXPECT_FALSE(overlap(hollow, box(-9, -9, -9, 9, 9, 9)));
-  EXPECT_FALSE(overlap(box(-9, -9, -9, 9, 9, 9), hollow));
-  EXPECT_FALSE(overlap(hollow, hollow));
-}
-
 RC_GTEST_PROP(BoxProperty, OverlapIsACommonGridPoint, ()) {
   const auto side = [] {
     const int lo = *rc::gen::inRange(0, 4);
@@ -142,25 +119,6 @@ TEST(Scene, ValidateNamesEveryFault) {
   wrapped.objects[0].triangle_count = 0xffffffff;
   wrapped.objects[1] = {"", 0xffffffff, 2};
   expect_refused(wrapped, "do not cover");
-}
-
-TEST(SceneHash, HasSixteenHexDigitsAndDoesNotDependOnNames) {
-  Scene scene = example();
-  const std::string hash = scene_hash(scene);
-  EXPECT_EQ(hash.size(), 16u);
-  EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
-  scene.name = "other";
-  scene.objects[0].name = "someone";
-  scene.vertices.push_back(Vec3(7, 7, 7));  // unused
-  EXPECT_EQ(scene_hash(scene), hash);
-}
-
-// Shared or separate vertices are one scene: only the coordinates of triangles count.
-TEST(SceneHash, DoesNotDependOnHowVerticesAreStored) {
-  Scene scene = reference::scene_of({{kUnit, kUnit}});
-  const std::string hash = scene_hash(scene);
-  scene.triangles[1] = scene.triangles[0];
-  EXPECT_EQ(scene_hash(scene), hash);
 }
 
 TEST(SceneHash, ChangesWithEveryBitOfEveryCoordinate) {
@@ -245,44 +203,6 @@ TEST(IgnoredObjects, HaveToBeTwoOfTheScene) {
   EXPECT_THROW(remove_ignored(scene, std::vector<ObjectPair>{{0, 2}}, pairs), std::logic_error);
   EXPECT_THROW(remove_ignored(scene, std::vector<ObjectPair>{{1, 1}}, pairs), std::logic_error);
   EXPECT_EQ(remove_ignored(scene, {}, pairs), 0u);
-}
-
-// ---- A scene at which a property fails becomes a small file that says the same.
-
-bool collides(const Scene& scene) {
-  return !all_colliding_pairs(scene, {.threads = 1}).pairs.empty();
-}
-
-// The first scene from this seed on in which triangles meet.
-Scene colliding_scene(std::uint64_t seed) {
-  while (!collides(lab::random_scene(seed))) ++seed;
-  return lab::random_scene(seed);
-}
-
-TEST(MoreCases, GoOnUntilALoopHasSeenWhatItAsksForAndFailAtTheBound) {
-  int n = 0;
-  for (; more_cases(n, 3, true); ++n) continue;
-  EXPECT_EQ(n, 3);
-  for (; more_cases(n, 3, n == 9); ++n) continue;
-  EXPECT_EQ(n, 9);
-  EXPECT_NONFATAL_FAILURE(for (; more_cases(n, 3, false); ++n) continue, "60 cases, the bound");
-}
-
-TEST(Minimize, LeavesTheTwoTrianglesThatMeet) {
-  const Scene least = lab::minimized(colliding_scene(test_seed(3)), collides);
-  EXPECT_EQ(least.triangles.size(), 2u);
-  EXPECT_TRUE(collides(least));
-}
-
-TEST(Minimize, WritesAFileWithTheSameDoubles) {
-  const Scene least = lab::minimized(colliding_scene(3), collides);
-  const std::string path = lab::write_case("minimize-test", least, "views z resolution 8");
-  const Scene read = parse_scene_file(
-      "{\"objects\": [{\"mesh\": \"minimize-test.obj\", \"split\": \"groups\"}]}", path);
-  ASSERT_EQ(read.triangles.size(), 2u);
-  for (std::uint32_t t = 0; t < read.triangles.size(); ++t)
-    EXPECT_EQ(read.corners(t), least.corners(t));
-  std::filesystem::remove(path);
 }
 
 }  // namespace

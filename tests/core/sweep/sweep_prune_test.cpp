@@ -1,7 +1,6 @@
-// Sweep and prune on scenes: as brute force, from frame to frame, and broken ones that must be
-// caught.
+// Sweep and prune on scenes, and of boxes: as brute force, from frame to frame. Its twins are the
+// mutants of core/sweep (tests/mutants).
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "tests/lab/boxes.h"
 
@@ -147,24 +146,6 @@ TEST(SweepPrune, NothingThatIsKeptOutlivesItsTopology) {
   }
 }
 
-TEST(SweepPrune, NoAnswerDependsOnWhatCameBefore) {
-  Random random(605);
-  SweepPrune kept;
-  Moving moving = some_objects(random, 60, 1);
-  for (int frame = 0; frame < 20; ++frame) {
-    const Scene scene = moving.scene();
-    SweepPrune fresh;
-    const SweepPruneResult a = kept.find(scene);
-    const SweepPruneResult b = fresh.find(scene);
-    EXPECT_EQ(a.object_pairs, b.object_pairs);
-    EXPECT_EQ(a.candidates, b.candidates);
-    EXPECT_EQ(a.triangles, b.triangles);
-    EXPECT_EQ(a.counts.objects, b.counts.objects);
-    if (frame % 7 == 6) kept.forget();
-    move_objects(moving, random, 1);
-  }
-}
-
 // Coherence is there: a scene that stands still is found sorted, whatever it took at first.
 TEST(SweepPrune, WhatStandsStillIsNotSortedAgain) {
   Random random(606);
@@ -177,31 +158,6 @@ TEST(SweepPrune, WhatStandsStillIsNotSortedAgain) {
   const SweepPruneCounts second = sweep.find(scene).counts;
   EXPECT_EQ(second.sorts, 0u);
   EXPECT_EQ(second.swaps, 0u);
-}
-
-TEST(SweepPrune, AsBoxJoinOnManyBoxesOfEveryShape) {
-  Random random(607);
-  for (int n = 0; n < 6; ++n) {
-    Moving moving;
-    for (int o = 0; o < 20; ++o) {
-      for (int k = 0; k < 150; ++k) {
-        const Vec3 at = n % 3 == 2 ? random.scaled3(-300, 300) : random.cube(10);
-        Vec3 size =
-            n % 2 == 0 ? random.scaled3(-12, 3).cwiseAbs() : Vec3(random.cube(1).cwiseAbs());
-        if (n == 4) size[n % 3] = 0;
-        moving.boxes.push_back({at, at + size});
-      }
-      moving.sizes.push_back(150);
-      moving.self.push_back(false);
-    }
-    if (n == 1) moving.boxes[0] = cube(-DBL_MAX, DBL_MAX);
-    const Scene scene = moving.scene();
-    Indices all(scene.triangles.size());
-    std::iota(all.begin(), all.end(), 0u);
-    SweepPrune sweep;
-    const Pairs expected = box_join(triangle_boxes(scene), owners(scene), all);
-    for (int again = 0; again < 2; ++again) ASSERT_EQ(sweep.find(scene).candidates, expected);
-  }
 }
 
 // The short boxes make columns narrow. The long ones then are in so many columns that these are
@@ -299,99 +255,6 @@ TEST(SweepPrune, TakesTheBoxesThatAreGiven) {
   EXPECT_THROW(sweep.find(scene, Boxes{cube(0, 1)}), std::logic_error);
 }
 
-/// Pairs whose boxes overlap, found by a sweep along x in the given order, which has to be that of
-/// the lower ends.
-Pairs swept(const Scene& scene, const Boxes& boxes, const Indices& order) {
-  const Indices owner = owners(scene);
-  Pairs pairs;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Box& box = boxes[order[i]];
-    for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const Box& other = boxes[order[j]];
-      if (other.lo.x() > box.hi.x()) break;
-      const auto [a, b] = std::minmax(order[i], order[j]);
-      const bool counts = owner[a] != owner[b] || scene.objects[owner[a]].self;
-      if (counts && meet(box, other)) pairs.push_back({a, b});
-    }
-  }
-  std::ranges::sort(pairs);
-  return pairs;
-}
-
-Indices order_along_x(const Boxes& boxes) {
-  Indices order(boxes.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(
-      order, [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lo.x() < boxes[b].lo.x(); });
-  return order;
-}
-
-// The twin: an order that is taken as it was, though triangles have passed one another.
-TEST(SweepPruneTwin, AStaleOrderIsCaught) {
-  Random random(608);
-  int caught = 0;
-  for (int n = 0; n < 20; ++n) {
-    Moving moving = some_objects(random, 30, 1);
-    const Indices stale = order_along_x(triangle_boxes(moving.scene()));
-    move_objects(moving, random, 0);
-    const Scene scene = moving.scene();
-    const Boxes boxes = triangle_boxes(scene);
-    const Pairs expected = expected_of(scene, boxes).candidates;
-    caught += swept(scene, boxes, stale) != expected;
-    EXPECT_EQ(swept(scene, boxes, order_along_x(boxes)), expected);
-  }
-  EXPECT_GT(caught, 0);
-}
-
-// The twin: what the lists of objects lose is lost to the triangles as well.
-TEST(SweepPruneTwin, ADroppedSwapIsCaught) {
-  const auto boxes_at = [](double x) { return Boxes{along_x(0, 1), along_x(x, x + 1)}; };
-  const auto candidates = [&](SmallBoxSweep& objects, double x) {
-    const Boxes boxes = boxes_at(x);  // one triangle in each object
-    Pairs out;
-    for (const TrianglePair& pair : objects.update(boxes))
-      if (meet(boxes[pair.a], boxes[pair.b])) out.push_back(pair);
-    return out;
-  };
-  SmallBoxSweep objects;
-  candidates(objects, 2);
-  objects.fault = SweepFault::dropped_swap;
-  EXPECT_NE(candidates(objects, 0.5), (Pairs{{0, 1}}));
-  objects.forget();
-  EXPECT_EQ(candidates(objects, 0.5), (Pairs{{0, 1}}));
-}
-
-RC_GTEST_PROP(SweepPruneProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
-  const int extent = *rc::gen::inRange(1, 9);
-  const int frames = *rc::gen::inRange(1, 5);
-  SweepPrune sweep;
-  for (int frame = 0; frame < frames; ++frame) {
-    Moving moving;
-    const int objects = *rc::gen::inRange(0, 8);
-    for (int o = 0; o < objects; ++o) {
-      const int size = *rc::gen::inRange(0, 7);
-      for (int t = 0; t < size; ++t) {
-        Box box;
-        for (int i = 0; i < 3; ++i) {
-          box.lo[i] = *rc::gen::inRange(0, extent);
-          box.hi[i] = box.lo[i] + *rc::gen::inRange(0, 3);
-        }
-        moving.boxes.push_back(box);
-      }
-      moving.sizes.push_back(static_cast<std::uint32_t>(size));
-      moving.self.push_back(*rc::gen::inRange(0, 3) == 0);
-    }
-    const Scene scene = moving.scene();
-    const SweepPruneResult found = sweep.find(scene);
-    const Expected expected = expected_of(scene, triangle_boxes(scene));
-    RC_ASSERT(found.object_pairs == expected.object_pairs);
-    RC_ASSERT(found.candidates == expected.candidates);
-    RC_ASSERT(found.triangles == expected.triangles);
-  }
-}
-
-// ---- The sweep of boxes against brute force, and broken sweeps that must be caught.
-
 // ---- boxes ----
 
 TEST(BoxSweep, FollowsBoxesThatMeetAndPart) {
@@ -436,13 +299,6 @@ TEST(BoxSweep, ABoxThatBecomesEmptyLeavesItsPairs) {
   }
 }
 
-TEST(BoxSweep, EqualPointsAllMeet) {
-  BoxSweep sweep;
-  for (const double at : {1.0, 0.0, -0.0, DBL_MAX, -DBL_MAX, 5e-324})
-    EXPECT_EQ(sweep.update(Boxes(20, cube(at, at))).size(), 190u);
-  EXPECT_FALSE(sweep.sorted_from_scratch());
-}
-
 TEST(BoxSweep, AsBruteForceOverMovingBoxes) {
   Random random(601);
   std::uint64_t swaps = 0;
@@ -481,44 +337,6 @@ TEST(BoxSweep, BeginsAgainWhereTooMuchMoved) {
     // It gave up in time: at most 8 moves for each of 600 ends, and one end's way, in each list.
     EXPECT_LE(sweep.swaps(), 3 * (8 * 600 + 600u));
   }
-}
-
-TEST(BoxSweepTwin, WithoutAFaultTheSmallSweepIsRight) {
-  Random random(603);
-  SmallBoxSweep sweep;
-  Boxes boxes = some_boxes(random, 40);
-  for (Box& box : boxes)
-    if (box.is_empty()) box = cube(0, 1);
-  for (int frame = 0; frame < 30; ++frame) {
-    ASSERT_EQ(sweep.update(boxes), brute_force(boxes)) << frame;
-    for (Box& box : boxes) {
-      const Vec3 by = random.cube(0.3);
-      box = {box.lo + by, box.hi + by};
-    }
-  }
-}
-
-// Each fault gives an answer that brute force does not, at once and for as long as the boxes stay;
-// forgetting mends it.
-TEST(BoxSweepTwin, ADroppedSwapIsCaught) {
-  SmallBoxSweep sweep;
-  sweep.update(Boxes{along_x(0, 1), along_x(3, 4)});
-  const Boxes met = {along_x(0, 1), along_x(0.5, 4)};
-  sweep.fault = SweepFault::dropped_swap;
-  EXPECT_NE(sweep.update(met), brute_force(met));
-  EXPECT_NE(sweep.update(met), brute_force(met));
-  sweep.forget();
-  EXPECT_EQ(sweep.update(met), brute_force(met));
-}
-
-TEST(BoxSweepTwin, OpenBoxesAreCaught) {
-  SmallBoxSweep sweep;
-  sweep.update(Boxes{along_x(0, 1), along_x(3, 4)});
-  const Boxes touching = {along_x(0, 1), along_x(1, 4)};
-  sweep.fault = SweepFault::open_boxes;
-  EXPECT_NE(sweep.update(touching), brute_force(touching));
-  sweep.fault = SweepFault::none;
-  EXPECT_EQ(sweep.update(touching), brute_force(touching));  // with the order of ties put right
 }
 
 }  // namespace

@@ -27,34 +27,6 @@ TEST(View, RefusesWhatIsNoDirection) {
     EXPECT_THROW(parse_views(text), Error) << "'" << text << "'";
 }
 
-TEST(View, ErrorsNameTheOptionAndTheText) {
-  const Error error = error_of([] { parse_views("x,bogus"); });
-  EXPECT_EQ(error.where, "--views");
-  EXPECT_TRUE(has_text(error.reason, "bogus"));
-}
-
-TEST(View, TellsANumberThatNoDoubleHoldsFromNoNumber) {
-  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"1e-400:0:1", "beyond what a double holds"},
-           {"0:-1e-400:1", "beyond what a double holds"},
-           {"1e400:0:1", "beyond what a double holds"},
-           {"inf:0:1", "no finite number"},
-           {"1e-400x:0:1", "no finite number"},
-           {"x:0:1", "no finite number"}}) {
-    EXPECT_TRUE(has_text(error_of([&] { parse_view(text); }).reason, reason)) << text;
-  }
-  EXPECT_NO_THROW(parse_view("5e-324:0:0"));
-}
-
-TEST(View, ListsKeepTheirOrderAndNames) {
-  const std::vector<View> views = parse_views("z,-x,1:1:0.5,1e-300:0:0");
-  ASSERT_EQ(views.size(), 4u);
-  EXPECT_EQ(views[0].name, "z");
-  EXPECT_EQ(views[1].name, "-x");
-  EXPECT_EQ(views[2].name, "1:1:0.5");
-  EXPECT_EQ(views[3].rows, parse_view("x").rows);
-}
-
 // One entry of +-1 per row and column, so that the map rounds nothing but the scaling.
 TEST(View, AxesAreExactPermutations) {
   for (const char* text : {"x", "-x", "y", "-y", "z", "-z", "7:0:0", "0:-1e300:0", "0:0:5e-324"}) {
@@ -350,31 +322,12 @@ Triangle tile(double x, double y = 0, double z = 0) {
   return {Vec3(x, y, z), Vec3(x + 1, y, z), Vec3(x, y + 1, z)};
 }
 
-TEST(Regions, OfNothingIsNothing) {
-  EXPECT_TRUE(as_defined({}));
-  EXPECT_TRUE(as_defined({{}, {}, {}}));
-  EXPECT_TRUE(as_defined({{}, {tile(0), tile(0)}, {}}));
-  const Regions alone = find_regions(reference::scene_of({{tile(0), tile(0)}}));
-  EXPECT_TRUE(alone.triangles.empty());  // an object is no partner of itself
-  EXPECT_TRUE(alone.places.empty());
-}
-
 TEST(Regions, TouchingCountsAndRegionsMayBePoints) {
   const Regions plan = find_regions(reference::scene_of({{tile(0), tile(-9)}, {tile(1, 1)}}));
   EXPECT_EQ(plan.triangles, (std::vector<std::uint32_t>{0, 2}));
   ASSERT_EQ(plan.places.size(), 1u);
   EXPECT_EQ(plan.places[0].lo, Vec3(1, 1, 0));
   EXPECT_EQ(plan.places[0].hi, Vec3(1, 1, 0));
-}
-
-// The box of the partner decides, not the region of the pair: the region of 0 and 1 is met by the
-// first triangle of 0, and so is nothing else.
-TEST(Regions, KeepsOneTriangleOfAnObjectOnceWithManyPartners) {
-  EXPECT_TRUE(as_defined({{tile(0)}, {tile(0.5)}, {tile(0.25)}, {tile(0.1), tile(7)}}));
-  const Regions plan =
-      find_regions(reference::scene_of({{tile(0), tile(5)}, {tile(0)}, {tile(0)}}));
-  EXPECT_EQ(plan.triangles, (std::vector<std::uint32_t>{0, 2, 3}));
-  EXPECT_EQ(plan.places.size(), 3u);
 }
 
 RC_GTEST_PROP(PlanProperty, AsDefinedOnTheGrid, ()) {
@@ -392,31 +345,6 @@ RC_GTEST_PROP(PlanProperty, AsDefinedOnTheGrid, ()) {
     }
   }
   RC_ASSERT(as_defined(objects));
-}
-
-// What culling relies on: of every pair of triangles that meet, both take part, and a common point
-// lies in a region.
-RC_GTEST_PROP(PlanProperty, EveryMeetingPairTakesPart, ()) {
-  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-  std::vector<std::vector<Triangle>> objects(4);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % 6);
-    for (Triangle& t : triangles)
-      for (Vec3& p : t) p = Vec3(random() % 6, random() % 6, random() % 6);
-  }
-  const Scene scene = reference::scene_of(objects);
-  const Regions plan = find_regions(scene);
-  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlapping) {
-    if (!overlapping || !reference::intersects(scene.corners(pair.a), scene.corners(pair.b)))
-      return;
-    for (const std::uint32_t t : {pair.a, pair.b})
-      RC_ASSERT(std::ranges::binary_search(plan.triangles, t));
-    const Box common = intersection(plan.triangle_boxes[pair.a], plan.triangle_boxes[pair.b]);
-    RC_ASSERT(std::ranges::any_of(plan.places, [&](const Box& region) {
-      return (region.lo.array() <= common.lo.array()).all() &&
-             (common.hi.array() <= region.hi.array()).all();
-    }));
-  });
 }
 
 // ---- Each term recomputed from the table of docs/budget.md with rationals; square roots by their
@@ -471,15 +399,6 @@ TEST(Budget, TermsOfACanvasWithExactSamples) {
   }
 }
 
-TEST(Budget, TermsHaveTheirNamesInOrder) {
-  const Budget b{1, 2, 3, 4, 5, 6};
-  const char* const kNames[] = {"sampling", "input", "double", "vertex", "snap", "offset"};
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(b.terms()[i].name, kNames[i]);
-    EXPECT_EQ(b.terms()[i].px, i + 1);
-  }
-}
-
 RC_GTEST_PROP(BudgetProperty, RadiusIsStrictlyBeyondTheExactSum, ()) {
   Budget b;
   for (double* term : {&b.sampling, &b.input, &b.double_, &b.vertex, &b.snap, &b.offset}) {
@@ -491,17 +410,6 @@ RC_GTEST_PROP(BudgetProperty, RadiusIsStrictlyBeyondTheExactSum, ()) {
   for (const BudgetTerm& term : b.terms()) sum += Q(term.px);
   RC_ASSERT(Q(b.radius()) > sum);
   RC_ASSERT(Q(b.radius()) < sum * (1 + Q(0x1p-39)));  // and the ball is not blown up
-}
-
-TEST(Budget, RadiusGrowsWithTheViewportAndWithCoarserSnapping) {
-  for (int bits = 1; bits < 16; ++bits) {
-    for (int viewport = 8; viewport < 32768; viewport *= 2) {
-      const double radius = budget_for(with_bits(bits), viewport).radius();
-      EXPECT_GT(radius, budget_for(with_bits(bits + 1), viewport).radius());
-      EXPECT_LT(radius, budget_for(with_bits(bits), 2 * viewport).radius());
-      EXPECT_GT(radius, std::sqrt(0.5) + std::ldexp(1.0, -bits));
-    }
-  }
 }
 
 // What the measurements asked for: 1.006 of the published radius and more at 8 bits.

@@ -301,20 +301,5 @@ TEST(VoronoiReliable, RefusesBadOptions) {
     EXPECT_THROW(reliable_neighbours(scene, {.widening = widening}), Error);
 }
 
-// All of a small object may be near all of another one where a cell holds both.
-TEST(VoronoiReliable, RefusesToKeepTooManyPairs) {
-  std::vector<std::vector<std::array<Vec3, 3>>> objects(3);
-  rational::Random random(3);
-  for (int i = 0; i < 600; ++i) {
-    std::array<Vec3, 3> t;
-    for (Vec3& p : t) p = random.cube(1e-6);
-    objects[i % 2].push_back(t);
-  }
-  objects[2].push_back({Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)});
-  const Scene scene = lab::scene_of(objects);
-  EXPECT_THROW(reliable_neighbours(scene, {.resolution = 64, .most_pairs = 1000}), Error);
-  EXPECT_EQ(reliable_neighbours(scene, {.resolution = 64}).triangles.size(), 90'000u + 600u);
-}
-
 }  // namespace
 }  // namespace farcull

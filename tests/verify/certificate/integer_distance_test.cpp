@@ -89,17 +89,6 @@ TEST(IntegerDistance, IsThatOfClosestPoints) {
   }
 }
 
-TEST(IntegerDistance, IsThatOfBruteForceOnEveryGenerator) {
-  for (const PairGenerator& generator : pair_generators()) {
-    SCOPED_TRACE(generator.name);
-    RandomDraws random(7);
-    for (int n = 0; n < trials(40); ++n) {
-      const DrawnPair pair = generator.make(random);
-      expect_distance(pair.a, pair.b);
-    }
-  }
-}
-
 TEST(IntegerDistance, IsThatOfBruteForceOnHardPairs) {
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
@@ -288,27 +277,6 @@ TEST(IntegerInside, IsThatOfTetrahedraOfWholeNumbers) {
     (expected ? in : out) += 1;
     twin_wrong += naive != expected;
   }
-}
-
-Scene of_boxes(double unit) {
-  return scene_of({{{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}}},
-                  {{{{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}}}}, unit);
-}
-
-TEST(IntegerInside, AMeshThatIsNotClosedHasNoInside) {
-  Scene scene = of_boxes(1);
-  EXPECT_EQ(IntegerInside(scene).which(0, 1), InsideClaim::b);
-  EXPECT_EQ(IntegerInside(scene).which(1, 0), InsideClaim::a);
-  scene.triangles[3] = scene.triangles[0];  // a face twice, another one not at all
-  EXPECT_EQ(IntegerInside(scene).which(0, 1), InsideClaim::not_closed);
-  EXPECT_EQ(IntegerInside(scene).which(1, 0), InsideClaim::not_closed);
-  // Of degenerate triangles those with two equal corners do not count.
-  scene = of_boxes(1);
-  scene.triangles[3] = {1, 1, 2};
-  EXPECT_EQ(IntegerInside(scene).which(0, 1), InsideClaim::not_closed);
-  // Not closed, but not around the other box either.
-  for (std::size_t v = 4; v < 8; ++v) scene.vertices[v].x() += 100;
-  EXPECT_EQ(IntegerInside(scene).which(0, 1), InsideClaim::none);
 }
 
 // An object of two parts of which one is outside is not inside.

@@ -113,18 +113,6 @@ TEST(IntegerPair, AgreesWithCgalOnEveryGenerator) {
   }
 }
 
-TEST(IntegerPair, TheOraclesAnswerTheSameForTheSameSeed) {
-  const std::vector<OracleRow> few = compare_oracles(1'000, 3);
-  const std::vector<OracleRow> again = compare_oracles(1'000, 3);
-  const std::vector<OracleRow> other = compare_oracles(1'000, 4);
-  int different = 0;
-  for (std::size_t i = 0; i < few.size(); ++i) {
-    EXPECT_EQ(few[i].intersecting, again[i].intersecting);
-    different += few[i].intersecting != other[i].intersecting;
-  }
-  EXPECT_GT(different, 5);
-}
-
 // Completeness: a direction for every disjoint pair, a point for every other one, never both, never
 // neither.
 TEST(IntegerPair, ADirectionOrAPointForEveryPair) {
@@ -154,33 +142,6 @@ TEST(IntegerPair, ADirectionOrAPointForEveryPairOnSmallGrids) {
     ASSERT_EQ(pair.separating_direction().has_value(), !expected) << text(t[0], t[1]);
     ASSERT_EQ(pair.has_common_point(), expected) << text(t[0], t[1]);
   }
-}
-
-// Within a family directions may be parallel (in a plane, all from one edge), so a single one can
-// often be spared; each family decides pairs that no other does.
-TEST(IntegerPair, NoFamilyOfDirectionsCanBeSpared) {
-  constexpr std::array<int, 7> kStarts = {0, 1, 2, 11, 20, 29, kDirections};
-  std::array<int, 6> alone = {};
-  for (const PairGenerator& generator : pair_generators()) {
-    RandomDraws random(1);
-    for (int n = 0; n < 4'000; ++n) {
-      const auto [a, b] = generator.make(random);
-      IntegerPair pair(a, b);
-      int separating = 0;
-      std::size_t last = 0;
-      for (std::size_t family = 0; family < alone.size() && separating < 2; ++family) {
-        bool separates = false;
-        for (int direction = kStarts[family]; direction < kStarts[family + 1]; ++direction)
-          separates = separates || pair.separated_by(direction);
-        if (!separates) continue;
-        ++separating;
-        last = family;
-      }
-      if (separating == 1) ++alone[last];
-    }
-  }
-  for (std::size_t family = 0; family < alone.size(); ++family)
-    EXPECT_GT(alone[family], 10) << family;
 }
 
 TEST(IntegerPair, TheWholeRangeOfDoubles) {
@@ -229,23 +190,6 @@ TEST(IntegerPair, DecidesNeighboursAsTheReference) {
   EXPECT_GT(answers[1], 200);
 }
 
-TEST(IntegerPair, DecidesNeighboursOfFewPoints) {
-  std::mt19937 random(2);
-  for (int n = 0; n < 6000; ++n) {
-    std::array<std::array<Vec3, 3>, 2> t;
-    for (auto& triangle : t) {
-      for (Vec3& p : triangle) {
-        const int i = static_cast<int>(random() % 9);
-        p = n % 3 == 0 ? Vec3(i, 2 * i, 0) : Vec3(i % 3, i / 3, n % 3 == 1 ? i % 3 : i % 2);
-      }
-    }
-    IntegerPair pair(t[0], t[1]);
-    ASSERT_EQ(pair.shares_position(), reference::share_position(t[0], t[1]));
-    if (!pair.shares_position()) continue;
-    ASSERT_EQ(pair.meets_beyond_shared(), reference::intersects_beyond_shared(t[0], t[1])) << n;
-  }
-}
-
 TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
   std::mt19937 random(31);
   std::size_t total = 0;
@@ -271,23 +215,6 @@ TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
     total += expected.size();
   }
   EXPECT_GT(total, 5'000u);
-}
-
-TEST(BoxPairs, CountTheSameAsCgalsJoin) {
-  std::mt19937_64 random(37);
-  std::vector<std::vector<Triangle>> objects(5);
-  for (auto& triangles : objects) {
-    triangles.resize(400);
-    for (Triangle& t : triangles) {
-      const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-      const Vec3 corner(unit(), unit(), unit());
-      for (Vec3& p : t) p = corner + 0.2 * Vec3(unit(), unit(), unit());
-    }
-  }
-  Scene scene = reference::scene_of(objects);
-  EXPECT_EQ(enumerated(scene, 4096).size(), all_colliding_pairs(scene).box_pairs);
-  scene.objects[2].self = true;
-  EXPECT_EQ(enumerated(scene, 4096).size(), all_colliding_pairs(scene).box_pairs);
 }
 
 }  // namespace

@@ -23,16 +23,6 @@ TEST(Sha256, IsThatOfTheStandard) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(Sha256, DoesNotDependOnHowTheTextIsCut) {
-  const std::string text(300, 'x');
-  for (std::size_t length = 0; length <= text.size(); ++length) {
-    const std::string_view part = std::string_view(text).substr(0, length);
-    Sha256 hash;
-    for (std::size_t at = 0; at < length; at += 7) hash.add(part.substr(at, 7));
-    EXPECT_EQ(hash.digest(), sha256(part)) << length;
-  }
-}
-
 TEST(PairList, IsWhatARunWrites) {
   for (const bool self : {false, true}) {
     Scene scene = make_builtin_scene("random-soup");
@@ -87,25 +77,6 @@ TEST(GivenList, IsReadBackAsItIsWritten) {
     EXPECT_EQ(list.rows[i].neighbours, i == 0);
   }
   EXPECT_TRUE(read_pair_list(kHeader, "pairs.csv").rows.empty());
-}
-
-// Columns by their names, in any order, with others between; quotes, CR LF, a byte order mark,
-// lines without a character, and no line feed at the end.
-TEST(GivenList, FindsColumnsByTheirNames) {
-  const GivenList list = read_pair_list(
-      "\xef\xbb\xbftriangle_b,frame,\"object_b\",name,triangle_a,face_a,object_a\r\n"
-      "4,1,3,\"a, \"\"b\"\"\",2,,1\r\n\r\n8,2,7,,6,9,5",
-      "pairs.csv");
-  EXPECT_TRUE(list.has_frames);
-  EXPECT_EQ(list.not_looked_at, (std::vector<std::string>{"name", "face_a"}));
-  ASSERT_EQ(list.rows.size(), 2u);
-  EXPECT_EQ(list.rows[0].object, (std::array<std::uint32_t, 2>{1, 3}));
-  EXPECT_EQ(list.rows[0].triangle, (std::array<std::uint32_t, 2>{2, 4}));
-  EXPECT_EQ(list.rows[0].frame, 1u);
-  EXPECT_FALSE(list.rows[0].neighbours.has_value());
-  EXPECT_EQ(list.rows[1].object, (std::array<std::uint32_t, 2>{5, 7}));
-  EXPECT_EQ(list.rows[1].triangle, (std::array<std::uint32_t, 2>{6, 8}));
-  EXPECT_EQ(list.rows[1].line, 4u);
 }
 
 TEST(GivenList, MalformedOnesNameTheLine) {
