@@ -1,9 +1,7 @@
 """Streams of pairs: they are the pairs of a collider, in order, and memory does not grow with them."""
-import itertools
 import os
 import subprocess
 import sys
-import threading
 
 import farcull
 import numpy as np
@@ -108,28 +106,6 @@ def test_memory_does_not_grow_with_the_pairs():
     assert whole > 22  # twin: who keeps all pairs is seen
 
 
-def test_one_thread_at_a_time():
-    stream = farcull.stream(*crossed(1200))
-    errors, seen = [], []
-
-    def take():
-        try:
-            for part in stream:
-                seen.append(len(part.pairs))
-        except farcull.Error as error:
-            errors.append(error.where)
-
-    threads = [threading.Thread(target=take) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    # Whoever met another one stopped, and nothing is lost or given twice.
-    assert set(errors) <= {"Stream", "stream"}
-    seen += [len(part.pairs) for part in stream]
-    assert sum(seen) == 1200 * 1200
-
-
 def test_a_stream_that_was_interrupted_gives_no_more():
     code = """
 import signal, farcull, sys
@@ -169,11 +145,3 @@ def test_a_forked_process_is_refused():
             os._exit(7 if "another process" in error.reason else 1)
         os._exit(2)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
-
-
-def test_the_first_pairs_come_before_the_others_are_sought():
-    stream = farcull.stream(*crossed(2000))
-    first = next(stream)
-    assert stream.decided < 10**6 and len(first.pairs) < 10**6  # of 4,000,000
-    few = list(itertools.islice(farcull.stream(*crossed(2000), limit=10), 5))
-    assert sum(len(p.pairs) for p in few) == 10
