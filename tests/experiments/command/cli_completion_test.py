@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 
-from cli_lab import case, launch, program, read, rows, write
+from cli_lab import case, program, read, rows, write
 
 os.environ['PATH'] = os.path.dirname(program) + ':' + os.environ['PATH']
 
@@ -115,21 +115,12 @@ def offered(shell, line):
 
 for shells, line, wanted, unwanted in (
         ('bash zsh fish', 'farcull ru', 'run', 'compare'),
-        ('bash zsh fish', 'farcull run --me', '--method', '--resolution'),
         ('bash zsh fish', 'farcull run --method ', 'far cullide boxes exact', 'native two-spheres'),
-        ('bash zsh fish', 'farcull run --depth f', 'fragment fixed', 'far'),
-        ('bash zsh fish', 'farcull run two-spheres --device n', 'native', 'software'),
         ('bash zsh fish', 'farcull run --self two-sph', 'two-spheres', 'run'),
         ('bash zsh fish', 'farcull experiment ', 'accuracy all lemma', 'run two-spheres'),
-        ('bash zsh fish', 'farcull experiment lemma --canvas w', 'worst', 'native'),
         ('bash zsh fish', 'farcull experiment all --qui', '--quick', '--query'),
-        ('bash zsh fish', 'farcull completion ', 'bash zsh fish', ''),
         ('bash', 'farcull run --query=o', 'occlusion', 'flags'),
         ('bash', 'farcull run me', 'mesh.obj mesh.obj.gz meshes', 'notes.txt'),
-        ('bash', 'farcull run a.obj me', 'mesh.obj', ''),
-        ('bash', 'farcull run --json no', 'notes.txt', ''),
-        ('bash', 'farcull scenes --write me', 'meshes', 'mesh.obj'),
-        ('bash', 'farcull check no', 'notes.txt', ''),
         ('bash', 'farcull check notes.txt me', 'mesh.obj', 'notes.txt')):
     for shell in filter(shutil.which, shells.split()):
         words = offered(shell, line)
@@ -138,15 +129,3 @@ for shells, line, wanted, unwanted in (
 for shell in OFFER:
     if not shutil.which(shell):
         print('not run:', shell)
-
-# What is offered for an enumeration is taken.
-for option in '--method --offset --depth --depth-format --query --radius --clusters --device'.split():
-    values = [value for value in offered('bash', f'farcull plan two-spheres {option} ')
-              if option != '--device' or value not in ('gl', 'software', 'hardware')]
-    case(f'{option}: is offered', values, 'nothing')
-    for value in values:
-        more = ['--self'] if value == 's-cullide' else []
-        if option != '--method':
-            more += ['--method', 'far']
-        status = launch(['plan', 'two-spheres', *more, option, value])
-        case(f'{option} {value} is offered', status == 0, f'status {status}')
