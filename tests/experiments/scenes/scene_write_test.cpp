@@ -125,15 +125,6 @@ TEST(MeshWrite, FramesReadBackAsTheyWere) {
 }
 TEST(PackagedScenes, FramesReadBackAsTheyWere) { expect_frames("breaking-dragon:19994", {3, 6}); }
 
-TEST(MeshWrite, WhatStandsStillIsWrittenOnce) {
-  const ScratchFolder folder;
-  const WrittenScene written = write_moving("tree-leaves:2", {0, 3}, folder.path("s"));
-  EXPECT_EQ(written.files, 1u + 2 * 4 + 1);
-  const auto json = nlohmann::json::parse(read_text(written.scene_file));
-  EXPECT_EQ(json["objects"][0]["mesh"], "tree.off");
-  EXPECT_EQ(json["objects"][1]["mesh"], "leaf0_%04d.off");
-}
-
 // The twin: a frame that is lost is seen, in the round trip and by who reads it.
 TEST(MeshWrite, ALostFrameIsNoticed) {
   const ScratchFolder folder;
@@ -147,18 +138,6 @@ TEST(MeshWrite, ALostFrameIsNoticed) {
   std::filesystem::remove(folder.path("s/cylinder1_0003.off"));
   EXPECT_EQ(FrameSource({written.scene_file}, {0, 3}, false).missing()->where,
             folder.path("s/cylinder1_0003.off"));
-}
-
-TEST(MeshWrite, GroupsCannotSayThatSomeCollideWithThemselves) {
-  const ScratchFolder folder;
-  Scene scene = make_builtin_scene("two-tori");
-  scene.objects[1].self = true;
-  const auto at = [&](long) -> const Scene& { return scene; };
-  EXPECT_EQ(error_of([&] { write_frames(at, {0, 1}, true, folder.path("s")); }).where, "two-tori");
-  EXPECT_FALSE(std::filesystem::exists(folder.path("s")));
-  scene.objects[0].self = true;
-  const WrittenScene written = write_frames(at, {0, 1}, true, folder.path("s"));
-  EXPECT_EQ(scene_hash(FrameSource({written.scene_file}, {0, 1}, false).at(1)), scene_hash(scene));
 }
 
 }  // namespace

@@ -123,15 +123,6 @@ TEST(MeshHabits, AFileThatMixesEndsOfLinesIsRefused) {
   EXPECT_EQ(obj(first + "# more\r\r\nv 0 0 1\r").triangles.size(), 1u);
 }
 
-TEST(MeshHabits, StripsBesideFacesAreNotPassedOver) {
-  const std::string text =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n";
-  EXPECT_TRUE(has_text(error_of([&] { ply(text); }).reason, "has triangle strips"));
-}
-
 // The command never writes to the file that it is about, nor to another that is there.
 TEST(MeshHabits, NoAdviceDestroysAFile) {
   const ScratchFolder folder;
@@ -156,24 +147,6 @@ TEST(MeshHabits, NoAdviceDestroysAFile) {
   const std::string wrong = folder.write("both.stl", "<COLLADA>");
   EXPECT_TRUE(
       has_text(error_of([&] { load_mesh(wrong); }).remedy, folder.path("both-renamed.dae")));
-}
-
-TEST(MeshHabits, FormatsAreToldApart) {
-  const ScratchFolder folder;
-  const std::string step = "ISO-10303-21;\nHEADER;\nFILE_SCHEMA((";
-  struct Case {
-    std::string name, contents, says;
-  };
-  for (const Case& c :
-       {Case{"a.ifc", "x", "IFC"}, Case{"b.stl", step + "'IFC4'));", "IFC"},
-        Case{"c.stl", step + "'AUTOMOTIVE_DESIGN'));", "STEP"}, Case{"d.vtp", "x", "ParaView"},
-        Case{"e.ply", "<VTKFile type=\"PolyData\">", "ParaView"},
-        Case{"f.stl", "<VTKFile type=\"UnstructuredGrid\">", "meshio"},
-        Case{"g.wrl", "x", "import_scene.x3d"}, Case{"h.amf", "x", "assimp"},
-        Case{"i.urdf", "x", "name the meshes"}, Case{"j.FCStd", "x", "FreeCAD"}}) {
-    const std::string path = folder.write(c.name, c.contents);
-    EXPECT_TRUE(has_text(error_of([&] { load_mesh(path); }).what(), c.says)) << c.name;
-  }
 }
 
 // Two triangles whose common edge is written twice, and differs in the last digits.
