@@ -43,7 +43,7 @@ farcull_packages=(
 # Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
 # Python module take pytest and hypothesis, and install it into a virtual environment.
 farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
-# Packages of tests that are labelled "rare", 300 MB: the report and pages of pictures in a browser, their PDF and LaTeX; the
+# Packages of tests that are labelled "rare", 300 MB: pages of pictures in a browser, LaTeX of the report; the
 # paper as a PDF.
 farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 

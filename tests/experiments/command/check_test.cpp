@@ -145,28 +145,6 @@ TEST_F(Check, ComparesTheListThatIsGiven) {
   }
 }
 
-// Every pair that is dropped is named, whichever it is.
-TEST_F(Check, NamesEachPairThatIsDropped) {
-  for (std::size_t i = 0; i < record.collisions.pairs.size();
-       i += record.collisions.pairs.size() / 5 + 1) {
-    std::vector<TrianglePair> fewer = record.collisions.pairs;
-    const TrianglePair dropped = fewer[i];
-    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-    const ProgramAnswer answer =
-        check({.certificate = "",
-               .scene = {"random-soup"},
-               .pairs = folder.write("pairs.csv", pair_list(scene, fewer))});
-    EXPECT_EQ(answer.status, 1);
-    const std::vector<std::uint32_t> owner = owners(scene);
-    const auto place = [&](std::uint32_t t) {
-      const Object& object = scene.objects[owner[t]];
-      return object.name + " triangle " + std::to_string(t - object.first_triangle);
-    };
-    EXPECT_TRUE(
-        has_text(answer.text, "\n  pair: " + place(dropped.a) + " and " + place(dropped.b) + "\n"));
-  }
-}
-
 TEST_F(Check, ListsAndCertificatesOfAClearance) {
   const double clearance = 0.01;
   record.options.clearance = clearance;
@@ -320,23 +298,6 @@ TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
   EXPECT_EQ(of_the_scene.status, 0);
   EXPECT_TRUE(has_text(of_the_scene.text, "  that the method was far\n  which pairs the run kept"));
   EXPECT_EQ(check({.certificate = written(), .scene = {"random-soup"}, .pairs = list}).status, 1);
-}
-
-TEST_F(Check, SaysWhatWasNotAsked) {
-  const ProgramAnswer answer = check({written(), {"random-soup"}, "-"});
-  const nlohmann::json unasked = nlohmann::json::parse(answer.text)["scene"]["self_not_asked"];
-  EXPECT_EQ(unasked["objects"], scene.objects.size());
-  EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
-  EXPECT_GT(certificate.not_asked.pairs, 0u);
-  EXPECT_TRUE(has_text(check({written(), {"random-soup"}}).text, "\nuntested   "));
-}
-
-TEST_F(Check, AnotherSceneIsStatus1) {
-  const std::string json = folder.path("result.json");
-  const ProgramAnswer answer = check({written(), {"two-tori"}, json});
-  EXPECT_EQ(answer.status, 1);
-  EXPECT_EQ(answer.text.substr(0, 11), "not proved:");
-  EXPECT_EQ(nlohmann::json::parse(read_file(json, 1 << 20))["verdict"], "not proved");
 }
 
 TEST_F(Check, WhatCannotBeReadIsAnError) {

@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from cli_lab import case, program, read, rows
+from cli_lab import case, program, read, rows, write
 
 os.environ['PATH'] = os.path.dirname(program) + ':' + os.environ['PATH']
 
@@ -67,21 +67,12 @@ def offered(line):
 
 for line, wanted, unwanted in (
         ('farcull ru', 'run', 'compare'),
-        ('farcull run --me', '--method', '--resolution'),
         ('farcull run --method ', 'far cullide boxes exact', 'native two-spheres'),
-        ('farcull run --depth f', 'fragment fixed', 'far'),
-        ('farcull run two-spheres --device n', 'native', 'software'),
         ('farcull run --self two-sph', 'two-spheres', 'run'),
         ('farcull experiment ', 'accuracy all lemma', 'run two-spheres'),
-        ('farcull experiment lemma --canvas w', 'worst', 'native'),
         ('farcull experiment all --qui', '--quick', '--query'),
-        ('farcull completion ', 'bash', ''),
         ('farcull run --query=o', 'occlusion', 'flags'),
         ('farcull run me', 'mesh.obj mesh.obj.gz meshes', 'notes.txt'),
-        ('farcull run a.obj me', 'mesh.obj', ''),
-        ('farcull run --json no', 'notes.txt', ''),
-        ('farcull scenes --write me', 'meshes', 'mesh.obj'),
-        ('farcull check no', 'notes.txt', ''),
         ('farcull check notes.txt me', 'mesh.obj', 'notes.txt')):
     words = offered(line)
     case(line, set(wanted.split()) <= set(words) and not set(unwanted.split()) & set(words), f'it offers {words}')

@@ -1,7 +1,6 @@
 """farcull distance: bad input, and what it answers."""
 from cli_lab import rows, write
 
-NUMBERS = ['0', '-1', '1.5', '', 'x', '99999999999999999999']
 OPEN = 'v -5 -5 -5; v 29 -5 -5; v -5 29 -5; v -5 -5 29; f 1 3 2; f 1 2 4; f 2 3 4'
 
 # ---- bad input
@@ -15,18 +14,14 @@ large.obj << {open}; f 3 1 4
 right.obj << v 2 0 0; v 3 0 0; v 2 1 0; f 1 2 3
 bad no scene | SCENE: none is named | distance
 bad one object | SCENE: only one object .*farcull distance small\.obj --self | distance small.obj
-each SCENE: only one object | distance small.obj | --pairs nearest
 bad no such pairs | --pairs: 'some' is no choice; give objects, nearest or all | {two} --pairs some
 bad all without a distance | --within: is missing | {two} --pairs all
 bad within '{within}' | --within: | {two} --within {within}
-bad k '{k}' | --k: | {two} --pairs nearest --k {k}
+bad k 0 | --k: | {two} --pairs nearest --k 0
 bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
 bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
-bad threads '{threads}' | --threads: | {two} --threads {threads}
 bad inside maybe | --inside: .*give yes or no | {two} --inside maybe
 bad nearest of ignored objects | [^:]*: the scene ignores .* nearest objects .*; leave ignore out | {three} --ignore small:right --pairs nearest
-bad an accounting of ignored objects | [^:]*: the scene ignores .* accounting | {three} --ignore small:right --verify
-bad all ignored | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer | {two} --ignore small:right
 bad no such name | --ignore: .*none | {two} --ignore small:none
 bad no such option | --clearance: farcull distance has no such option | {two} --clearance 1
 bad no such file | none\.obj: | distance small.obj none.obj --json old.json
@@ -40,8 +35,7 @@ bad a full disk for {output} | /dev/full: cannot be written: No space left | {tw
 bad no certificate | --certificate: farcull distance has no such option | {two} --certificate c.json
 """, open=OPEN, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj',
      output=['--json', '--csv'],
-     within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS,
-     threads=['0', '-1', '1025', 'x', ''])
+     within=['-1', 'nan', ''])
 rows(r"""
 bad more pairs than are answered | within: has (more than )?[0-9]+ pairs .*; give a smaller distance
   | distance random-soup --pairs all --within 100
@@ -59,25 +53,13 @@ rows(r"""
 0 as CSV | {two} --csv - | ^object_a,triangle_a,object_b,triangle_b,distance,squared,x_a,
   | ^0,0,1,0,1,1/1,1,0,0,2,0,0,vertex 1,vertex 0,none$
 0 inside | distance small.obj large.obj --csv - | ,a$
-0 outside in | distance large.obj small.obj --csv - | ,b$
-0 not closed | distance small.obj open.obj --csv - | ,not closed$
-# Two shells that overlap, in one file: inside both the winding number is 2.
-shells.obj << {T}; v 0.1 0.1 0.1; v 9.1 0.1 0.1; v 0.1 9.1 0.1; v 0.1 0.1 9.1; {closed}
-point.obj << v 0.2 0.2 0.2; v 0.21 0.2 0.2; v 0.2 0.21 0.2; f 1 2 3
-0 inside two shells | distance point.obj shells.obj --csv - | ,a$
 0 ignored in each frame | distance cylinders:3 --frames 2 --ignore cylinder0:cylinder1 | ^ +0 +2 | ^ +1 +2
 0 ignored | {three} --ignore small:right --csv ignored.csv | ^ignored    1 pair of objects$
   | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && (($(wc -l <ignored.csv) == 3))
-0 triangles of ignored objects | {three} --ignore small:right --pairs all --within 9 --csv ignored.csv | $ ! grep -q '^0,[0-9]*,1,' ignored.csv && grep -q '^0,[0-9]*,2,' ignored.csv
-0 inside not asked | distance small.obj large.obj --inside no --csv - | ,$
 0 within less | {two} --within 0.999 --csv - | $ (($(wc -l <"$out") == 1))
-0 within as much | {two} --within 1 --csv - | ^0,0,1,0,1,
-0 that meet | distance small.obj small.obj --csv - | ^0,0,1,0,0,0/1,
 0 nearest | distance small.obj right.obj large.obj --pairs nearest --k 4000000000 --verify | ^0 small +1  1 right +1[ ]
 0 all | distance crowd --pairs all --within 0.01 --verify --csv all.csv --json all.json | ^verified:
 0 self | distance crumpled:1000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
-0 threads | distance crowd --pairs nearest --k 2 --threads 1 --csv one.csv
-0 threads | distance crowd --pairs nearest --k 2 --threads 3 --csv three.csv | $ cmp -s one.csv three.csv
 moves_{i}.obj << v {i} 0 0; v 9 0 0; v 9 1 0; f 1 2 3
 0 frames | distance small.obj moves_%d.obj --frames 2:4 --verify --csv frames.csv --json frames.json | ^ +3 +1 +2[ ]
   | @frames.csv ^frame,object_a, | @frames.csv ^4,0,0,1,0,3,9/1, | @frames.json ^    "missed": 0,$
@@ -97,5 +79,4 @@ left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
 0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - | ^ +"distance": null,$
 0 frames of a built-in scene | distance two-spheres --frames 2 --inside no
 """, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'],
-     closed='f 1 3 2; f 1 2 4; f 1 4 3; f 2 3 4; f 5 7 6; f 5 6 8; f 5 8 7; f 6 7 8',
      pairs=['objects', 'nearest'], frame=['1', '2', '3', '4'])

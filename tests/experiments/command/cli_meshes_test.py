@@ -37,16 +37,13 @@ edge.obj << v 0 0 0; v 1 0 0; v 0 -1 0; v 0 0 1e-17; v 1 0 -1e-17; v 0 1 0; f 1 
 0 checked | check c.json edge.obj --self --weld 1e-7*size | @err merged | #0 ^proved
 1 checked without | check c.json edge.obj --self | #0 not proved
 bad a weld | --weld: '-1' is no tolerance | run edge.obj --self --weld=-1
-bad an empty weld | --weld: | run edge.obj --self --weld=
 bad of a built-in scene | --weld: has no meaning | run two-tori --weld 1
 bad of frames of one | --weld: has no meaning | run two-spheres --frames 2 --weld 1
-bad of tiles of one | --weld: has no meaning | run field:1000 --tiles 1/2 --weld 1
 bad a format of a file | --format: is of a mesh on standard input | run edge.obj part.obj --format obj
 bad an option as a name | --weld=1: | run edge.obj -- --weld=1
 0 a hint | run cad.obj --self | ^hint +cad is not closed: [0-9]+ open edges, one of them at .* Their ends nearly$
   | ^ +coincide; --weld 1e-[01][0-9][*]size closes it$
 0 no hint | run cad.obj --self --weld 1e-9 | @err merged | ! ^hint | ^colliding +0 pairs
-0 distance hints | distance cad.obj part.obj | ! ^hint
 bad a name | two-sphere: neither .*; did you mean two-spheres\? | run two-sphere
 # Standard input.
 bad without a format | -: standard input does not say | run - --self
@@ -56,7 +53,6 @@ $ "$farcull" run - --format off --self </dev/null 2>err >out; [[ $? = 2 ]] && gr
 # What readers pass over.
 notes.obj << v 0 0 0; v 1 0 0; v 0 1 0; v nan 0 0; t 3; f 1 2 3
 0 notes | run notes.obj part.obj | @err notes\.obj: 1 vertex that is not finite | @err 'obj: 1 statement that OBJ does not have
-0 notes of tiles | run notes.obj part.obj --tiles 1/1 | @err notes\.obj: 1 vertex that is not finite | @err 'obj: 1 statement that OBJ does not have
 # A part inside another is no collision of surfaces.
 0 nested | run house.obj part.obj | ^colliding +0 pairs | ^nested +1 object may lie wholly inside a closed one, as part in house\.
   | farcull distance says what lies inside

@@ -14,32 +14,23 @@ bad an unknown scene | nowhere | picture nowhere -o new.png
 bad a scene that does not move | .*move | picture far-apart --frame 0 -o new.png
 bad zoom without a collision | --zoom: | picture far-apart --method exact --zoom -o new.png
 bad no output | -o: | {p}
-each {0}: | {p} | -o '' | -o --zoom | --html '' | --html - | --frames 5 -o new.png | --frame x -o new.png | --frame -1 -o new.png
-  | --frame 5 --frames 5 -o new.png | --compare far:x -o new.png | --compare far --method far -o new.png
-  | --radius 1 --method cullide -o new.png | --depth fixed --method cullide -o new.png | --depth deep --method far -o new.png
-  | --resolution 0 -o new.png | --resolution 64 --method exact -o new.png | --view 0:0:0 -o new.png | --view '' -o new.png
-  | --up y --view y -o new.png
-  | --resolutions 32,64 --method far -o new.png | --resolutions 32, --method far --html new.html
-  | --resolutions 32 --compare exact,far:64 --html new.html | --device nope --method cullide -o new.png | --nope -o new.png
+each {0}: | {p} | -o '' | --html - | --frames 5 -o new.png | --compare far:x -o new.png | --compare far --method far -o new.png
+  | --view 0:0:0 -o new.png | --up y --view y -o new.png
+  | --resolutions 32,64 --method far -o new.png
 bad an output named like a mesh | -o: .*mesh | {p} -o crossing.obj
-bad all ignored | SCENE: nothing to test: all 1 pair | {p} --ignore first:second -o new.png
 bad a picture that is no PNG | -o: .new.jpg. .*; give -o new.png$ | {p} -o new.jpg
 bad a folder for the output | folder: | {p} -o folder
 bad no such folder | nofolder/new.png: | {p} -o nofolder/new.png
-each {0}: 'nope' | {p} | --method nope -o new.png | --compare far,nope -o new.png
 bad an empty method to compare | --compare: '' | {p} --compare far, -o new.png
 bad a resolution for exact | --compare: exact | {p} --compare exact:64 -o new.png
 bad seven panels | --compare: 7 | {p} --compare far,far,far,far,far,far,far -o new.png
-bad a radius of the default | --radius: .*--method far | {p} --radius 1 -o new.png
 bad the size '{size}' | --size | {p} --size {size} -o new.png
-bad an unknown direction | --view: 'up' | {p} --view up -o new.png
 bad a page named like a mesh | --html: .*mesh | {p} --html crossing.obj
 bad a page and a picture in one file | --html | {p} --html new.png -o new.png
 bad s-cullide without self | two-spheres: | {p} --method s-cullide -o new.png
 each standard output: | {p} --method exact -o - | >closed | >broken
 bad no driver | EGL: | __EGL_VENDOR_LIBRARY_FILENAMES=/nowhere {p} --method exact -o new.png
-""", p='picture two-spheres', size=['', '100', '100x', '100xx80', 'x80', '100x80x', '61x80', '100x4097', '-100x80',
-                                    '99999999999x80', '100X80'])
+""", p='picture two-spheres', size=['', '100', '61x80', '100x4097'])
 if os.getuid() != 0:
     rows(r"""
 $ mkdir locked && chmod a-w locked
@@ -57,8 +48,6 @@ $ printf '\x89PNG\r\n\x1a\n' >signature
   | ^far at 64 px: missed 0 of[ ] | ^exact: missed 0 of[ ] | @old.png Scene hash
 0 ignored | picture crowd:40 --method exact --ignore '*1:*2' {small} -o i.png | ^exact: missed 0 of[ ]
 0 standard output | picture crossing.obj --method exact --self {small} -o - | $ cmp -sn 8 signature "$out"
-0 a single mesh | picture crossing.obj --method boxes --self --view -z --up x {small} -o s.png
-  | ^boxes: missed 0 of[ ]
 0 a frame | picture two-spheres --method exact --frame 3 --frames 10 {small} -o f.png
 0 a ground a thousand times larger | picture two-spheres@ground --method exact --zoom {small} -o g.png
 """, small='--size 100x80')

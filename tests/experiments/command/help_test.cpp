@@ -148,12 +148,5 @@ TEST(Help, NamesEveryMethodAndTheDefault) {
   EXPECT_FALSE(has_text(line_with(methods, "far "), "The default."));
 }
 
-TEST(Help, LinesFitATerminal) {
-  for (const HelpTopic& topic : help_topics()) {
-    std::istringstream lines(topic.text);
-    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 92u) << line;
-  }
-}
-
 }  // namespace
 }  // namespace farcull

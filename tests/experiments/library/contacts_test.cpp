@@ -34,14 +34,6 @@ Scene tangled(std::uint64_t seed) {
   return scene;
 }
 
-/// All pairs of a result in order, neighbours among them.
-std::vector<Pair> in_order(const Result& result) {
-  std::vector<Pair> out;
-  std::merge(result.pairs.begin(), result.pairs.end(), result.neighbour_pairs.begin(),
-             result.neighbour_pairs.end(), std::back_inserter(out));
-  return out;
-}
-
 TEST(LibraryContacts, AreSaidOfEachPair) {
   const Result silent = Collider().find(kFour);
   EXPECT_TRUE(silent.contacts.empty());
@@ -54,14 +46,6 @@ TEST(LibraryContacts, AreSaidOfEachPair) {
   const Result all = Collider({.contacts = Contacts::segments}).find(kFour);
   EXPECT_EQ(all.contacts[0], (Contact{Contact::Kind::crossing, 1, {{{1, 1, 0}, {1, 3, 0}}}}));
   EXPECT_EQ(all.contacts[1], (Contact{Contact::Kind::touch_vertex, 0, {{{4, 2, 0}, {4, 2, 0}}}}));
-}
-
-TEST(LibraryContacts, OfAClearanceAreApart) {
-  const Options options{.clearance = 1000, .contacts = Contacts::kinds};
-  const Result found = Collider(options).find(kFour);
-  ASSERT_EQ(found.pairs.size(), 6u);
-  EXPECT_EQ(found.contacts[0].kind, Contact::Kind::crossing);
-  EXPECT_EQ(found.contacts[2].kind, Contact::Kind::apart);
 }
 
 TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
@@ -110,33 +94,6 @@ TEST(LibraryIgnore, AnswersAsIfItWereFilteredAfterwards) {
   // The twin: one pair of objects less is noticed.
   const Result fewer = Collider({.self = true, .ignore = {{0, 1}}}).find(flat.input());
   EXPECT_NE(fewer.pairs, found.pairs);
-}
-
-TEST(LibraryLimit, GivesTheFirstPairsAndDecidesNoMoreThanItNeeds) {
-  for (const Scene& scene : {tangled(3), make_builtin_scene("two-tori")}) {
-    const std::string& name = scene.name;
-    const Flat flat(scene);
-    const Result all = Collider({.self = true}).find(flat.input());
-    EXPECT_TRUE(all.complete);
-    const std::vector<Pair> merged = in_order(all);
-    ASSERT_GT(merged.size(), 20u);
-    for (const std::size_t limit :
-         {std::size_t{1}, std::size_t{17}, merged.size() - 1, merged.size(), merged.size() + 1}) {
-      const Result found =
-          Collider({.threads = 1, .self = true, .limit = limit}).find(flat.input());
-      const auto end = merged.begin() + static_cast<long>(std::min(limit, merged.size()));
-      EXPECT_EQ(in_order(found), std::vector<Pair>(merged.begin(), end)) << name << " " << limit;
-      EXPECT_EQ(found.report.candidates, all.report.candidates);
-      EXPECT_LE(found.report.decided, found.report.candidates);
-      // One pair less than there are is not complete, whether all candidates were decided or not.
-      if (limit != merged.size()) {
-        EXPECT_EQ(found.complete, limit > merged.size()) << name;
-      }
-      if (limit == 1) {
-        EXPECT_LT(found.report.decided, all.report.decided / 2);
-      }
-    }
-  }
 }
 
 TEST(LibraryIgnore, RefusesObjectsThatThereAreNot) {

@@ -18,12 +18,6 @@ std::vector<TrianglePair> pairs_of(const std::vector<Pair>& pairs) {
   return out;
 }
 
-Scene self_scene(const std::string& name) {
-  Scene scene = make_builtin_scene(name);
-  for (Object& object : scene.objects) object.self = true;
-  return scene;
-}
-
 void expect_exact(Collider& collider, const Scene& scene, double clearance = 0) {
   const Flat flat(scene);
   const Result found = collider.find(flat.input());
@@ -41,12 +35,6 @@ TEST(Library, OneColliderGivesTheExactPairsOfSceneAfterScene) {
     expect_exact(collider, make_builtin_scene(name));
 }
 
-TEST(Library, SelfCollisionWithNeighboursApart) {
-  Collider collider({.self = true});
-  for (const char* name : {"degenerate", "random-soup", "two-tori"})
-    expect_exact(collider, self_scene(name));
-}
-
 TEST(Library, SelfCollisionOfSomeObjects) {
   Scene scene = make_builtin_scene("random-soup");
   Collider none, first({.self_objects = {true, false, false, false, false, false, false, false}});
@@ -62,24 +50,6 @@ TEST(Library, ClearanceFindsWhatIsNear) {
   expect_exact(collider, scene, 0.05);
   EXPECT_GT(collider.find(Flat(scene).input()).pairs.size(),
             all_colliding_pairs(scene).pairs.size());
-}
-
-TEST(Library, TheAnswerIsOnlyThatOfTheInput) {
-  const Flat flat(make_builtin_scene("random-soup"));
-  const Result usual = Collider().find(flat.input());
-  for (const Options& options :
-       {Options{.threads = 1}, Options{.threads = 3}, Options{.neighbours = false}})
-    EXPECT_EQ(Collider(options).find(flat.input()).pairs, usual.pairs);
-}
-
-TEST(Library, NeighboursAreOnlyCountedWhereNobodyAsksForThem) {
-  const Flat flat(make_builtin_scene("two-spheres"));
-  const Result all = Collider({.self = true}).find(flat.input());
-  const Result fewer = Collider({.self = true, .neighbours = false}).find(flat.input());
-  EXPECT_EQ(fewer.pairs, all.pairs);
-  EXPECT_TRUE(fewer.neighbour_pairs.empty());
-  EXPECT_EQ(fewer.report.neighbours, all.report.neighbours);
-  EXPECT_GT(all.report.neighbours, 0u);
 }
 
 // tests/cases/misunderstood.json has inputs that are not what they were meant to be, and what is
@@ -153,19 +123,6 @@ TEST(Library, FramesAreAsFresh) {
   EXPECT_GT(changes, 10u);
 }
 
-// A refused call leaves nothing behind that a later one could be taken to repeat.
-TEST(Library, ACallAfterARefusedOneIsAsFresh) {
-  const Flat flat(make_builtin_scene("two-spheres"));
-  const auto triangles = static_cast<std::uint32_t>(flat.triangles.size() / 3);
-  const std::vector<std::uint32_t> starts = {0, triangles / 2}, wrong = {1, 0};
-  Collider collider;
-  for (int k = 0; k < 4; ++k)
-    EXPECT_FALSE(collider.find({flat.vertices, flat.triangles, starts}).pairs.empty());
-  EXPECT_THROW(collider.find({flat.vertices, flat.triangles, wrong}), Error);
-  EXPECT_THROW(collider.find({{}, {}, {}}), Error);
-  EXPECT_FALSE(collider.find({flat.vertices, flat.triangles, starts}).pairs.empty());
-}
-
 // Bit for bit, so that a zero of the other sign counts too.
 TEST(LibraryInput, SaysWhichVerticesAreNew) {
   Flat flat(make_builtin_scene("two-spheres"));
@@ -200,28 +157,6 @@ TEST(LibraryInput, SaysWhichVerticesAreNew) {
 template <class Call>
 std::string refused(const Call& call) {
   return refusal(call)[0];
-}
-
-TEST(Library, RefusesBadInputAndGoesOn) {
-  Collider collider;
-  const Flat good(make_builtin_scene("two-spheres"));
-  const auto with = [&](const auto& change) {
-    Flat flat = good;
-    change(flat);
-    return refused([&] { collider.find(flat.input()); });
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(with([&](Flat& f) { f.vertices[7] = nan; }), "vertices");
-  EXPECT_EQ(with([&](Flat& f) { f.vertices[7] = -HUGE_VAL; }), "vertices");
-  EXPECT_EQ(with([&](Flat& f) { f.vertices.pop_back(); }), "vertices");
-  EXPECT_EQ(with([&](Flat& f) { f.triangles.pop_back(); }), "triangles");
-  EXPECT_EQ(with([&](Flat& f) { f.triangles[5] = 5124; }), "triangles");
-  EXPECT_EQ(with([&](Flat& f) { f.starts[0] = 1; }), "object_starts");
-  EXPECT_EQ(with([&](Flat& f) { f.starts[1] = 10241; }), "object_starts");
-  EXPECT_EQ(with([&](Flat& f) { f.starts = {0, 9, 8}; }), "object_starts");
-  expect_exact(collider, make_builtin_scene("two-spheres"));
-  Collider marked({.self_objects = {true}});
-  EXPECT_EQ(refused([&] { marked.find(good.input()); }), "self_objects");
 }
 
 TEST(Library, IndicesOf64BitsAnswerTheSame) {
@@ -384,36 +319,6 @@ TEST(LibraryDistances, LeaveIgnoredObjectsOut) {
   EXPECT_EQ(where({.ignore = {{1, 1}}}), "ignore");
   EXPECT_EQ(where({.ignore = {{0, 1}, {0, 2}, {1, 2}}}), "ignore");
   EXPECT_EQ(where({.kind = DistanceKind::nearest, .ignore = {{0, 1}}}), "ignore");
-}
-
-TEST(LibraryDistances, OfACallerThatRoundsUpwardAreTheSame) {
-  const Scene scene = make_builtin_scene("degenerate");
-  const Flat flat(scene);
-  const auto expected = distances(flat.input());
-  std::fesetround(FE_UPWARD);
-  const auto found = distances(flat.input());
-  EXPECT_EQ(std::fegetround(), FE_UPWARD);
-  std::fesetround(FE_TONEAREST);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].distance, expected[0].distance);
-  EXPECT_EQ(found[0].squared, expected[0].squared);
-}
-
-TEST(LibraryDistances, RefuseWhatIsBad) {
-  const auto where = [](const auto& call) { return refusal(call)[0]; };
-  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = HUGE_VAL;
-  EXPECT_EQ(where([&] { DistanceFinder({.within = nan}); }), "within");
-  EXPECT_EQ(where([] { DistanceFinder({.kind = DistanceKind::all}); }), "within");
-  EXPECT_EQ(where([&] { DistanceFinder({.kind = DistanceKind::all, .within = infinite}); }),
-            "within");
-  EXPECT_EQ(where([] { DistanceFinder({.kind = DistanceKind::nearest, .k = 0}); }), "k");
-  EXPECT_EQ(where([] { DistanceFinder({.threads = 1025}); }), "threads");
-  const std::vector<double> vertices = {0, 0, nan};
-  const std::vector<std::uint32_t> triangles = {0, 0, 0, 0, 0, 0}, wrong = {0, 0, 7, 0, 0, 0};
-  EXPECT_EQ(where([&] { distances({vertices, triangles, {}}); }), "vertices");
-  const std::vector<double> good = {0, 0, 0};
-  EXPECT_EQ(where([&] { distances({good, wrong, {}}); }), "triangles");
-  EXPECT_EQ(where([&] { distances({good, triangles, {}}); }), "object_starts");
 }
 
 }  // namespace

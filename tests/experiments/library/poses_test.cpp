@@ -199,49 +199,6 @@ TEST(LibraryMayGoOn, EndsACallWithoutAnAnswerAndTheNextOneIsRight) {
   }
 }
 
-// Work that would go on for a minute if nobody stopped it, and its twin, which nobody stops.
-TEST(LibraryMayGoOn, HearsOfTheStepsAndStopsTheWork) {
-  for (const bool ends : {true, false}) {
-    std::atomic<bool> heard = false, stopped = false;
-    const MayGoOn may_go_on = [&](const std::string& step) {
-      heard = heard || step == "boxes";
-      return !ends || !heard;
-    };
-    const auto work = [&](const Progress& progress) {
-      try {
-        for (int k = 0; k < 60'000 && (ends || !heard); ++k) {
-          progress("boxes");
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-      } catch (const Stopped&) {
-        stopped = true;
-        throw;
-      }
-      return 7;
-    };
-    if (ends) {
-      EXPECT_THROW(watched(may_go_on, work), Cancelled);
-    } else {
-      EXPECT_EQ(watched(may_go_on, work), 7);
-    }
-    EXPECT_TRUE(heard);
-    EXPECT_EQ(stopped, ends);
-  }
-}
-
-TEST(LibraryMayGoOn, CannotUseTheObjectThatAsks) {
-  const Flat flat(make_builtin_scene("two-spheres"));
-  std::string where;
-  Collider* asking = nullptr;
-  Collider collider({.may_go_on = [&](const std::string&) {
-    where = refusal([&] { asking->find(flat.input()); })[0];
-    return true;
-  }});
-  asking = &collider;
-  EXPECT_FALSE(collider.find(flat.input()).pairs.empty());
-  EXPECT_EQ(where, "Collider");
-}
-
 // ---- matrices
 
 TEST(LibraryEigen, MatricesOfAnyTypeAndOrderAnswerAsArrays) {

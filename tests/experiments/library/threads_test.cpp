@@ -86,19 +86,6 @@ TEST(LibraryThreads, ColliderFromTwoThreadsAnswersRightlyOrRefuses) {
   race("Collider", [&] { return collider.find(flat.input()).pairs == expected; });
 }
 
-TEST(LibraryThreads, DistanceFinderFromTwoThreadsAnswersRightlyOrRefuses) {
-  const Flat flat(make_builtin_scene("needles"));
-  const auto squares = [](const std::vector<DistanceAnswer>& answers) {
-    std::vector<std::string> out;
-    for (const DistanceAnswer& a : answers) out.push_back(a.squared);
-    return out;
-  };
-  const std::vector<std::string> expected = squares(distances(flat.input(), {.inside = false}));
-  ASSERT_FALSE(expected.empty());
-  DistanceFinder finder({.inside = false, .threads = 2});
-  race("DistanceFinder", [&] { return squares(finder.find(flat.input())) == expected; });
-}
-
 TEST(LibraryThreads, AnObjectThatWasMovedFromSaysSo) {
   const Flat flat(make_builtin_scene("two-spheres"));
   Collider collider;

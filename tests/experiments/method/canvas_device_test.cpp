@@ -7,7 +7,6 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/store.h"
 #include "tests/lab/test.h"
 #include "tests/lab/unwrapped.h"
 
@@ -19,15 +18,6 @@ RunOptions far_on(const std::string& device) {
   options.resolution = 64;
   options.device = device;
   return options;
-}
-
-TEST(CanvasDevice, BothNamesOfTheCpuGiveTheNativeCanvasAndAreTheReason) {
-  for (const std::string name : {"native", "cpu"}) {
-    Session session(name);
-    EXPECT_TRUE(session.canvas_device().native);
-    EXPECT_EQ(session.canvas_device().reason, "--device " + name);
-    EXPECT_GE(session.max_resolution(), 16000);
-  }
 }
 
 TEST(CanvasDevice, WithoutADeviceTheRuleIsSaidAndNativeDrawsWhereNoHardwareAnswers) {
@@ -86,13 +76,6 @@ TEST(CanvasDevice, QueryModesAndDepthFormatsWorkOnTheNativeCanvasAndAreSaid) {
   RunOptions both = coarse;
   both.query = QueryMode::flags;
   EXPECT_THROW(validate(both), Error) << "as on GL: options are checked before a device is chosen";
-}
-
-TEST(CanvasDevice, StudiesSayThatTheNativeCanvasDrawsAndWithWhichInstructionSet) {
-  const Provenance native = provenance_now("native", "{}");
-  EXPECT_EQ(native.gl_renderer, "native (" + lane_target() + ")");
-  EXPECT_EQ(native.gl_vendor + native.gl_version, "");
-  EXPECT_THROW(provenance_now("no such device", "{}"), Error);
 }
 
 }  // namespace

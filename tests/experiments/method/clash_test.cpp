@@ -5,9 +5,7 @@
 #include <Eigen/Geometry>
 #include <set>
 
-#include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/load.h"
 #include "tests/lab/assembly.h"
 
 namespace farcull {
@@ -63,113 +61,6 @@ TEST(Clash, OfAnAssemblyIsKnown) {
   EXPECT_EQ(clashes(scene, {.clearance = std::nextafter(2.0, 0)}).count(near), 9u);
   EXPECT_EQ(clashes(scene, {.clearance = 2.0000002}).count(near), 11u);
   EXPECT_EQ(clashes(scene, {}).count(near), 0u);
-}
-
-TEST(Clash, DoesNotDependOnThreads) {
-  const Scene scene = Assembly().parts.scene;
-  const auto text = [&](unsigned threads) {
-    std::ostringstream out;
-    for (const ClashRow& row :
-         clashes(scene, {.clearance = 2, .depth = true, .threads = threads}).rows) {
-      out << row.objects.a << ' ' << row.objects.b << ' ' << to_string(row.verdict) << ' '
-          << row.witness[0].transpose() << ' ' << row.curve << ' '
-          << (row.depth ? row.depth->lo : 0) << '\n';
-    }
-    return out.str();
-  };
-  EXPECT_EQ(text(1), text(3));
-}
-
-// FCL says whether surfaces meet, and how far apart they are. It knows no touching, and nothing of
-// what is inside.
-TEST(Clash, AgreesWithFclOnWhatFclCanDo) {
-  const std::vector<DistancePeer> peers = distance_peers();
-  const auto fcl = std::ranges::find(peers, "fcl-double", &DistancePeer::name);
-  if (fcl == peers.end() || !fcl->missing.empty()) GTEST_SKIP() << "FCL is not in this build";
-  const Assembly assembly;
-  const Scene& scene = assembly.parts.scene;
-  const ClashRecord record = clashes(scene, {.clearance = 2});
-  const std::map<ObjectPair, ClashVerdict> ours = verdicts(record);
-  for (const PeerDistance& theirs : fcl->run(scene, {}, 1).distances) {
-    const auto at = ours.find({theirs.a, theirs.b});
-    const ClashVerdict verdict = at == ours.end() ? clear : at->second;
-    if (verdict == clash || verdict == touch) {
-      EXPECT_LT(theirs.distance, 1e-9);
-    } else if (verdict == near) {
-      EXPECT_NEAR(theirs.distance, row_of(record, theirs.a, theirs.b).distance, 1e-9);
-    } else {
-      EXPECT_GT(theirs.distance, 0);
-    }
-  }
-}
-
-/// A mesh of the package, turned at random, of size 1, and moved, as a part.
-void add_scan(Parts& parts, const std::string& name, const Vec3& at, RandomNumbers& random) {
-  const Mesh mesh = load_mesh(mesh_folder() + "/" + name);
-  const Vec3 axis(random.between(-1, 1), random.between(-1, 1), random.between(0.1, 1));
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(random.between(0, 6.28), axis.normalized()).toRotationMatrix();
-  Box box = Box::empty();
-  for (const Vec3& p : mesh.vertices) box.add(p);
-  const double scale = 1 / (box.hi - box.lo).norm();
-  const std::uint32_t first = parts.next();
-  for (const Vec3& p : mesh.vertices) {
-    const Vec3 q = at + scale * (turn * (p - 0.5 * (box.lo + box.hi)));
-    parts.vertex(q.x(), q.y(), q.z());
-  }
-  for (const auto& [a, b, c] : mesh.triangles) parts.triangle(first + a, first + b, first + c);
-  parts.end(name);
-}
-
-/// Whether the parts overlap after a translation of the first one.
-bool overlap_after(Scene scene, const Vec3& translation) {
-  const Object& first = scene.objects[0];
-  std::set<std::uint32_t> vertices;
-  for (std::uint32_t t = 0; t < first.triangle_count; ++t)
-    vertices.insert(scene.triangles[t].begin(), scene.triangles[t].end());
-  for (const std::uint32_t v : vertices) scene.vertices[v] += translation;
-  const ClashRecord record = clashes(scene, {});
-  return record.count(clash) + record.count(contained) == 1;
-}
-
-TEST(PackagedScenes, DepthsOfPairsOfScansAreBounded) {
-  // FARCULL_SCANS=100 for the campaign, on all scans that are closed.
-  const char* const wish = std::getenv("FARCULL_SCANS");
-  const int count = wish != nullptr ? std::atoi(wish) : 1;
-  std::vector<std::string> names = {"elephant.off"};
-  if (wish != nullptr) {
-    for (const char* name : {"armadillo.off", "ChineseDragon-10kv.off", "refined_elephant.off",
-                             "mannequin-devil.off", "bunny00.off"})
-      names.emplace_back(name);
-  }
-  RandomNumbers random(test_seed(9));
-  int tested = 0;
-  std::vector<double> ratios;
-  for (int k = 0; more_cases(k, 0, tested == count, 20 * count); ++k) {
-    Parts parts;
-    for (int i = 0; i < 2; ++i) {
-      const std::string& name = names[random.below(static_cast<int>(names.size()))];
-      add_scan(parts, name, 0.3 * i * Vec3(random.between(-1, 1), random.between(-1, 1), 0),
-               random);
-    }
-    const ClashRecord record = clashes(parts.scene, {.depth = true});
-    if (record.rows.empty() || !record.rows[0].depth) continue;  // apart, or not closed
-    ++tested;
-    const Penetration& depth = *record.rows[0].depth;
-    EXPECT_GT(depth.lo, 0) << k;
-    EXPECT_LE(depth.lo, depth.hi) << k;
-    EXPECT_FALSE(overlap_after(parts.scene, (1 + 1e-9) * depth.translation)) << k;
-    // The twins: none that is shorter than `lo` separates.
-    for (int i = 0; i < 3; ++i) {
-      Vec3 direction(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-      if (i == 0) direction = depth.translation;
-      EXPECT_TRUE(overlap_after(parts.scene, 0.999 * depth.lo * direction.normalized())) << k;
-    }
-    ratios.push_back(depth.hi / depth.lo);
-  }
-  std::ranges::sort(ratios);
-  std::printf("%d pairs of scans: hi / lo is %.3g at least, %.3g in the middle, %.3g at most\n",
-              tested, ratios.front(), ratios[ratios.size() / 2], ratios.back());
 }
 
 // Solids of unit cubes. Inside, touching and distances are those of the cubes.

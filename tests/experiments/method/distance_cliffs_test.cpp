@@ -82,35 +82,6 @@ TEST(DistanceCliffsTwin, ObjectsOfMoreThanOneLeafAreAllCompared) {
   EXPECT_GT(pairs_for_nearest(slivers(200, 17)), 200u * 100u);
 }
 
-TEST(DistanceCliffs, AnswersAboutDistantTrianglesEqualABruteForce) {
-  rational::Draws random(42);
-  for (int k = 0; k < trials(25, 10); ++k) {
-    std::vector<std::vector<CliffTriangle>> objects;
-    for (int o = 0; o < 6; ++o) {
-      std::vector<CliffTriangle> object;
-      for (int n = random.below(8); n >= 0; --n) {
-        const Vec3 middle = 1000 * Vec3(random.below(2), random.below(2), random.below(2));
-        CliffTriangle t;
-        for (Vec3& p : t) p = middle + Vec3(random.below(6), random.below(6), random.below(6));
-        object.push_back(t);
-      }
-      objects.push_back(object);
-    }
-    const Scene scene = reference::scene_of(objects);
-    const distance_lab::Truth truth(scene);
-    for (const double within : {3.0, std::numeric_limits<double>::infinity()}) {
-      for (const DistancePairs pairs : {DistancePairs::objects, DistancePairs::nearest}) {
-        const DistanceOptions options = {.pairs = pairs, .k = 2, .within = within, .verify = true};
-        const DistanceRecord record = distances(scene, options);
-        EXPECT_EQ(distance_lab::answers_of(record), truth.answers(options)) << k;
-        EXPECT_TRUE(record.verification->holds()) << k;
-      }
-    }
-    const DistanceOptions options = {.pairs = DistancePairs::all, .within = 3};
-    EXPECT_EQ(distance_lab::answers_of(distances(scene, options)), truth.answers(options)) << k;
-  }
-}
-
 // Cubes in a row, 0.5 apart: of so many objects only those that follow one another are within 0.6.
 TEST(DistanceCliffs, WithinADistanceOnlyObjectsInReachAreAsked) {
   std::vector<std::vector<CliffTriangle>> objects;

@@ -155,16 +155,6 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
   });
 }
 
-TEST(FloatingPointAnswers, AnOrdinaryCallerIsNotMentionedInText) {
-  Session session("");
-  const Scene scene = lab::tiny_scene();
-  RunOptions options;
-  options.method = Method::exact;
-  const Record record = run(scene, options, session);
-  EXPECT_FALSE(has_text(run_table(scene, record), "arithmetic"));
-  EXPECT_EQ(to_json(scene, record)["floating_point"]["callers"]["rounding"], "to nearest");
-}
-
 // A collider's, and the caller's environment afterwards, also where the call throws.
 TEST(FloatingPointAnswers, Collider) {
   for_all([](const Environment& environment, const Sample& sample) {
@@ -196,13 +186,6 @@ TEST(FloatingPointAnswers, Collider) {
     for (const FloatingPoint& f : {after_making, after, after_throwing})
       EXPECT_EQ(f, environment.found);
   });
-}
-
-TEST(FloatingPointAnswers, AnOrdinaryCallerOfAColliderIsNotMentioned) {
-  const std::vector<double> vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  const std::vector<std::uint32_t> triangles = {0, 1, 2, 0, 1, 2}, starts = {0, 1};
-  farcull::Collider collider;
-  EXPECT_EQ(collider.find({vertices, triangles, starts}).report.callers_arithmetic, "");
 }
 
 // The two exact oracles agree in every environment, on subnormal coordinates too.

@@ -80,38 +80,10 @@ TEST(GlMethods, RunsFollowThePlan) {
   }
 }
 
-TEST(GlMethods, FullFindsTheSamePairsByFarWithEitherOffset) {
-  for (int seed = 0; seed < 12; ++seed) {
-    const Scene scene = lab::random_scene(seed);
-    RunOptions exact;
-    exact.method = Method::exact;
-    const Record truth = run(scene, exact, session());
-    for (const char* offset : {"obb", "exact"}) {
-      for (const bool full : {false, true}) {
-        RunOptions options = options_of(Method::far);
-        options.offset = offset;
-        options.full = full;
-        const Record record = run(scene, options, session());
-        EXPECT_EQ(record.collisions.pairs, truth.collisions.pairs)
-            << seed << " " << offset << " full " << full;
-        EXPECT_EQ(record.verification->false_negatives, 0u);
-      }
-    }
-  }
-}
-
 bool ran(const Record& record, const std::string& part) {
   return std::ranges::any_of(record.trace, [&](const Stage& s) {
     return s.ran && name_of(s).find(part) != std::string::npos;
   });
-}
-
-TEST(GlMethods, ASessionKeepsCanvasesOfDifferentOptionsApart) {
-  const Scene scene = make_builtin_scene("crowd");
-  RunOptions options = options_of(Method::cullide);
-  EXPECT_EQ(run(scene, options, session()).found.device.depth_bits, 32);
-  options.depth_format = DepthFormat::fixed24;
-  EXPECT_EQ(run(scene, options, session()).found.device.depth_bits, 24);
 }
 
 // OBBs first, then exact offsets on what they have left, from the bits that they have set.
@@ -156,18 +128,6 @@ TEST(GlMethods, BoxesComeFirstOnlyWhereTheyCannotMiss) {
   EXPECT_EQ(setups(), 2);
   options.radius.factor = 0.9;
   EXPECT_EQ(setups(), 1);
-}
-
-TEST(GlMethods, ExactOffsetsAreLeftOutWhereFewTrianglesAreLeft) {
-  RunOptions options = options_of(Method::far, 128);
-  options.offset = "exact";
-  const Scene scene = make_builtin_scene("degenerate");
-  const Record record = run(scene, options, session());
-  EXPECT_FALSE(ran(record, "offset exact"));
-  const bool said = std::ranges::any_of(
-      record.trace, [](const Stage& s) { return name_of(s) == "offset exact" && !s.ran; });
-  EXPECT_TRUE(said);
-  EXPECT_LE(record.found.triangle_count, kFewTriangles);
 }
 
 TEST(GlMethods, ContactsOfAllThatIsMissedAreCounted) {
@@ -242,28 +202,6 @@ TEST(GlMethods, BothQueryModesGiveTheSame) {
     EXPECT_EQ(queries.found.pairs, flags.found.pairs) << to_string(method);
     EXPECT_EQ(ran(queries, "clusters of 4"), method != Method::s_cullide);
     EXPECT_FALSE(ran(flags, "clusters of 4"));
-  }
-}
-
-std::uint64_t total(const Record& record, std::uint64_t Stage::*count) {
-  std::uint64_t sum = 0;
-  for (const Stage& stage : record.trace) sum += stage.*count;
-  return sum;
-}
-
-TEST(GlMethods, QuickCullideKeepsNoMoreAndSaysWhatItSaved) {
-  for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
-    const Scene scene = make_builtin_scene(name);
-    const Record plain = run(scene, options_of(Method::cullide, 128), session());
-    const Record quick = run(scene, options_of(Method::quick_cullide, 128), session());
-    EXPECT_TRUE(std::includes(plain.found.pairs.begin(), plain.found.pairs.end(),
-                              quick.found.pairs.begin(), quick.found.pairs.end()))
-        << name;
-    EXPECT_GT(total(quick, &Stage::draws_saved), 0u) << name;
-    EXPECT_GT(total(quick, &Stage::queries_saved), 0u) << name;
-    EXPECT_EQ(total(plain, &Stage::draws_saved), 0u) << name;
-    EXPECT_FALSE(plain.promise.holds);
-    EXPECT_FALSE(quick.promise.holds);
   }
 }
 

@@ -219,19 +219,6 @@ TEST(Planner, IsTheSameTwiceAndNamesEveryStageInJson) {
   }
 }
 
-TEST(Planner, RefusesWhatTheMethodHasNoUseFor) {
-  Scene scene = make_builtin_scene("two-spheres");
-  RunOptions options;
-  options.method = Method::s_cullide;
-  EXPECT_EQ(error_of([&] { plan(scene, options); }).where, "two-spheres");
-  for (Object& object : scene.objects) object.self = true;
-  EXPECT_NO_THROW(plan(scene, options));
-  options.method = Method::far;
-  EXPECT_NO_THROW(plan(scene, options));
-  options.method = Method::cullide;
-  EXPECT_EQ(error_of([&] { plan(scene, options); }).where, "two-spheres");
-}
-
 TEST(Planner, CutsObjectsIntoPatchesForFar) {
   Scene scene = make_builtin_scene("two-spheres");
   RunOptions options;
@@ -268,7 +255,7 @@ TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
   EXPECT_GT(colliding, 0);
 }
 
-// The methods that need no GL, on every built-in scene; gl_plan_test.cpp has the others.
+// The methods that draw nothing, on every built-in scene.
 void expect_runs_follow(bool of_packaged_meshes) {
   const auto most_triangles =
       static_cast<std::size_t>(trials(5000));  // of a run that leaves out nothing
@@ -291,6 +278,32 @@ void expect_runs_follow(bool of_packaged_meshes) {
 
 TEST(Planner, RunsFollowIt) { expect_runs_follow(false); }
 TEST(PackagedScenes, RunsFollowTheirPlans) { expect_runs_follow(true); }
+
+// The methods that draw, on the native canvas; gl_methods_test.cpp has some on GL.
+TEST(Planner, RunsThatDrawFollowIt) {
+  Session session("native");
+  for (const std::string& name : lab::scene_names(false, 3000)) {
+    Scene scene = make_builtin_scene(name);
+    for (const Method method : all_methods()) {
+      if (!draws(method)) continue;
+      // S-CULLIDE asks triangle by triangle.
+      if (tests_self_alone(method) && scene.triangles.size() > 2000) continue;
+      for (const bool self : {false, true}) {
+        if (self ? !tests_self(method) : tests_self_alone(method)) continue;
+        for (Object& object : scene.objects) object.self = self;
+        for (const bool full : {false, true}) {
+          if (full && scene.triangles.size() > 3000) continue;
+          RunOptions options{.method = method, .resolution = 64, .device = "native"};
+          options.full = full;
+          options.verify = false;
+          if (fattens(method)) options.offset = "exact";
+          EXPECT_EQ(not_followed(run(scene, options, session)), "")
+              << name << " " << to_string(method) << " full " << full << " self " << self;
+        }
+      }
+    }
+  }
+}
 
 TEST(PlannerTwin, ARunThatDoesNotFollowIsNoticed) {
   const Scene scene = make_builtin_scene("two-spheres");
@@ -327,30 +340,6 @@ RC_GTEST_PROP(Planner, FullFindsTheSamePairs, ()) {
       RC_ASSERT(record.collisions.pairs == exact.collisions.pairs);
       RC_ASSERT(record.collisions.neighbour_pairs == exact.collisions.neighbour_pairs);
       RC_ASSERT(record.verification->false_negatives == 0u);
-    }
-  }
-}
-
-TEST(Planner, FullTakesEverything) {
-  const Scene scene = make_builtin_scene("far-apart");
-  const Record record = run(scene, on_cpu(Method::boxes, true));
-  EXPECT_EQ(record.trace.front().kind, StageKind::boxes);
-  EXPECT_EQ(record.trace.front().out, scene.triangles.size());
-  EXPECT_EQ(record.trace[1].reason, Reason::join_all);
-}
-
-TEST(ICollide, FindsThePairsOfExactAndKeepsEveryBoxPair) {
-  for (const char* name : {"two-spheres", "crowd", "degenerate", "far-apart"}) {
-    for (const bool self : {false, true}) {
-      Scene scene = make_builtin_scene(name);
-      for (Object& object : scene.objects) object.self = self;
-      const Record swept = run(scene, on_cpu(Method::i_collide));
-      const Record exact = run(scene, on_cpu(Method::exact));
-      EXPECT_EQ(swept.collisions.pairs, exact.collisions.pairs) << name;
-      EXPECT_EQ(swept.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << name;
-      EXPECT_EQ(swept.found.count, exact.found.count) << name;
-      EXPECT_TRUE(swept.promise.holds);
-      EXPECT_FALSE(broken(swept, true));
     }
   }
 }

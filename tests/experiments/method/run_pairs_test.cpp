@@ -89,15 +89,6 @@ TEST(RunPairs, GivesTheExactPairsOfAClearance) {
   expect_as_exact(self_scene("degenerate"), 0.25);
 }
 
-TEST(RunPairs, AClearanceOfZeroIsAPlainRun) {
-  const Scene scene = self_scene("random-soup");
-  const Record plain = run(scene, on_cpu(Method::boxes));
-  const Record zero = run(scene, on_cpu(Method::boxes, 0.0));
-  EXPECT_EQ(plain.found.pairs, zero.found.pairs);
-  EXPECT_EQ(plain.collisions.pairs, zero.collisions.pairs);
-  EXPECT_EQ(plain.collisions.neighbour_pairs, zero.collisions.neighbour_pairs);
-}
-
 // A crumpled sheet and another one across it, each with one vertex far away, which makes most of
 // its box empty: a tree over all boxes decides.
 Scene strays() {
@@ -278,73 +269,6 @@ TEST(RunPairs, CandidatesWithoutTheClearanceMissItsPairs) {
   const Scene scene = make_builtin_scene("needles");
   const Record plain = run(scene, on_cpu(Method::boxes));
   EXPECT_GT(account(scene, plain.found.pairs, {.clearance = 0.02}).false_negatives, 0u);
-}
-
-TEST(RunPairs, CullideAndQuickCullideRefuseObjectsAgainstThemselves) {
-  const Scene scene = self_scene("two-spheres");
-  for (const Method method : {Method::cullide, Method::quick_cullide}) {
-    RunOptions options;
-    options.method = method;
-    const Error error = error_of([&] { run(scene, options); });
-    EXPECT_EQ(error.where, "two-spheres");
-    EXPECT_TRUE(has_text(error.remedy, "boxes"));
-  }
-}
-
-TEST(RunPairs, JsonAndCsvHoldWhatIsNew) {
-  const Scene scene = folded();
-  const Record record = run(scene, on_cpu(Method::boxes, 0.125));
-  const nlohmann::ordered_json json = to_json(scene, record);
-  EXPECT_EQ(json["method"], "boxes");
-  EXPECT_EQ(json["resolution"], nullptr);
-  EXPECT_EQ(json["clearance"], 0.125);
-  EXPECT_EQ(json["device"]["none"], "the method draws nothing");
-  EXPECT_EQ(json["scene"]["self_objects"], scene.objects.size());
-  EXPECT_EQ(json["colliding_pairs"], record.collisions.pairs.size());
-  EXPECT_EQ(json["neighbour_pairs"], record.collisions.neighbour_pairs.size());
-  EXPECT_EQ(json["neighbours"], record.collisions.neighbours);
-  EXPECT_TRUE(json["views"].empty());
-  EXPECT_EQ(json["radius"], nullptr);
-
-  const std::string csv = pairs_csv(scene, record);
-  EXPECT_TRUE(csv.starts_with("object_a,triangle_a,object_b,triangle_b,neighbours\n"));
-  const auto lines = static_cast<std::size_t>(std::ranges::count(csv, '\n'));
-  EXPECT_EQ(record.collisions.neighbour_pairs.size(), 1u);
-  EXPECT_EQ(lines, 1 + record.collisions.pairs.size() + record.collisions.neighbour_pairs.size());
-  std::size_t neighbours = 0;
-  for (std::size_t at = csv.find(",1\n"); at != std::string::npos; at = csv.find(",1\n", at + 1))
-    ++neighbours;
-  EXPECT_EQ(neighbours, record.collisions.neighbour_pairs.size());
-}
-
-TEST(RunPairs, CompareRunsMethodsWithoutResolutionsOnce) {
-  CompareArguments arguments;
-  arguments.methods = "boxes,exact";
-  arguments.options.device = "cpu";
-  arguments.resolutions = "32,64";
-  const Comparison comparison = compare(make_builtin_scene("two-spheres"), arguments);
-  ASSERT_EQ(comparison.runs.size(), 2u);
-  EXPECT_EQ(comparison.runs[0][0].collisions.pairs, comparison.runs[1][0].collisions.pairs);
-}
-
-TEST(RunPairs, TheOldNameIsAnErrorThatGivesTheNewOne) {
-  const Error error = error_of([] { parse_method("far-pairs"); });
-  EXPECT_TRUE(error.remedy.starts_with("far-pairs is now called boxes"));
-  // The twin: another unknown name has no such hint.
-  EXPECT_FALSE(has_text(error_of([] { parse_method("far-pair"); }).remedy, "now called"));
-}
-
-TEST(RunPairs, OptionsOfDrawingAreRefused) {
-  for (const char* name : {"views", "resolution", "device"}) {
-    const std::string value = name == std::string("views")    ? "x"
-                              : name == std::string("device") ? "native"
-                                                              : "64";
-    const Error error = error_of([&] { read_options({{"method", "boxes"}, {name, value}}); });
-    EXPECT_EQ(error.where, "--" + std::string(name));
-    EXPECT_TRUE(has_text(error.reason, "has no meaning"));
-    // The twin: a method that draws takes it.
-    EXPECT_NO_THROW(read_options({{"method", "far"}, {name, value}}));
-  }
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
-# A headless Chromium that a test drives: one tab, over the pipe of its DevTools protocol, so that
-# nothing but Python's own library is needed. Software WebGL (SwiftShader).
+# A headless Chromium that a test drives: one tab, over the pipe of its DevTools protocol. Software WebGL
+# (SwiftShader).
 import base64
+import io
 import json
 import os
 import select
 import subprocess
 import tempfile
 import time
-import zlib
 
 
 class Browser:
@@ -120,24 +120,6 @@ class Browser:
                 raise TimeoutError(f"never became true: {condition}; {self.problems}")
             time.sleep(0.03)
 
-    def cpu_seconds(self):
-        """Of all processes of the browser that run."""
-        children, seconds = {}, {}
-        for name in filter(str.isdigit, os.listdir("/proc")):
-            try:
-                with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as file:
-                    words = file.read().rsplit(")", 1)[1].split()
-            except OSError:
-                continue  # it has ended
-            children.setdefault(int(words[1]), []).append(int(name))
-            seconds[int(name)] = (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
-        total, left = 0, [self.process.pid]
-        while left:
-            pid = left.pop()
-            total += seconds.get(pid, 0)
-            left += children.get(pid, [])
-        return total
-
     def open(self, url):
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=url)
@@ -176,59 +158,19 @@ class Browser:
 
 
 class Pixels:
-    """The pixels of a PNG of 8 bits a channel, RGB or RGBA, not interlaced."""
+    """The pixels of a PNG of 8 bits a channel, RGB or RGBA."""
 
     def __init__(self, png):
-        at, data = 8, b""
-        while at < len(png):
-            length = int.from_bytes(png[at:at + 4], "big")
-            kind, body = png[at + 4:at + 8], png[at + 8:at + 8 + length]
-            if kind == b"IHDR":
-                self.width, self.height = (int.from_bytes(body[i:i + 4], "big") for i in (0, 4))
-                assert body[8] == 8 and body[9] in (2, 6) and body[12] == 0
-                self.channels = 3 if body[9] == 2 else 4
-            if kind == b"IDAT":
-                data += body
-            at += 12 + length
-        raw, stride, n = zlib.decompress(data), self.width * self.channels, self.channels
-        before, self.rows = bytes(stride), []
-        high = int.from_bytes(b"\x80" * stride, "big")
-        low = high - (high >> 7)
-        for y in range(self.height):
-            kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-            if kind == 2:
-                # The row above is added, byte by byte, as one number: no carry leaves a byte, since its
-                # highest bit is added apart. The browser writes all rows so.
-                a, b = int.from_bytes(row, "big"), int.from_bytes(before, "big")
-                row = ((a & low) + (b & low) ^ (a ^ b) & high).to_bytes(stride, "big")
-            elif kind:
-                for i in range(stride):
-                    a = row[i - n] if i >= n else 0
-                    b, c = before[i], before[i - n] if i >= n else 0
-                    if kind == 1:
-                        row[i] = row[i] + a & 255
-                    elif kind == 3:
-                        row[i] = row[i] + (a + b) // 2 & 255
-                    else:
-                        p = a + b - c
-                        pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
-                        row[i] = row[i] + (a if pa <= pb and pa <= pc else b if pb <= pc else c) & 255
-            self.rows.append(bytes(row))
-            before = row
+        import matplotlib.image  # here, since a browser alone does without
+        self.rows = (255 * matplotlib.image.imread(io.BytesIO(png))[:, :, :3]).round().astype(int)
 
     def at(self, x, y):
-        n = self.channels
-        return tuple(self.rows[int(y)][n * int(x):n * int(x) + 3])
+        return tuple(self.rows[int(y)][int(x)].tolist())
 
     def as_rows(self):
         """The colours, row by row."""
-        n = self.channels
-        return [list(zip(row[0::n], row[1::n], row[2::n])) for row in self.rows]
+        return [list(map(tuple, row)) for row in self.rows.tolist()]
 
     def count(self, colour):
         """How many pixels have exactly this colour."""
-        n, whole, all_of = self.channels, b"".join(self.rows), -1
-        for channel, value in enumerate(colour):
-            is_value = bytes(int(x == value) for x in range(256))
-            all_of &= int.from_bytes(whole[channel::n].translate(is_value), "big")
-        return bin(all_of).count("1")
+        return int((self.rows == colour).all(axis=2).sum())

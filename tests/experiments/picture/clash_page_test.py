@@ -24,7 +24,7 @@ def text(b, name):
     return b.run(f"document.getElementById('{name}').textContent")
 
 
-for size in ((1280, 760), (820, 700), (400, 760)):
+for size in ((1280, 760), (400, 760)):
     with Browser(width=size[0], height=size[1]) as b:
         b.media(prefers_reduced_motion="reduce")
         shown(b, "#")

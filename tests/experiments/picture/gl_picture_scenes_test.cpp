@@ -96,15 +96,6 @@ TEST(GlPictureScenes, ASingleTinyMissIsSeenAndRinged) {
   EXPECT_TRUE(std::ranges::none_of(plain.pixels, [](const Rgba& p) { return p.a > 128; }));
 }
 
-TEST(GlPictureScenes, ManyMissesInOnePlaceHaveNoRing) {
-  const Hidden hidden;
-  std::vector<std::uint32_t> all(5'000);
-  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
-  Image image(300, 300, {255, 255, 255});
-  EXPECT_EQ(draw_missed(shared_lab().session().context(), hidden.scene, hidden.window, all, image),
-            0u);
-}
-
 TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
   const PictureResult r =
       made("two-spheres --method far --resolution 64 --radius published --size 200x160");
@@ -134,43 +125,6 @@ TEST(GlPictureScenes, TheCommandInTheFileAsksForTheSame) {
     const std::string once = command_of(picture_arguments(words));
     EXPECT_EQ(command_of(picture_arguments(once)), once) << words;
   }
-}
-
-TEST(GlPictureScenes, IsTheSamePictureEachTime) {
-  const std::string words = "two-spheres --compare cullide,far --resolution 64 --size 200x160";
-  EXPECT_EQ(made(words).image.pixels, made(words).image.pixels);
-}
-
-TEST(GlPictureScenes, AMovedSceneLooksLikeTheSceneItself) {
-  const auto inked = [](const PictureResult& r) { return pixels(r, 0, {255, 255, 255}); };
-  const std::size_t here = inked(made("two-spheres --method exact --size 200x200"));
-  // Rounding moves an edge by less than a sample here and there.
-  EXPECT_NEAR(static_cast<double>(inked(made("two-spheres@far --method exact --size 200x200"))),
-              static_cast<double>(here), 0.02 * static_cast<double>(here));
-  EXPECT_LT(here, 40'000u);
-}
-
-TEST(GlPictureScenes, FramesOfAMotionDiffer) {
-  const PictureResult a = made("two-spheres --method exact --frame 0 --frames 10 --size 200x200");
-  const PictureResult b = made("two-spheres --method exact --frame 5 --frames 10 --size 200x200");
-  EXPECT_NE(a.scene_hash, b.scene_hash);
-}
-
-TEST(GlPictureScenes, RefusesWhatCannotBeShown) {
-  EXPECT_EQ(error_of([] { made("far-apart --method exact --zoom"); }).where, "--zoom");
-  EXPECT_EQ(error_of([] { made("two-spheres --method s-cullide"); }).where, "two-spheres");
-  EXPECT_EQ(error_of([] { made("two-spheres --method cullide --self"); }).where, "two-spheres");
-  EXPECT_EQ(error_of([] { made("two-spheres --frame 30"); }).where, "--frame");
-  EXPECT_EQ(error_of([] { made("two-spheres --view y --up y"); }).where, "--up");
-  const ScratchFolder folder;
-  const std::string empty = folder.write("empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-  EXPECT_NE(message_of([&] { made(empty + " --method exact"); }), "");
-}
-
-TEST(GlPictureScenes, DegenerateTrianglesAreDrawn) {
-  const PictureResult r = made("degenerate --compare exact,cullide:64 --size 200x200");
-  EXPECT_GT(r.panels[0].colliding, 0u);
-  EXPECT_EQ(r.panels[1].missed > 0, pixels(r, 1, kMissedColour) > 0);
 }
 
 }  // namespace

@@ -44,12 +44,6 @@ TEST(PageBlocks, TheLargestDifferencesComeBack) {
   EXPECT_TRUE(numbers_of(packed_numbers({})).empty());
 }
 
-TEST(PageBlocks, NumbersOfAMeshBecomeSmall) {
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < 100'000; ++i) numbers.insert(numbers.end(), {i, i + 1, i + 300});
-  EXPECT_LT(packed_numbers(numbers).size(), numbers.size() * 4 / 100);
-}
-
 RC_GTEST_PROP(PageBlocks, BitsAreThoseOfTheNumbers, (const std::vector<bool>& wanted)) {
   std::vector<std::uint32_t> numbers;
   for (std::uint32_t i = 0; i < wanted.size(); ++i)
@@ -114,16 +108,6 @@ TEST(PageSteps, AMethodThatDrawsHasEveryResolutionOnceAscending) {
                                              "far at 32 px", "far at 128 px"};
   EXPECT_EQ(titles(at_resolutions({of(Method::cullide, 512), of(Method::far)}, {128, 32, 128})),
             expected);
-}
-
-TEST(PageSteps, PanelsOfOneMethodAreItsStepsOnce) {
-  EXPECT_EQ(at_resolutions({of(Method::cullide, 64), of(Method::cullide, 128)}, {64, 128}).size(),
-            2u);
-}
-
-TEST(PageSteps, MethodsWithoutAChoiceStayAsTheyAre) {
-  EXPECT_EQ(titles(at_resolutions({of(Method::exact), of(Method::boxes)}, {32, 64})),
-            (std::vector<std::string>{"exact", "boxes"}));
 }
 
 // The radius makes another method of it.

@@ -201,26 +201,6 @@ def check_kinds(b, page, pairs):
     check(len(set(listed.values())) == 6, f"the case lacks kinds: {listed}")
 
 
-def check_colours(b, pairs):
-    """A triangle that collides and was found, seen from near: its colour, lit. Around it the paper."""
-    set_value(b, "method", "exact", "change")
-    drawn(b)
-    good = 0
-    *_, width, height = place_of_canvas(b)
-    count = sum(map(len, pairs.values())) // 2  # those that collide are first
-    for triangle in b.run(f"[...farcull.frame.a].slice(0, {count})")[::20]:
-        b.run(f"choose({triangle}, true), choose(-1), farcull.view.camera.zoom = 60, farcull.view.zoom(1)")
-        drawn(b)
-        if b.run(f"farcull.view.pick({width / 2}, {height / 2})") != triangle:
-            continue  # something is in front of it
-        colour = pixel(b, width / 2, height / 2)
-        good += is_lit(colour, FOUND)
-        check(is_lit(colour, FOUND), f"triangle {triangle} has the colour {colour}")
-    check(good > 0, "no colliding triangle was seen: the case shows nothing")
-    b.key("0")
-    check(pixel(b, 3, 3) == PAPER, f"the paper is {pixel(b, 3, 3)}")
-
-
 def classes_of(rows, known={}):
     """Of each pixel of rows of colours what is seen there: paper, a colour of the legend or of an object, lit, or what
     is mixed of two."""
@@ -273,116 +253,40 @@ def check_flat(b, page, flat):
 
 
 def check_view(b):
-    """Orbit, pan, zoom, by mouse and keys; each changes the picture, and the reset brings it back."""
+    """Orbit, zoom, a cut, and an object that is hidden; each changes the picture, and is taken back."""
     b.run("document.getElementById('canvas').focus()")
     b.key("0")
     before = look(b)
     left, top, width, height = place_of_canvas(b)
     x, y = left + width / 2, top + height / 2
-    acts = {
-        "a drag": lambda: b.drag(x, y, x + 120, y + 40),
-        "a drag with the right button": lambda: b.drag(x, y, x + 90, y + 30, "right"),
-        "the wheel": lambda: b.ask("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-240),
-    }
-    for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
-        acts[key] = lambda key=key: b.key(key)
-        acts["Shift " + key] = lambda key=key: b.key(key, shift=True)
-    for key in "+-xyz":
-        acts[key] = lambda key=key: b.key(key)
-    address = "cameraText() + state.axis"
-    start, seen = b.run(address), set()
+    acts = {"a drag": lambda: b.drag(x, y, x + 120, y + 40), "ArrowLeft": lambda: b.key("ArrowLeft"), "+": lambda: b.key("+")}
     for name, act in acts.items():
-        b.run("document.getElementById('canvas').focus()")
         act()
-        b.wait(f"{address} !== {start!r}")
-        seen.add(b.run(address))
-        if name in ("a drag", "ArrowLeft", "x"):
-            check(look(b) != before, f"{name} changes nothing that is seen")
-        if name in ("x", "y", "z"):
-            b.key(name)
+        check(look(b) != before, f"{name} changes nothing that is seen")
         b.key("0")
-        check(b.run(address) == start, f"the view after {name} is not that of before")
-    check(len(seen) == len(acts), "two of the acts do the same")
     check(look(b) == before, "the view at the end is not that of the beginning")
-    check(b.run("document.activeElement.id") == "canvas", "the canvas lost the focus")
-
-
-def check_objects(b):
-    """Hiding and cutting by their controls."""
-    *_, width, height = place_of_canvas(b)
-    before = look(b)
     b.run("document.querySelector('#list input').click()")
-    after = look(b)
-    check(after != before and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
-    picked = b.run("(() => { const out = new Set(); const f = farcull.frame;"
-                   f"for (let x = 5; x < {width}; x += 90) for (let y = 5; y < {height}; y += 90)"
-                   "{ const t = farcull.view.pick(x, y); if (t >= 0) out.add(f.owner[t]); } return [...out]; })()")
-    check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
+    check(look(b) != before and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
     b.run("document.getElementById('show-all').click()")
-    check(look(b) == before, "showing all does not bring object 0 back")
     set_value(b, "axis", "x", "change")
-    cut = look(b)
-    b.run("document.getElementById('side').click()")
-    other = look(b)
-    check(cut != before and other != cut, "the cut and its side change nothing")
-    set_value(b, "cut", 200)
-    check(look(b) != other, "the place of the cut changes nothing")
-    b.run("document.getElementById('side').click()")
+    check(look(b) != before, "the cut changes nothing")
     set_value(b, "axis", "", "change")
-    check(look(b) == before, "the cut is not taken back")
+    check(look(b) == before, "hiding or cut is not taken back")
 
 
 def check_looks(b, page):
-    """Dark by the system; print; three sizes."""
+    """Dark by the system; print; a narrow window."""
     b.media(prefers_color_scheme="dark")
+    b.size(360, 740)
     shown(b, page)
     check(pixel(b, 3, 3) == DARK, f"dark paper is {pixel(b, 3, 3)}")
-    b.media(prefers_color_scheme="light")
+    check(b.run("document.documentElement.scrollWidth <= innerWidth"), "the page is wider than a narrow window")
     b.media("print")
     seen = b.run("['canvas', 'controls', 'legend', 'flat'].map((id) => getComputedStyle(document.getElementById(id)).display)")
     check(seen == ["none", "none", "none", "block"], f"printed: {seen}")
-    check(b.run("document.getElementById('flat').naturalWidth") > 1000, "the flat picture is not printed")
     b.media("", prefers_color_scheme="light")
-    shown(b, page)
-    for width, height in ((360, 740), (1024, 768), (1920, 1080)):
-        for theme in ("light", "dark"):
-            b.size(width, height)
-            b.media(prefers_color_scheme=theme)
-            paper = DARK if theme == "dark" else PAPER
-            check(pixel(b, 3, 3) == paper, f"{theme} at {width} px is {pixel(b, 3, 3)}")
-            over = b.run("document.documentElement.scrollWidth - innerWidth")
-            check(over <= 0, f"at {width} px the page is {over} px too wide")
-            check(b.run("farcull.view.cornersOfBoxes().every((p) => { p.project(farcull.view.camera);"
-                        "return Math.abs(p.x) <= 1 && Math.abs(p.y) <= 1; })"), f"at {width} px not all of the scene is seen")
-            check(b.run("document.getElementById('canvas').clientHeight") > 300, f"at {width} px the scene is small")
-            if os.environ.get("FARCULL_PAGE_SHOTS"):
-                drawn(b)
-                with open(f"{os.environ['FARCULL_PAGE_SHOTS']}/{width}-{theme}.png", "wb") as file:
-                    file.write(b.screenshot())
-    b.media(prefers_color_scheme="light")
     b.size(800, 600)
-
-
-def check_large(b, page):
-    """The first frame of a scene of 150,000 triangles is there within 5 s. A busy machine takes longer: there the
-    processor time counts, as that of 5 s on two cores."""
-    size = os.path.getsize(page)
-    check(size <= 12_000_000, f"the page of two-bunnies has {size} bytes")
-    before, begun = b.cpu_seconds(), time.monotonic()
     shown(b, page)
-    picture = look(b)  # its pixels are there, whatever the page says
-    took, used = time.monotonic() - begun, b.cpu_seconds() - before
-    check(Pixels(picture).count(MISSED) > 0, "the first frame of two-bunnies shows no missed pairs")
-    print(f"picture.page: two-bunnies: {size / 1e6:.1f} MB, first frame after {took:.1f} s, {used:.1f} s of processors")
-    check(took <= 5 or used <= 10, f"the first frame of two-bunnies took {took:.1f} s, {used:.1f} s of processors")
-    check(b.run("farcull.view.triangles") == 150816, "two-bunnies has another number of triangles")
-
-
-def check_dialogs(b):
-    for button, dialog, word in (("help", "keys", "turn"), ("licence-button", "licence", "Permission is hereby granted")):
-        b.run(f"document.getElementById('{button}').click()")
-        check(b.run(f"document.getElementById('{dialog}').open") and word in text(b, dialog), f"{dialog} does not open")
-        b.run(f"document.getElementById('{dialog}').close()")
 
 
 def spoiled(page, old, new):
@@ -417,21 +321,15 @@ def check_twins(b, page, pairs, kinds, flat):
         b.wait("document.getElementById('trouble') && !document.getElementById('trouble').hidden")
         check("cannot be shown" not in text(b, "trouble"), "the reader is told of damaged data")
 
-    def misses(path):
-        shown(b, path)
-        check(missed_pixels(b) > 0, "no misses are seen")
-
     def click(path):
         shown(b, path)
         check_click(b, pairs, 1)
 
     small = kinds[0]
     caught("a line on the console", START, "\nconsole.log('made up');start().catch(", looks, small)
-    caught("a request", START, "\nfetch('https://example.org/').catch(() => {});start().catch(", looks, small)
     caught("an exception", START, "\nsetTimeout(() => nothing_of_this_name());start().catch(", looks, small)
     caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', damaged, small)
-    caught("misses in another colour", "if (part == 2) colour = missed;", "if (part == 2) colour = found;", misses)
-    caught("objects in other colours", "colours.objects.map(shareOf)", "colours.objects.map(shareOf).reverse()",
+    caught("misses in another colour", "if (part == 2) colour = missed;", "if (part == 2) colour = found;",
            lambda path: check_flat(b, path, flat))
     caught("no misses beside the flat picture", "place.w > 0.5 ?", "place.w > 0.5 || part == 2 ?",
            lambda path: check_flat(b, path, flat))
@@ -446,8 +344,7 @@ def main():
         shown(b, page)
         print("picture.page: first frame after", b.run("document.documentElement.dataset.ready"), "ms")
         begun = time.monotonic()
-        for act in (lambda: check_steps(b, said), lambda: check_click(b, pairs), lambda: check_colours(b, pairs),
-                    lambda: check_view(b), lambda: check_objects(b), lambda: check_dialogs(b),
+        for act in (lambda: check_steps(b, said), lambda: check_click(b, pairs), lambda: check_view(b),
                     lambda: check_looks(b, page)):
             act()
             print(f"picture.page: {time.monotonic() - begun:.1f} s", flush=True)
@@ -458,10 +355,6 @@ def main():
         kinds = (sys.argv[4], partners(sys.argv[5]))
         check_kinds(b, *kinds)
         check_twins(b, page, pairs, kinds, flat)
-        if os.path.exists("large.html"):
-            check_large(b, "large.html")
-        else:
-            print("picture.page: not run: a scene of usual size, whose meshes are not there (experiments/meshes.sh)")
     with Browser("--disable-3d-apis") as b:
         shown(b, page)
         check(b.run("getComputedStyle(document.getElementById('flat')).display") == "block" and
@@ -470,7 +363,7 @@ def main():
         b.wait("document.getElementById('headline').textContent.startsWith('far')")
     if failures:
         sys.exit(1)
-    print("picture.page: every control was driven")
+    print("picture.page: passed")
 
 
 main()

@@ -27,71 +27,11 @@ TEST(PngWrite, ReadsBackPixelsAndTexts) {
   EXPECT_EQ(back.texts, texts);
 }
 
-TEST(PngWrite, GivesTheSameBytesAgain) {
-  const PngTexts texts = {{"Commit", "0123abc"}};
-  EXPECT_EQ(to_png(pattern(), texts), to_png(pattern(), texts));
-}
-
-TEST(Lettering, LettersDifferAndStandOnTheBaseline) {
-  const TextStyle style{.height = 14, .bold = false, .colour = {0, 0, 0}};
-  std::set<std::string> seen;
-  for (char c = ' '; c <= '~'; ++c) {
-    Image image(50, 40, {255, 255, 255});
-    draw_text(image, 10, 24, std::string(1, c), style, 50);
-    std::string ink;
-    for (const Rgba& pixel : image.pixels) ink.push_back(static_cast<char>(pixel.r));
-    EXPECT_TRUE(seen.insert(ink).second) << c << " looks like another";
-    EXPECT_EQ(c == ' ',
-              std::ranges::all_of(ink, [](char v) { return v == static_cast<char>(255); }));
-  }
-  // A capital is as high as the style says: rows 10 to 23, and nothing above or below them.
-  Image image(50, 40, {255, 255, 255});
-  draw_text(image, 10, 24, "H", style, 50);
-  for (int y = 0; y < 40; ++y) {
-    bool ink = false;
-    for (int x = 0; x < 50; ++x) ink = ink || image.at(x, y).r < 128;
-    EXPECT_EQ(ink, y >= 10 && y <= 23) << y;
-  }
-}
-
-TEST(Lettering, BoldHasMoreInkAndColourIsThatOfTheStyle) {
-  const auto ink = [](bool bold) {
-    Image image(120, 40, {255, 255, 255});
-    draw_text(image, 5, 24, "missed", {.height = 14, .bold = bold, .colour = {255, 0, 0}}, 120);
-    int out = 0;
-    for (const Rgba& pixel : image.pixels) {
-      EXPECT_EQ(pixel.r, 255);
-      EXPECT_EQ(pixel.g, pixel.b);
-      out += 255 - pixel.g;
-    }
-    return out;
-  };
-  EXPECT_GT(ink(true), ink(false));
-  EXPECT_GT(ink(false), 0);
-}
-
-TEST(Lettering, IsTheSameInEveryRunAndSaysWhatItDependsOn) {
-  const auto drawn = [] {
-    Image image(200, 40, {255, 255, 255});
-    draw_text(image, 5.25, 24.5, "FAR missed 0 of 3,857", {}, 200);
-    return image.pixels;
-  };
-  EXPECT_EQ(drawn(), drawn());
-  EXPECT_TRUE(lettering_version().starts_with("DejaVu Sans, pango 1.")) << lettering_version();
-  EXPECT_TRUE(has_text(lettering_version(), ", cairo 1."));
-}
-
 // The pixels of a text in a usual style.
 std::vector<Rgba> drawn(const std::string& text, double room = 300) {
   Image image(300, 40, {255, 255, 255});
   draw_text(image, 5, 24, text, {}, room);
   return image.pixels;
-}
-
-TEST(Lettering, ReadsUtf8AndMarksWhatIsNone) {
-  EXPECT_NE(drawn("\xc3\xa4"), drawn("a"));
-  EXPECT_EQ(drawn("H\xff!"), drawn("H\xef\xbf\xbd!"));
-  EXPECT_EQ(drawn("\xc3"), drawn("\xef\xbf\xbd")) << "cut in the middle of a letter";
 }
 
 TEST(Lettering, CutsWhatDoesNotFit) {
@@ -105,13 +45,6 @@ TEST(Lettering, CutsWhatDoesNotFit) {
     }
   }
   EXPECT_EQ(drawn("abc", 0), drawn("\xe2\x80\xa6", 0));
-}
-
-TEST(Lettering, TextOutsideTheImageIsCutOff) {
-  Image image(10, 10, {255, 255, 255});
-  draw_text(image, -30, 5, "wide text", {.height = 20}, 10);
-  draw_text(image, 5, 300, "below", {}, 10);
-  SUCCEED();
 }
 
 }  // namespace

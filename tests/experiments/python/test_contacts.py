@@ -1,4 +1,4 @@
-"""Kinds of contact, ignored objects and limits, against the program's own answers."""
+"""Kinds of contact and ignored objects, against the program's own answers."""
 
 import csv
 import json
@@ -7,7 +7,7 @@ import subprocess
 import farcull
 import numpy as np
 import pytest
-from lab import ALL, PROGRAM, error_of, refused
+from lab import ALL, PROGRAM, refused
 
 OBJECTS = [0, 40, 80, 120]
 
@@ -79,16 +79,6 @@ def test_kinds_are_those_of_the_program(scene):
     assert seen == set(farcull.KINDS) and len(farcull.KINDS) == 7
 
 
-def test_kinds_are_said_where_they_are_asked_for(scene):
-    V, F, _ = scene
-    asked, silent = farcull.collide(V, F, OBJECTS, **ALL), farcull.collide(V, F, OBJECTS, self=True)
-    assert silent.kinds is None and silent.neighbour_kinds is None
-    assert np.array_equal(asked.pairs, silent.pairs)
-    assert np.array_equal(asked.neighbour_pairs, silent.neighbour_pairs)
-    none = farcull.collide(V, F[:2], [0, 1], neighbours=False, contacts=True)
-    assert none.neighbour_kinds.shape == (0,)
-
-
 def test_ignored_objects_are_those_of_the_program(scene):
     V, F, program = scene
     whole, _ = program.rows()
@@ -104,21 +94,6 @@ def test_ignored_objects_are_those_of_the_program(scene):
         assert rows_of(farcull.collide(V, F, OBJECTS, ignore=[(1, 2)], **ALL)) != truth
         for nothing in (None, [], np.empty((0, 2), int)):
             assert rows_of(farcull.collide(V, F, OBJECTS, ignore=nothing, **ALL)) == whole
-
-
-def test_limits_are_those_of_the_program(scene):
-    V, F, program = scene
-    whole, _ = program.rows()
-    count = len(whole)
-    for limit in (1, 7, 500, count - 1, count, count + 1, 2**64 - 1):
-        truth, record = program.rows("--limit", str(limit))
-        result = farcull.collide(V, F, OBJECTS, limit=limit, **ALL)
-        assert rows_of(result) == truth == whole[:limit]
-        assert result.complete == record["complete"]
-        assert result.report.decided == record["decided_pairs"]
-        assert result.complete or limit <= count
-        assert not result.complete or limit >= count
-    assert farcull.collide(V, F, OBJECTS, limit=None, self=True).complete
 
 
 def test_runs_of_scenes_answer_the_same(scene):
@@ -144,73 +119,3 @@ def test_runs_of_scenes_answer_the_same(scene):
         assert read.run(method, verify=False).kinds is None
         for partial in (record, limited):
             assert refused(partial.certificate) == "certificate"
-
-
-def test_all_missed_pairs_are_without_those_of_ignored_objects():
-    tori = farcull.Scene("two-tori")
-    (V, F), second = (tori.vertices, tori.triangles), tori.object_starts[1]
-    V, F, objects = farcull.join((V, F[:second]), (V, F[second:]), (V, F[second:]))
-    three = farcull.Scene.from_arrays(V, F, objects)
-    options = dict(resolution=64, device="cpu")
-    record = three.run("cullide", ignore=[(2, 0), (1, 2)], **options)
-    missed = record.missed()
-    assert len(missed) == record.accounting["false_negatives"] > 10  # more than a record names
-    assert (missed < objects[2]).all()
-    # Twin: without `ignore` there are such pairs.
-    assert (three.run("cullide", **options).missed() >= objects[2]).any()
-
-
-def test_names_of_ignored_objects():
-    V, F = tangled(1)
-    twins = farcull.Scene.from_arrays(V, F, OBJECTS, names=["a", "a", "b:c", "d"])
-    owner = np.repeat(range(4), 40)
-
-    def objects(ignore):
-        return {(owner[a], owner[b]) for a, b in twins.run(ignore=ignore, verify=False).pairs}
-
-    every = {(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)}
-    assert objects(None) == every
-    assert objects([("b:c", "a")]) == every - {(0, 2), (1, 2)}
-    assert objects([("a", "a"), ("d", "b:c")]) == every - {(0, 1), (2, 3)}
-    # A * stands for any characters.
-    assert objects([("b*", "*")]) == every - {(0, 2), (1, 2), (2, 3)}
-    assert objects([("*:c", "d")]) == every - {(2, 3)}
-    assert "names 'x*', and no object" in str(error_of(twins.run, ignore=[("a", "d"), ("x*", "a")]))
-    for wrong in ([("a", "e")], [("d", "d")], [("a", 4)], [(0, 4)], [(1, 1)], ["ab"], [("a",)]):
-        assert refused(twins.run, ignore=wrong) == "ignore"
-
-
-def test_what_a_scene_file_ignores_is_ignored(scene):
-    V, F, program = scene
-    whole = farcull.Scene(*sorted(program.folder.glob("*.off")), self=True)
-    path = program.folder / "ignoring.json"
-    path.write_text(json.dumps({"objects": [{"mesh": f"o{k}.off", "self": True} for k in range(4)],
-                                "ignore": [["o0", "o*"]]}))
-    read = farcull.Scene(path)
-    assert read.ignored.tolist() == [[0, 1], [0, 2], [0, 3]] and whole.ignored.shape == (0, 2)
-    for method in ("boxes", "exact"):
-        expected = whole.run(method, contacts=True, ignore=[(0, 1), (2, 0), (0, 3), (1, 2)])
-        record = read.run(method, contacts=True, ignore=[("o1", "o2")])
-        assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, contacts=True))
-        assert record.accounting["false_negatives"] == 0 and record.accounting["ignored"] == 4 * 40 * 40
-        refused(record.certificate)
-    # A list is checked without the pairs that the scene ignores; this one lacks those of o1 and o2 as well.
-    ours = read.run(verify=False)
-    every = np.concatenate([ours.pairs, ours.neighbour_pairs])
-    assert farcull.check(read, pairs=every).proved and not farcull.check(whole, pairs=every).proved
-    assert not farcull.check(read, pairs=record.pairs).proved
-
-
-def test_frames_of_one_collider_answer_as_single_calls(scene):
-    V, F, _ = scene
-    options = dict(ALL, ignore=[(0, 1)], limit=300)
-    collider = farcull.Collider(**options)
-    for seed in range(5):
-        V, F = tangled(seed)
-        for types in (np.int64, np.uint32, np.int16):  # with copies and without
-            kept = collider.find(V, F.astype(types), OBJECTS)
-            assert rows_of(kept) == rows_of(farcull.collide(V, F, OBJECTS, **options))
-            assert len(rows_of(kept)) == 300 and not kept.complete
-    # An object that is not there is an error of one call alone.
-    assert refused(collider.find, V, F) == "ignore"
-    assert len(rows_of(collider.find(V, F, OBJECTS))) == 300

@@ -147,34 +147,6 @@ def test_a_call_leaves_the_lock_to_other_threads():
     assert int(out) > 20
 
 
-def test_threads_that_call_at_once_agree():
-    python("""
-    import farcull, threading
-    import numpy as np
-    rng = np.random.default_rng(3)
-    V = rng.normal(size=(1500, 3))
-    F = np.arange(1500).reshape(-1, 3)
-    expected = farcull.collide(V, F, self=True).pairs
-    wrong = []
-    def work(k):
-        for _ in range(10):
-            if k % 2:
-                same = np.array_equal(farcull.collide(V, F, self=True).pairs, expected)
-            else:
-                try:
-                    farcull.collide(V, F + 1, self=True)
-                    same = False
-                except farcull.InputError as error:
-                    same = error.where == "F"
-            if not same:
-                wrong.append(k)
-    threads = [threading.Thread(target=work, args=(k,)) for k in range(6)]
-    [t.start() for t in threads]
-    [t.join() for t in threads]
-    assert not wrong, wrong
-    """)
-
-
 def test_a_forked_process_answers_and_refuses_colliders_of_its_parent():
     python("""
     import farcull, os
@@ -197,52 +169,6 @@ def test_a_forked_process_answers_and_refuses_colliders_of_its_parent():
             os._exit(5)
     assert os.waitpid(child, 0)[1] == 0
     assert collider.find(V, F, [0, 1]).pairs.tolist() == [[0, 1]]
-    """)
-
-
-def test_it_can_be_imported_twice():
-    python("""
-    import sys, importlib
-    import farcull
-    first = farcull.collide
-    again = importlib.reload(farcull)
-    for name in [name for name in sys.modules if name.split(".")[0] == "farcull"]:
-        if name != "farcull._farcull":
-            del sys.modules[name]
-    import farcull
-    assert farcull.collide is not first
-    V, F = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]]
-    for collide in (first, again.collide, farcull.collide):
-        assert collide(V, F, [0, 1]).pairs.tolist() == [[0, 1]]
-    try:
-        farcull.collide(V, F)
-    except farcull.InputError:
-        pass
-    """)
-
-
-@pytest.mark.parametrize("first", ["pass", "import farcull"])
-def test_another_interpreter_of_the_process_is_refused(first):
-    out = python(f"""
-    {first}
-    import _xxsubinterpreters as interpreters
-    other = interpreters.create(isolated=False)
-    try:
-        interpreters.run_string(other, "import farcull")
-    except interpreters.RunFailedError as error:
-        print(error)
-    import farcull
-    print(farcull.collide([[0, 0, 0]], [[0, 0, 0]] * 2, self=True).pairs.shape)
-    """)
-    assert "not the main one" in out and out.endswith("(0, 2)\n")
-
-
-def test_errors_can_be_sent_to_other_processes():
-    python("""
-    import farcull, pickle
-    error = pickle.loads(pickle.dumps(farcull.InputError("threads", "are many", "give fewer")))
-    assert (error.where, error.reason, error.remedy) == ("threads", "are many", "give fewer")
-    assert str(error) == "threads: are many; give fewer"
     """)
 
 
@@ -270,17 +196,6 @@ def test_without_memory_it_says_so():
     print(farcull.collide(V, [[0, 1, 2], [0, 0, 0]], [0, 1]).pairs.tolist())
     """)
     assert out == 4 * "MemoryError\n" + "[[0, 1]]\n"
-
-
-def test_a_thread_that_outlives_the_interpreter_does_not_crash_it():
-    python(LARGE + """
-    import threading, time
-    def work():
-        while True:
-            farcull.collide(V[:3000], F[:1000], self=True)
-    threading.Thread(target=work, daemon=True).start()
-    time.sleep(0.5)
-    """)
 
 
 def test_a_thousand_frames_leak_nothing():

@@ -24,16 +24,6 @@ Scene scene_of(std::vector<std::size_t> sizes, bool self = false) {
   return scene;
 }
 
-TEST(Counted, OneIsSingular) {
-  EXPECT_EQ(counted(0, "study", "studies"), "0 studies");
-  EXPECT_EQ(counted(1, "study", "studies"), "1 study");
-  EXPECT_EQ(counted(2, "study", "studies"), "2 studies");
-  EXPECT_EQ(counted(1234567, "triangle is left", "triangles are left"),
-            "1,234,567 triangles are left");
-  EXPECT_EQ(grouped(999), "999");
-  EXPECT_EQ(grouped(1000), "1,000");
-}
-
 TEST(Counted, ReasonsOfStagesAgree) {
   for (int reason = 0; reason <= static_cast<int>(Reason::if_candidates); ++reason) {
     const auto text = [&](std::uint64_t n) {
@@ -99,31 +89,6 @@ TEST(NothingToTest, AgreesWithTheAccounting) {
       EXPECT_EQ(account(scene, kept).pairs_total == 0, !nothing_to_test(scene).reason.empty());
     }
   }
-}
-
-TEST(VerdictText, SaysWhetherAPairWasCulled) {
-  Accounting all;
-  all.pairs_total = 5736124416;
-  EXPECT_EQ(verdict_text(all),
-            "verified: no colliding pair was culled, 5,736,124,416 pairs accounted for");
-  all.false_negatives = 1;
-  EXPECT_EQ(verdict_text(all),
-            "NOT verified: 1 colliding pair was culled, 5,736,124,416 pairs accounted for");
-  all.false_negatives = 2;
-  EXPECT_EQ(verdict_text(all),
-            "NOT verified: 2 colliding pairs were culled, 5,736,124,416 pairs accounted for");
-}
-
-TEST(DefaultMethod, IsSaidWhereNoneIsNamed) {
-  RunOptions options;
-  EXPECT_EQ(options.method, kDefaultMethod);
-  EXPECT_EQ(default_method_line(options), "");
-  EXPECT_EQ(method_reason(options), "--method");
-  options.method_is_default = true;
-  const std::string line = default_method_line(options);
-  EXPECT_TRUE(line.starts_with("default    no --method: boxes ")) << line;
-  for (const Method method : all_methods())
-    EXPECT_EQ(line.find(" " + to_string(method)) != std::string::npos, true) << line;
 }
 
 }  // namespace

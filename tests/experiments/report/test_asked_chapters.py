@@ -57,21 +57,6 @@ def test_proximity_says_what_is_lost_and_by_whom():
     assert len(table(chapter, "proximity-lost")) == 4
 
 
-def test_proximity_compares_sizes_and_times():
-    chapter = chapter_of("proximity", proximity_rows())
-    sizes = table(chapter, "proximity-efficiency")
-    assert sizes[1] == ["field", "-", "40", "10", "4", "1.33"]
-    # The median over two frames, 10 and 5 times fewer; no diagram was asked for there.
-    assert sizes[2] == ["crowd:30", "2", "20 (20 to 20)", "7.50 (5 to 10)", "-", "-"]
-    field = figure(chapter, "proximity-triangles").panels[1]
-    assert [series.y for series in field.series] == [[30, 30], [10, 10], [40, 40], [4, 4]]
-    assert table(chapter, "proximity-exponents") == [["sets", "trees of boxes", "10", "1,000", "3", "1.00 (no interval of 3 "
-                                                     "points)"]]
-    assert table(chapter, "proximity-distances")[1] == ["field", "peer", "40", "3", "-", "-", "-", "0.25", "5",
-                                                        "made-up 1.0"]
-    assert figure(chapter, "proximity-error").panels[0].series[1].y == [0.25]
-
-
 @pytest.mark.parametrize("broken, said", [
     ((2, 0, 0), "BROKEN: clusters:64@seed1, voronoi-reliable, 64 cells: 2 of 50 objects lose"),
     ((0, 1, 0), "BROKEN: clusters:64@seed1, voronoi-reliable, 64 cells: 0 of 50 objects lose their nearest neighbour, "
@@ -80,15 +65,6 @@ def test_proximity_compares_sizes_and_times():
 def test_proximity_begins_with_the_promise_that_was_not_kept(broken, said):
     text = findings(chapter_of("proximity", proximity_rows(*broken)))
     assert text.startswith(said) and " lost 0 of " not in text and "farcull 0 of " not in text
-
-
-def test_proximity_says_what_is_not_known():
-    rows = proximity_rows()
-    del rows[0][1]["missed"]
-    rows[3] = row("clusters:64@seed1", "voronoi-reliable", left_out="64 cells leave too many pairs", resolution=64)
-    chapter = chapter_of("proximity", rows)
-    assert "One row of methods that promise does not say what they lost." in findings(chapter)
-    assert any("64 cells leave too many pairs" in limit for limit in chapter.limits)
 
 
 # ---- libraries

@@ -1,6 +1,5 @@
 """The chapters of accuracy, errors against time, the radius, precision, extreme scenes and the cloth, of rows that were
 made up: what is missed is told, and a promise that was not kept comes first."""
-import math
 
 import pytest
 
@@ -104,39 +103,6 @@ def test_accuracy_shows_cullide_falling_and_far_at_zero(far_misses):
     assert series(chapter, "accuracy", "FAR (OBB)").y == [far_misses, 0]
 
 
-def test_accuracy_leaves_no_form_of_cullide_out():
-    forms = {"cullide": 20, "cullide --rounds 1": 9, "cullide --rounds 1 --clear all --conservative": 2,
-             "cullide --rounds 1 --conservative": 3, "cullide --level objects": 0}
-    chapter = chapter_of("accuracy", [row("s", m, {**counts(n), "candidates": 100 + n}, resolution=64)
-                                      for m, n in forms.items()] +
-                         [row("s", "exact", {**counts(0), "candidates": 200})] + [far(), far(radius="published")])
-    assert [r[0] for r in table(chapter, "accuracy-forms")] == ["CULLIDE, " + form for form in (
-        "objects alone", "one round, all views, conservative", "one round, conservative", "one round")] + [
-            "CULLIDE", "FAR (OBB), there"]
-    assert ("The best of 5 forms of CULLIDE, the form as published, and FAR, at the same scenes and resolutions: CULLIDE, "
-            "objects alone: 0 of 20 (on 0 of 1 scene) missed, 100 candidates left; CULLIDE, one round: 9 of 20 (45 %, on 1 "
-            "of 1 scene) missed, 109 candidates left; FAR (OBB), there: 0 of 20") in findings(chapter)
-    names = {f"CULLIDE, {form}": y for form, y in (
-        ("as published", [45]), ("conservative", [15]), ("strict", [10]), ("other forms", [100, 0]))}
-    panel = figure(chapter, "accuracy-kept").panels[0]
-    assert {s.name: s.y for s in panel.series if s.name in names} == names and [m.at for m in panel.marks] == [10]
-    # The twin: a radius that promises nothing is no point of FAR.
-    assert [len(s.x) for s in panel.series if s.name.startswith("FAR")] == [1]
-
-
-def test_accuracy_shows_the_spread_of_seeds_and_the_size_of_triangles():
-    rows = [row(scene, "cullide --rounds 1", counts(n), resolution=64)
-            for scene, n in (("s", 5), ("s@seed101", 1), ("s@seed102", 4))]
-    chapter = chapter_of("accuracy", rows)
-    assert figure(chapter, "accuracy").panels[0].title == "s (3 seeds)"
-    line = series(chapter, "accuracy", "CULLIDE, one round")
-    assert (line.y, line.y_low, line.y_high) == ([4], [1], [5])
-    said = findings(chapter_of("accuracy", [row("s", f"cullide --rounds 1 @{size}px", counts(n, mean_pixels=size))
-                                            for size, n in ((1, 6), (4, 2))]))
-    assert "covers 1 pixel on average: CULLIDE, one round misses 6 of 20" in said
-    assert "covers 4 pixels on average: CULLIDE, one round misses 2 of 20" in said
-
-
 # ---- errors against time
 
 def timed_rows(exact_ms=9, runs=(None, None), left_out=""):
@@ -171,12 +137,6 @@ def test_error_time_has_the_front_of_what_nothing_beats():
     assert series(chapter, "error-time", "fcl-float") is None
 
 
-# Runs of the same turn are compared: 12 over 4, 8 over 3 and 9 over 5.
-def test_error_time_gives_ratios_with_their_intervals():
-    front = table(chapter_of("error-time", timed_rows(runs=((4, 3, 5), (12, 8, 9)))), "error-time-front")
-    assert front[1][2:4] == ["4", "0.375 (0.333 to 0.556)"]
-
-
 def test_void_rounds_are_left_out_and_counted():
     def chapter(void):
         rows = timed_rows()
@@ -187,34 +147,6 @@ def test_void_rounds_are_left_out_and_counted():
     said = "1 round of 1 of 1 timed points are void and left out"
     assert any(said in limit for limit in clean.limits) and not any("void" in limit for limit in loud.limits)
     assert [series(of, "error-time", "Boxes").x_high[0] for of in (clean, loud)] == [6, 99]
-
-
-def test_no_method_is_the_fastest_where_all_times_are_void():
-    # Times of s are void. Those of u are valid, but no method is right there.
-    rows = [row("s", "exact", counts(0), None)]  # as a study stores it
-    rows[0][2]["rounds"] = [{"ms": [8], "load": 1, "void": True}] * 3
-    assert "No time is valid, so no method is the fastest." in findings(chapter_of("error-time", rows))
-    wrong = rows + [row("u", "cullide", counts(3), 2, resolution=64)]
-    assert "Fastest without an error: no method on 1 of 1 scenes." in findings(chapter_of("error-time", wrong))
-
-
-# FAR takes 4 ms: the CULLIDE of 3 ms counts, that of 5 ms does not, though it misses less.
-@pytest.mark.parametrize("far_ms, last_ms, best, said", [
-    (4, 5, ["CULLIDE, one round at 128 px", "3", "40", "7 of 20"], "in 1 of 1 cases of scene and resolution of FAR."),
-    (4, 4, ["CULLIDE, one round at 256 px", "4", "40", "1 of 20"], "in 1 of 1 cases of scene and resolution of FAR."),
-    (1, 4, ["none is as fast", "-", "-", "-"],
-     "misses pairs in 0 of 1 cases of scene and resolution of FAR, and no CULLIDE is as fast in 1")])
-def test_error_time_compares_cullide_in_the_time_of_far(far_ms, last_ms, best, said):
-    rows = [far(ms=far_ms), row("s", "cullide", counts(9), 2, resolution=64)]
-    rows += [row("s", "cullide --rounds 1", counts(n), ms, resolution=px) for px, n, ms in ((128, 7, 3), (256, 1, last_ms))]
-    chapter = chapter_of("error-time", rows)
-    assert said in findings(chapter) and table(chapter, "error-time-equal")[0][4:] == best
-
-
-def test_error_time_joins_seeds():
-    chapter = chapter_of("error-time", [row(scene, "boxes", counts(0, True), ms) for scene, ms in (
-        ("s", 1), ("s@seed101", 9), ("s@seed102", 2))])
-    assert table(chapter, "error-time-front")[0] == ["s", "Boxes", "2", "-", "0", "0", "60"]
 
 
 # ---- radius
@@ -255,30 +187,6 @@ def test_radius_shouts_a_violation_at_the_budget(rows, said):
     assert found.startswith("BROKEN: " + said) and "beyond, fragment depth" not in found
 
 
-@pytest.mark.parametrize("on_scenes", [0, 3])
-def test_radius_begins_with_how_often_the_published_one_misses(on_scenes):
-    def placed(method, missed, radius="published"):
-        return row("a-b@crossing:1:1000", method, {
-            "placements": 1000, "colliding_placements": 900, "missed_placements": missed, "colliding": 4000,
-            "missed": missed, "largest_miss_px": 0.25 if missed else 0.0, "promises": radius == "budget"},
-            resolution=1024, depth_mode="fragment", offset="obb", radius=radius)
-
-    chapter = chapter_of("radius", [
-        far(missed=on_scenes, promises=False, radius="published"),
-        far("pixel-corners", 20, False, radius="published"), placed("far-snapped-8", 2), placed("far", 0),
-        placed("far-snapped-8", 0, "budget"), placed("far-snapped-8", 90, "0.5")])
-    said = findings(chapter)
-    first = ("On scenes that were not constructed against it, the published radius missed 0 of 20 (on 0 of 1 scene) "
-             "colliding pairs in 1 run with fragment depth; its failure end to end rests on the constructed "
-             "pixel-corners, where it missed 20 of 20.")
-    assert said.startswith(first) == (on_scenes == 0) and "BROKEN" not in said
-    assert "corners not snapped, the published radius missed something in 0 of 900 (95 % bound: at most 0.0033)" in said
-    assert ("8 subpixel bits, the published radius missed something in 2 of 900 (0.0022, 95 % interval 0.00027 to "
-            "0.0080) placements; the longest intersection that it missed is 0.250 px long.") in said
-    line, = figure(chapter, "radius-placements").panels[0].series
-    assert (line.x, line.y) == ([0.5, 1], [10, 0]) and 0 < line.y_high[1] < 1 and line.y_low[0] > 8
-
-
 # ---- precision
 
 def precise(*args, form="float32", **more):
@@ -297,49 +205,6 @@ def test_precision_tells_rounding_from_violations(at_budget):
     assert cells["fixed-function, published radius", "32-bit float"] == ["100", "10", "20", "0", "7,250", "7.25"]
     assert [m.at for p in figure(chapter, "precision").panels for m in p.marks] == [3.5, 1.5]
 
-
-@pytest.mark.parametrize("no_sample, steps, y", [(10, 0, math.nan), (0, 0, 0), (0, None, math.inf)])
-def test_precision_draws_no_zero_where_there_is_no_sample(no_sample, steps, y):
-    chapter = chapter_of("precision", [precise(no_sample, 0, "published", "fixed", more={"largest_steps": steps})])
-    assert repr(float(figure(chapter, "precision").panels[0].series[0].y[0])) == repr(float(y))
-    assert table(chapter, "precision")[0][3] == str(no_sample)
-
-
-# ---- extreme scenes
-
-def stability_rows(risk=7, kept=30):
-    rows = []
-    for scene, lost in (("contacts:slivers:24:1e2", 0), ("contacts:slivers:24:1e12", 4)):
-        rows += [row(scene, "cullide", counts(5 + 15 * (lost > 0)), resolution=64),
-                 row(scene, "fcl-float", {"colliding": 20, "missed": lost, "wrong": lost and 6, "promises": False}),
-                 far(scene, more={"at_risk": risk, "at_risk_bare": 9, "kept_triangles": kept}), row(scene, "exact", counts(
-                     0))]
-    rows += [far("contacts:gap:24:-1e3"), far("contacts:gap:24:1e3"), far("contacts:offset:24:1e9"),
-             row("cloth:450:1e8", "boxes", counts(0, True), frame=40), far("cloth:450:1e8@apart", frame=40)]
-    return rows
-
-
-def test_stability_says_who_misses_and_what_is_kept():
-    chapter = chapter_of("stability", stability_rows())
-    said = findings(chapter)
-    for part in ("missed 0 of 140 colliding pairs in 7 runs on 7 scenes in which views decided",
-                 "CULLIDE promises nothing, and missed 25 of 40 (62 %, on 2 of 2 scenes) colliding pairs.",
-                 "fcl-float promises nothing, and missed 4 of 40 (10 %, on 1 of 2 scenes) colliding pairs, and reported 6 "
-                 "pairs that do not collide."):
-        assert part in said
-    assert "slivers: no pair is lost" not in said and "slivers: FAR (OBB) cannot" not in said
-    assert [p.title for p in chapter.figures[0].panels] == [
-        "slivers", "overlaps", "gaps", "far from the origin", "cloth against itself and a sphere", "cloth on a sphere"]
-    assert series(chapter, "stability-missed", "CULLIDE").y == [25, 100]
-    rows = {r[0].split(",")[0]: r[5:] for r in table(chapter, "stability") if r[1] == "FAR (OBB)"}
-    assert rows["slivers"] == ["14", "18", "0", "20", "50", "3 at 100", "3 at 1e12"]
-    assert rows["gaps"][:2] == ["-", "-"], "not asked there"
-
-
-def test_stability_says_where_too_little_is_tested():
-    said = findings(chapter_of("stability", stability_rows(0, 95)))
-    assert "slivers: FAR (OBB) cannot cull 30 % of the triangles here; 0 missed says little there." in said
-    assert "slivers: no pair is lost with 0.9 of the radius by FAR (OBB), so these scenes do not test" in said
 
 
 # ---- cloth
@@ -373,36 +238,3 @@ def test_cloth_says_that_the_energy_is_bounded_and_what_is_not_run():
     ({}, 4, "FAR and boxes found different")])
 def test_cloth_shouts_what_is_not_as_it_has_to_be(last, far_colliding, said):
     assert "BROKEN: " + said in findings(chapter_of("cloth", cloth_rows(last, far_colliding)))
-
-
-# ---- model
-
-def model_rows(expected):
-    """Two scenes at two resolutions: 400 and 200 pairs are missed on average over four positions, of 1,000."""
-    def counts(missed, predicted):
-        return {"colliding": 1000, "positions": 4, "missed_in_all": 4 * missed, "missed_least": missed - 20,
-                "missed_most": missed + 20, "expected": predicted, "low": predicted * 0.7, "high": predicted * 1.3,
-                "outside": 0, "triangles": 50, "promises": False}
-
-    return [row(scene, method, counts(missed, predicted), resolution=resolution, **axes)
-            for scene in ("random-soup", "two-spheres")
-            for method, axes in (("cullide", {}), ("far", {"offset": "exact", "radius": "0.3"}))
-            for resolution, missed, predicted in ((64, 400, 390), (128, 200, expected))]
-
-
-def test_the_model_is_judged_by_the_share_of_right_predictions():
-    chapter = chapter_of("model", model_rows(210))
-    said = findings(chapter)
-    assert "Quick-CULLIDE, other scenes and seeds than those that the formula was found on: the prediction is within a factor " \
-        "of 1.5 of the mean at 2 of 2" in said and "Quick-CULLIDE, scenes that were looked at while it was found: the" in said
-    assert "No point with 20 missed pairs or more is off" in findings(chapter)
-    assert table(chapter, "model")[0][:4] == ["CULLIDE", "looked at", "2", "2"]
-    assert table(chapter, "model")[3][:2] == ["FAR (exact offsets), 0.3 of the radius", "others"]
-    panel = figure(chapter, "model").panels[0]
-    assert panel.series[0].x == [390, 210] and panel.series[0].y == [400, 200], "of two-spheres alone"
-    lines = figure(chapter, "model-resolution").panels[0].series
-    assert lines[0].y_low == [38, 18] and lines[1].y == [39, 21]
-    # The twin: a model that is wrong at half of the points.
-    wrong = findings(chapter_of("model", model_rows(350)))
-    assert wrong.count("at 1 of 2") >= 2 and "off by more on 4 scenes with a method" in wrong
-    assert "CULLIDE on random-soup (128 px: 350 predicted, 200 missed)" in wrong

@@ -11,7 +11,6 @@ import draw
 import estimates
 import pages
 import tables
-from draw import legible
 from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
 
 E = math.e
@@ -68,26 +67,6 @@ def test_the_interval_of_a_median_holds_what_it_says():
     assert held(9, 0) >= 0.95 > held(9, 1)
 
 
-def test_the_interval_holds_the_median_of_every_round():
-    runs = list(range(15))
-    cut = estimates.median_estimate(runs)
-    assert (cut.low, cut.high) == (1, 13)
-    slow = estimates.median_estimate(runs, [runs[:5], runs[5:10], [12, 13, 14, 14, 14]])
-    assert (slow.value, slow.low, slow.high) == (7, 1, 14)
-    # A round that is void has none.
-    assert estimates.median_estimate(runs, [runs, []]).high == 13
-
-
-def test_ratios_are_of_runs_in_the_same_turn():
-    slow = ((2, 20, 2), (2, 2, 200))  # turns in which the machine was slow
-    ratio = estimates.ratio_estimate(slow, tuple(tuple(2 * x for x in of) for of in slow))
-    assert (ratio.value, ratio.low, ratio.high, ratio.n) == (0.5, 0.5, 0.5, 6)
-    # The twin: turns that are not the same.
-    assert estimates.ratio_estimate(slow, ((4, 4, 40), (400, 4, 4))).high == 50
-    # A round that is void on one side has no ratio.
-    assert estimates.ratio_estimate(slow, ((4, 40, 4), ())).n == 3 and estimates.ratio_estimate(slow, ((), ())) is None
-
-
 @pytest.mark.parametrize("value, text", [(12345.6, "12,346"), (0.01234, "0.0123"), (0, "0"), (10, "10"), (-1.5, "-1.50"),
                                          (1234567, "1,234,567"), (math.nan, "-"), (1e-5, "1e-05"), (0.9996, "1.000")])
 def test_numbers_are_rounded_for_people(value, text):
@@ -106,19 +85,6 @@ def scaled(spec, values, room=200):
         label.get_text() for label in ax.yaxis.get_majorticklabels()]
 
 
-def test_zeros_have_a_place_of_their_own():
-    ax, place, ticks, labels = scaled(log("", zero=True), [0, 300, 5000])
-    at = [place(v) for v in (0, 0.5, 1)]
-    assert place(ax.get_ylim()[0]) < at[0] < at[2] and at[1] == pytest.approx((at[0] + at[2]) / 2)
-    assert labels[0] == "0" and all(v == 0 or v >= 1 for v in ticks)
-    assert ax.yaxis.get_transform().linthresh == 1
-    assert scaled(log("", zero=True), [0, 0.03, 50])[0].yaxis.get_transform().linthresh == pytest.approx(0.01)
-    ax = scaled(log("", zero=True), [0, 0])[0]
-    assert ax.get_ylim()[0] < 0 < ax.get_ylim()[1]
-    # The twins: without zeros nothing is linear, and an axis that does not show them has no place for them.
-    assert scaled(log("", zero=True), [3, 5000])[0].get_yscale() == scaled(log(""), [0, 3, 5000])[0].get_yscale() == "log"
-
-
 @pytest.mark.parametrize("axis", [Axis(), log("")])
 def test_an_axis_holds_every_value_of_any_size(axis):
     for exponent in range(-300, 300, 31):
@@ -129,14 +95,6 @@ def test_an_axis_holds_every_value_of_any_size(axis):
             assert 0 < len(ticks) <= 10
 
 
-def test_ticks():
-    assert sorted(scaled(log(""), [64, 128, 256, 512])[3], key=float) == ["64", "128", "256", "512"]
-    assert scaled(log(""), [10, 1e6])[3] == scaled(log(""), [0, 10, 1e6])[3] != scaled(log(""), [10, 1e3])[3]
-    assert len(scaled(log(""), [112, 131, 190])[3]) >= 2 <= len(scaled(Axis(low=0.96, high=1.04), [1], 60)[3])
-    assert 2 <= len(scaled(log(""), [1e-9, 1e9], 40)[3]) < len(scaled(log(""), [1e-9, 1e9], 200)[3])
-    assert [draw.tick_label(v) for v in (1000, 0.1, 0, 1e9, 1e-12)] == ["1,000", "0.1", "0", "10⁹", "10⁻¹²"]
-
-
 # ---- figures
 
 def two_panels(**first):
@@ -144,40 +102,6 @@ def two_panels(**first):
     return Figure("f", "t", "c", [Panel(title, series=[
         Series(name, [1, 2], [5, 0 if name[0] == "F" else 7]) for name in names], **(first if title == "first" else {}))
         for title in ("first", "second")])
-
-
-def names_in(figure):
-    return [[s.name for s in panel.series] for panel in figure.panels]
-
-
-def test_series_that_agree_are_one():
-    figure = two_panels()
-    legible(figure)
-    assert names_in(figure) == [["CULLIDE = Quick-CULLIDE", "FAR (OBB)"]] * 2
-    other = two_panels()  # the twin: they differ at one point of one panel
-    other.panels[1].series[1].y[0] = 6
-    legible(other)
-    assert len(names_in(other)[0]) == 3
-    long = two_panels()
-    for panel in long.panels:
-        panel.series[1].name = "x" * 90
-    legible(long)
-    assert names_in(long)[0][0] == "CULLIDE and 1 others" and "x" * 90 in long.caption
-    about = two_panels()  # the one that the figure is about gives the style
-    for panel in about.panels:
-        panel.series[2].y, panel.series[2].emphasis, panel.series[1].y = [5, 7], True, [1, 2]
-    legible(about)
-    assert names_in(about)[0] == ["Quick-CULLIDE", "FAR (OBB) = CULLIDE"]
-
-
-def test_a_method_looks_the_same_in_every_figure():
-    looks = draw.looks_of(two_panels())
-    assert looks["FAR (OBB)"].colour == draw.looks_of(Figure("g", "t", "", [Panel("", series=[
-        Series("other"), Series("FAR (OBB) = exact"), Series("farther")])]))["FAR (OBB) = exact"].colour
-    assert looks["CULLIDE"].colour != looks["Quick-CULLIDE"].colour
-    many = draw.looks_of(Figure("g", "t", "", [Panel("", series=[Series(f"{of} {i}") for of in ("x", "cgal")
-                                                                 for i in range(10)])]))
-    assert len({(look.colour, look.marker) for look in many.values()}) == 20
 
 
 def lines_at_zero(figure):

@@ -1,6 +1,5 @@
 """The chapters of scenes, offsets, culling, efficiency and scaling, and the comparison of devices, on rows that were
 made up. Most tests have a twin, in which the opposite is said."""
-import numpy as np
 import pytest
 
 from made_up import importlib, chapter_of, findings, row, study_of, table
@@ -96,16 +95,6 @@ def scene_counts(**more):
             "pixels_tenth": 1, "pixels_half": 4.0, "pixels_ninety": 9.0, **more}
 
 
-@pytest.mark.parametrize("scene, source", [
-    ("needles:60@seed101", "drawn, seed 101"), ("needles:60", "drawn, seed 2"),
-    ("needles:60@seed103@far", "drawn, seed 103"), ("crowd:60@offset-1e0", "drawn, seed 4"),
-    ("crowd:60@seed7@scale-1e3", "drawn, seed 7"), ("two-bunnies", "scanned or modelled"),
-    ("cloth:450:1e4", "simulated"), ("two-spheres", "constructed"), ("pixel-corners", "constructed")])
-def test_the_source_of_a_scene(scene, source):
-    chapter = chapter_of("scenes", [row(scene, "exact", scene_counts())])
-    assert table(chapter, "scenes")[0][1] == source
-
-
 def test_scenes_tell_the_size_of_triangles_at_each_resolution():
     chapter = chapter_of("scenes", [
         row("two-spheres", "exact", scene_counts(triangles=10240, colliding=300)),
@@ -145,26 +134,6 @@ def test_scaling_says_what_is_missed():
     chapter = chapter_of("scaling", rows)
     assert "CULLIDE missed 5 of 40 (12 %, on 1 of 1 scene) colliding pairs over all sizes." in findings(chapter)
     assert "at 128 and 512 px" in chapter.figures[0].caption
-
-
-def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
-    def rows(points, runs=9):  # time as n^2, with a spread over the runs
-        return [row(f"crowd:{n}", "exact", run_counts(objects=n),
-                    runs=[1e-3 * n * n * (0.96 + 0.01 * run) for run in range(runs)])
-                for n in (10 << i for i in range(points))]
-
-    six = chapter_of("scaling", rows(6))
-    assert [r[-1] for r in table(six, "scaling-exponents")] == ["2.00 (2.00 to 2.00)"]
-    series = six.figures[0].panels[0].series[0]
-    # Of nine runs the least and the largest.
-    assert np.allclose(np.array(series.y_low) / series.y, 0.96, rtol=1e-12)
-    assert np.allclose(np.array(series.y_high) / series.y, 1.04, rtol=1e-12)
-    caption = ("n = 6 points, each the median of {0} runs in 3 rounds; its interval goes from the fastest run to the "
-               "slowest, and were the runs independent it would hold the true median with {1} % and the median of "
-               "another {0} runs with {2} %. Bars")
-    assert six.figures[0].caption.startswith(caption.format(9, "99.6", 97))
-    assert chapter_of("scaling", rows(6, runs=3)).figures[0].caption.startswith(caption.format(3, "75", 60))
-    assert table(chapter_of("scaling", rows(5)), "scaling-exponents")[0][-1] == "2.00 (no interval of 5 points)"
 
 
 # ---- devices

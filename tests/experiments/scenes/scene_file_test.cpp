@@ -197,10 +197,6 @@ TEST_F(SceneFileTest, RefusesWrongFormWithItsPlace) {
   expect_refusal(R"({"Objects": []})", "Objects is an unknown key");
 }
 
-TEST_F(SceneFileTest, RefusesSelfBesideTheObjects) {
-  expect_refusal(R"({"objects": [{"mesh": "t.obj"}], "self": true})", "self is an unknown key");
-}
-
 TEST_F(SceneFileTest, RefusesWrongValuesWithTheirPlace) {
   expect_refused_key(R"("colour": 1)", "colour is an unknown key");
   expect_refused_key(R"("name": null)", "name is of type null");
@@ -297,30 +293,6 @@ TEST_F(SceneFileTest, RefusesPathsThatTheSystemWouldCutOrNotTake) {
                  "objects[0].mesh is a path of 5004 bytes");
 }
 
-TEST_F(SceneFileTest, SurvivesDamagedText) {
-  const std::string seed =
-      R"({"name": "s", "objects": [{"name": "a", "mesh": "t.obj"},
-          {"mesh": "t.obj", "scale": [1, 2, 3],
-          "rotate": {"axis": [0, 0, 2], "angle": 0.7},
-          "translate": [1, 0, 0], "split": "groups", "self": true}]})";
-  std::mt19937_64 words(6);
-  int refused = 0;
-  for (int round = 0; round < 3000; ++round) {
-    std::string text = seed;
-    for (std::size_t edits = 1 + words() % 3; edits > 0; --edits) {
-      text[words() % text.size()] =
-          words() % 2 == 0 ? "{}[]\",:0-e."[words() % 11] : static_cast<char>(words());
-    }
-    try {
-      read(text);
-    } catch (const Error& error) {
-      ++refused;
-      ASSERT_FALSE(error.remedy.empty());
-    }
-  }
-  EXPECT_GT(refused, 500);
-}
-
 // ---- arguments
 
 TEST_F(SceneFileTest, TakesEachMeshFileAsAnObject) {
@@ -331,10 +303,6 @@ TEST_F(SceneFileTest, TakesEachMeshFileAsAnObject) {
   EXPECT_EQ(scene.objects[1].triangle_count, 4u);
   EXPECT_EQ(scene.objects[2].name, "t#2");
   EXPECT_TRUE(same_bits(scene.vertices[1], Vec3(-0.0, 0.1, 0)));
-}
-
-TEST_F(SceneFileTest, TakesABuiltInScene) {
-  EXPECT_EQ(load_scene({"far-apart"}).name, "far-apart");
 }
 
 TEST_F(SceneFileTest, RefusesArgumentsThatAreNoScene) {
@@ -388,20 +356,6 @@ TEST(Ignore, OfNamesThatAreTheSameAllAreMeant) {
   EXPECT_EQ(error_of([&] { pairs_between(scene, "a*", "b", "here", "row 3"); }).reason,
             "row 3 names 'a*', which is the name of an object, and as a pattern fits others too");
   EXPECT_EQ(pairs_between(scene, "a2", "b", "here", "row 3"), (Pairs{{1, 2}}));
-}
-
-TEST(Ignore, PairsOfTwoPatternsAreThoseOfTheList) {
-  const Scene scene = scene_of({"base", "link1", "link2", "hand", "link"});
-  const auto pairs = [&](const char* a, const char* b) {
-    return pairs_between(scene, a, b, "here", "row 3");
-  };
-  EXPECT_EQ(pairs("link*", "hand"), (Pairs{{1, 3}, {2, 3}, {3, 4}}));
-  EXPECT_EQ(pairs("hand", "base"), (Pairs{{0, 3}}));
-  EXPECT_EQ(pairs("*", "*").size(), 10u);
-  const Error unknown = error_of([&] { pairs("base", "arm*"); });
-  EXPECT_EQ(unknown.where, "here");
-  EXPECT_EQ(unknown.reason, "row 3 names 'arm*', and no object is called so");
-  EXPECT_EQ(error_of([&] { pairs("han*", "hand"); }).reason, "row 3 names 'hand' alone");
 }
 
 TEST(Ignore, WhoAnswersAboutAllRefusesASceneThatIgnores) {

@@ -76,16 +76,6 @@ TEST(Merge, RefusesAPointThatTwoFilesHold) {
   EXPECT_TRUE(refuses("holds a point of", [&] { merge_stores(files, folder.path("out")); }));
 }
 
-// A run that was ended before its first row says nothing of the rows.
-TEST(Merge, TakesNoOffenceAtARunWithoutRows) {
-  const ScratchFolder folder;
-  std::vector<std::string> files;
-  for (int shard = 1; shard <= 2; ++shard)
-    files.push_back(measure_shard(folder.folder(), shard, 2));
-  { Store(files[1], Store::Access::write).begin_run(lab_provenance("decade")); }
-  EXPECT_NO_THROW(merge_stores(files, folder.path("out")));
-}
-
 TEST(Merge, DoesNotPutAFileBesideAJournalThatIsNotItsOwn) {
   const ScratchFolder folder;
   const std::string file = measure_shard(folder.folder(), 1, 1);
@@ -195,25 +185,6 @@ TEST(Versions, RowsOfAMissingProgramAreKept) {
   EXPECT_TRUE(refuses("lib 2 is here", [&] { measure(folder.folder(), asking("lib 2")); }));
   EXPECT_EQ(measure(folder.folder(), asking("lib 1.0")).studies.front().measured, 6u);
   EXPECT_EQ(libraries_in(path), std::set<std::string>{"lib 1.0"});
-}
-
-TEST(Versions, AnUpgradeOfWhatIsFinishedMixesNothing) {
-  const ScratchFolder folder;
-  measure(folder.folder(), asking("lib 1.0"));
-  EXPECT_EQ(measure(folder.folder(), asking("lib 1.1")).studies.front().measured, 0u);
-}
-
-TEST(Versions, AStoreThatHoldsTwoIsNotGoneOnWith) {
-  const ScratchFolder folder;
-  const std::string path = measure(folder.folder(), asking("lib 1.0", 7)).store;
-  {
-    Store store(path, Store::Access::write);
-    Measurement newer;
-    newer.counts = {{"library", "lib 1.1"}};
-    store.add("counting", 1, 8, newer);
-  }
-  EXPECT_TRUE(has_text(error_of([&] { measure(folder.folder(), asking("lib 1.1")); }).reason,
-                       "its rows of lemma are of lib 1.1, and others of lib 1.0"));
 }
 
 std::string measure_shard(const std::string& folder, int index, const std::string& version) {

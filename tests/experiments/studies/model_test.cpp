@@ -70,15 +70,6 @@ TEST(MissModel, ItsConstantIsThatOfRandomTrianglesOnRandomGrids) {
   EXPECT_GT(mean_error(12), 0.02);
 }
 
-TEST(MissModel, ItsProbabilityHasTheRightLimits) {
-  EXPECT_NEAR(centre_probability(1e-4, 0.01, 0.01), 1e-4, 1e-6);
-  EXPECT_NEAR(centre_probability(400, 20, 20), 1, 1e-3);
-  EXPECT_NEAR(centre_probability(5, 100, 0.1), 0.1, 1e-3) << "between two rows of centres";
-  EXPECT_NEAR(centre_probability(0.09 * 3.14159265, 0.6, 0.6, 0.3), 0.09 * 3.14159265, 1e-6)
-      << "a fattened point";
-  EXPECT_EQ(centre_probability(2, 1.5, 1.5, 0.75), 1) << "no position misses such a disc";
-}
-
 double factor_between(double a, double b) { return std::max(a / b, b / a); }
 
 TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {

@@ -1,28 +1,26 @@
-// The counts of the studies' quick grids on the native canvas, as a text file of the repository.
+// The counts of the studies' quick grids on the native canvas, as hashes in a file of the
+// repository: one line for each method of a study.
 //
-//   # comment
-//   [STUDY] COUNT COUNT ..    a section; the next lines have these counts, in this order
-//   KEY;..;KEY;COUNT;..       a point: the ten columns of its key (point.h), then its counts
-//   [scenes]
-//   SCENE;FRAME;HASH          the triangles of each scene, which all its points share
+//   STUDY;METHOD;POINTS;HASH;HASH;HASH;HASH
 //
-// A number that may have a fraction is written in hexadecimal, so that the text holds all its bits.
-// Sections and lines are sorted. Times are no part of it. Points of other libraries are left out:
+// The hashes are of the rows of the first point of each kind, of the first eight of each kind, of
+// all points, and of all points on packaged meshes, which a machine need not have; "-": there are
+// none. Points that share method, offset, radius rule and kind of depth are of one kind, and come
+// in the order of their rows. A row holds the key of a point (point.h) and all its counts, those
+// with a fraction in hexadecimal. Times are no part of it. Points of other libraries are left out:
 // their counts are those of the library's version.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
@@ -30,28 +28,24 @@
 
 namespace farcull::native_counts {
 
+/// Parts of the points, in the order of the columns. The first two are parts of the third.
+enum Part : std::uint8_t { first_of_kind, eight_of_kind, without_meshes, on_meshes };
+inline constexpr std::array<const char*, 4> kParts = {"first", "eight", "all", "meshes"};
+
 struct StudyGridPoint {
   const Study* study;
   Point point;
+  std::string key;  // the ten columns of its key
+  std::array<bool, 4> is_in = {};
 };
 
-/// Whether the scene of the point is made of packaged meshes, which a machine need not have.
-inline bool needs_meshes(const Point& point) {
-  const BuiltinScene* const scene = find_builtin_scene(key_of(point).scene);
-  return scene != nullptr && scene->needs_meshes;
-}
-
-/// Whether counts of the point are in the file. Those of other libraries are of their versions.
-/// Sizes of potential neighbour sets change with each improvement of the search; their tests stand
-/// in tests/experiments/measure.
+/// Whether counts of the point are in the file. Sizes of potential neighbour sets change with each
+/// improvement of the search; their tests stand in tests/experiments/measure.
 inline bool is_counted(const Point& point) {
-  return std::visit(
-      [](const auto& of) {
-        using Of = std::decay_t<decltype(of)>;
-        return !(std::is_same_v<Of, PeerPoint> || std::is_same_v<Of, LibraryPoint> ||
-                 std::is_same_v<Of, DistancePoint> || std::is_same_v<Of, NeighbourPoint>);
-      },
-      point);
+  return !std::holds_alternative<PeerPoint>(point) &&
+         !std::holds_alternative<LibraryPoint>(point) &&
+         !std::holds_alternative<DistancePoint>(point) &&
+         !std::holds_alternative<NeighbourPoint>(point);
 }
 
 /// The points of a study's quick grid. The study "model" has none: its predictions are sums of
@@ -61,18 +55,25 @@ inline std::vector<StudyGridPoint> quick_points(const Study& study) {
   if (study.name == "model") return out;
   for (Point& point : study.grid({.quick = true, .seed = 1})) {
     if (!is_counted(point)) continue;
-    out.push_back({&study, std::move(point)});
+    std::string key;
+    for (const std::string& axis : axis_values(key_of(point))) key += axis + ";";
+    out.push_back({&study, std::move(point), key});
+  }
+  std::ranges::sort(out, {}, &StudyGridPoint::key);
+  std::map<std::string, int> had;
+  for (StudyGridPoint& one : out) {
+    const PointKey key = key_of(one.point);
+    const BuiltinScene* const scene = find_builtin_scene(key.scene);
+    one.is_in[on_meshes] = scene != nullptr && scene->needs_meshes;
+    if (one.is_in[on_meshes]) continue;
+    const bool factor = !key.radius || (!key.radius->published && key.radius != kBudgetRadius);
+    const int before =
+        had[key.method + ";" + key.offset + ";" + (factor ? "factor" : column_text(key.radius)) +
+            ";" + column_text(key.depth_format) + ";" + column_text(key.depth_mode)]++;
+    one.is_in = {before < 1, before < 8, true, false};
   }
   return out;
 }
-
-/// A line of the file.
-struct Line {
-  std::string section;  // "[STUDY] COUNT COUNT .."
-  std::string key;      // the ten columns
-  std::string counts;
-  std::string scene, hash;  // the key of the scene's own line, and its hash; empty: it has none
-};
 
 inline std::string text_of(const CountValue& value) {
   if (const auto* const yes = std::get_if<bool>(&value)) return *yes ? "1" : "0";
@@ -83,109 +84,98 @@ inline std::string text_of(const CountValue& value) {
   return text;
 }
 
-/// key: that of the point, whatever was measured at it.
-inline Line line_of(const Study& study, const PointKey& key, const Counts& counts) {
-  Line out{.section = "[" + study.name + "]", .key = {}, .counts = {}, .scene = {}, .hash = {}};
-  const std::vector<std::string> axes = axis_values(key);
-  for (std::size_t i = 0; i < axes.size(); ++i) out.key += (i == 0 ? "" : ";") + axes[i];
-  for (const auto& [name, value] : named(counts)) {
-    if (name == "scene_hash") {
-      out.scene = key.scene + ";" + (key.frame >= 0 ? std::to_string(key.frame) : "");
-      out.hash = text_of(value);
-      continue;
-    }
-    out.section += " " + name;
-    out.counts += (out.counts.empty() ? "" : ";") + text_of(value);
-  }
-  return out;
+/// key: that of the point, whatever was measured.
+inline std::string row_of(const Study& study, const std::string& key, const Counts& counts) {
+  std::string out = study.name + ";" + key, hash;
+  for (const auto& [name, value] : named(counts))
+    (name == "scene_hash" ? hash : out) += " " + name + "=" + text_of(value);
+  return out + hash;
 }
 
 /// Measures the point. Throws Error as the study does, and where nothing could be measured.
-inline Line measured(const Study& study, const Point& point, const PointKey& key, Lab& lab) {
+inline std::string measured_row(const Study& study, const Point& point, const std::string& key,
+                                Lab& lab) {
   const PointResult result = study.measure(point, lab);
   if (!result.left_out.empty()) throw Error(describe(point), result.left_out, "look into it");
-  return line_of(study, key, result.counts);
+  return row_of(study, key, result.counts);
 }
 
-inline constexpr const char* kScenes = "[scenes]";
+/// The hash of rows in any order.
+struct RowsHash {
+  std::uint64_t rows = 0, sum = 0;
+  void add(const std::string& row) {
+    Fnv1a hash;
+    hash.add(row);
+    sum += hash.value();
+    ++rows;
+  }
+  std::string text() const {
+    char text[20];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(sum));
+    return rows == 0 ? "-" : text;
+  }
+};
 
-/// The file: by section, by key.
-using Table = std::map<std::string, std::map<std::string, std::string>>;
+/// By study and method: a hash for each part.
+using Table = std::map<std::string, std::array<RowsHash, 4>>;
 
-/// Throws Error where the table has another line for the point, or another hash for its scene.
-inline void add(Table& table, const Line& line) {
-  const auto put = [&](const std::string& section, const std::string& key, const std::string& is) {
-    const auto [at, is_new] = table[section].try_emplace(key, is);
-    if (!is_new && at->second != is)
-      throw Error(section + " " + key, "it is " + at->second + " and " + is, "look into it");
-  };
-  put(line.section, line.key, line.counts);
-  if (!line.hash.empty()) put(kScenes, line.scene, line.hash);
+inline void add(Table& table, const StudyGridPoint& point, const std::string& row) {
+  std::array<RowsHash, 4>& hashes = table[point.study->name + ";" + key_of(point.point).method];
+  for (std::size_t part = 0; part < hashes.size(); ++part)
+    if (point.is_in[part]) hashes[part].add(row);
 }
 
-/// "[STUDY]" of a section.
-inline std::string study_of(const std::string& section) {
-  return section.substr(0, section.find(' '));
-}
+/// The lines of the file: by study and method, the number of points and the hashes.
+using Lines = std::map<std::string, std::array<std::string, 5>>;
 
-/// Empty, or how the line of a measured point differs from the table.
-inline std::string difference(const Table& table, const Line& line) {
-  const auto look = [&](const std::string& section, const std::string& key,
-                        const std::string& is) -> std::string {
-    const std::string before = section + "\n  " + key + ": ";
-    const auto found = table.find(section);
-    if (found == table.end()) return before + "the file has no such section\n";
-    const auto at = found->second.find(key);
-    if (at == found->second.end()) return before + "the file has no such line\n";
-    if (at->second == is) return "";
-    return before + "\n    " + is + "\n  and the file has\n    " + at->second + "\n";
-  };
-  std::string out = look(line.section, line.key, line.counts);
-  if (!line.hash.empty()) out += look(kScenes, line.scene, line.hash);
-  return out;
-}
-
-inline std::string to_text(const Table& table, const std::string& header) {
-  std::string out = header;
-  for (const auto& [section, lines] : table) {
-    out += section + "\n";
-    for (const auto& [key, counts] : lines) out += key + ";" + counts + "\n";
+inline Lines lines_of(const Table& table) {
+  Lines out;
+  for (const auto& [name, hashes] : table) {
+    std::array<std::string, 5>& line = out[name];
+    line[0] = std::to_string(hashes[without_meshes].rows + hashes[on_meshes].rows);
+    for (std::size_t part = 0; part < hashes.size(); ++part) line[part + 1] = hashes[part].text();
   }
   return out;
 }
 
-/// Throws Error naming `path` for a text that is no such file.
-inline Table parse(const std::string& text, const std::string& path) {
-  const auto refuse = [&](const std::string& line) {
-    throw Error(path, "this line is none of its format: " + line,
-                "make it anew: bash experiments/native_counts.sh --renew");
-  };
-  Table out;
-  std::map<std::string, std::string>* section = nullptr;
-  bool scenes = false;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line.front() == '#') continue;
-    if (line.front() == '[') {
-      section = &out[line];
-      scenes = line == kScenes;
-      continue;
-    }
-    std::size_t end = 0;  // of the key: before the counts
-    for (std::size_t i = 0; i < (scenes ? 2 : field_names<PointKey>().size()); ++i) {
-      end = line.find(';', i == 0 ? 0 : end + 1);
-      if (end == std::string::npos) refuse(line);
-    }
-    if (section == nullptr || !section->emplace(line.substr(0, end), line.substr(end + 1)).second)
-      refuse(line);
+inline std::string to_text(const Lines& lines) {
+  std::string out;
+  for (const auto& [name, line] : lines) {
+    out += name;
+    for (const std::string& field : line) out += ";" + field;
+    out += "\n";
   }
   return out;
 }
 
-inline Table read(const std::string& path) {
+/// Throws Error naming the file where it is none.
+inline Lines read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path, "it cannot be read", "name the file of counts");
-  return parse({std::istreambuf_iterator<char>(file), {}}, path);
+  Lines out;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with('#')) continue;
+    std::vector<std::string> fields;
+    std::istringstream in(line);
+    for (std::string field; std::getline(in, field, ';');) fields.push_back(field);
+    std::array<std::string, 5> hashes;
+    if (fields.size() != 7)
+      throw Error(path, "this line is none of its format: " + line, "renew it");
+    std::copy(fields.begin() + 2, fields.end(), hashes.begin());
+    out[fields[0] + ";" + fields[1]] = hashes;
+  }
+  if (out.empty()) throw Error(path, "it has no counts", "name the file of counts");
+  return out;
+}
+
+/// The studies and methods whose hash of this part the file has otherwise, or not.
+inline std::vector<std::string> differences(const Lines& file, const Table& measured, Part part) {
+  std::vector<std::string> out;
+  for (const auto& [name, hashes] : measured) {
+    const auto at = file.find(name);
+    const std::string expected = at == file.end() ? "-" : at->second[part + std::size_t{1}];
+    if (hashes[part].text() != expected) out.push_back(name);
+  }
+  return out;
 }
 
 }  // namespace farcull::native_counts

@@ -311,24 +311,6 @@ TEST(RunStudies, TriesAgainWhatWasLeftOutAndNothingElse) {
   EXPECT_EQ(difference(store_path(folder.folder()), store_path(undisturbed.folder())), "");
 }
 
-TEST(RunStudies, TriesAFailedPointAgainAndMeasuresTheOthers) {
-  const ScratchFolder folder, undisturbed;
-  Study study = counting_study(10);
-  Study failing = study;
-  failing.measure = [right = study.measure](const Point& point, Lab& lab) {
-    if (number_of(point) % 4 == 0) throw Error("device", "is lost", "try again");
-    return right(point, lab);
-  };
-  const StudiesSummary first = run_studies(lab_request(folder.folder(), {failing}));
-  EXPECT_EQ(first.failed.size(), 2u);
-  EXPECT_EQ(first.studies.front().measured, 8u);
-  const StudiesSummary second = run_studies(lab_request(folder.folder(), {study}, true));
-  EXPECT_TRUE(second.failed.empty());
-  EXPECT_EQ(second.studies.front().measured, 2u);
-  run_studies(lab_request(undisturbed.folder(), {study}));
-  EXPECT_EQ(difference(store_path(folder.folder()), store_path(undisturbed.folder())), "");
-}
-
 TEST(RunStudies, NamesARowThatBreaksAPromiseAlsoAfterAResume) {
   const ScratchFolder folder;
   Study study = counting_study(3);
@@ -373,21 +355,6 @@ TEST(Counts, AreStoredUnderTheirNamesInOrder) {
   run.promises = false;
   EXPECT_FALSE(breaks_promise(stored({.counts = run})));
   EXPECT_TRUE(stored({.left_out = "why"}).counts->empty());
-}
-
-TEST(RunStudies, SaysWhatIsLeft) {
-  const ScratchFolder folder;
-  std::vector<StudiesProgress> seen;
-  run_studies(lab_request(folder.folder(), {counting_study(5, std::chrono::milliseconds(2))}),
-              [&](const StudiesProgress& p) { seen.push_back(p); });
-  ASSERT_EQ(seen.size(), 5u);
-  EXPECT_FALSE(seen.front().remaining_s);
-  for (std::size_t i = 1; i < seen.size(); ++i) {
-    EXPECT_EQ(seen[i].done, i);
-    EXPECT_EQ(seen[i].points, 5u);
-    // Each point takes at least 2 ms.
-    EXPECT_GE(seen[i].remaining_s.value(), 0.002 * static_cast<double>(5 - i));
-  }
 }
 
 }  // namespace

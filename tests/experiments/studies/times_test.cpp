@@ -42,20 +42,6 @@ TEST(Times, OfAllPointsComeInRoundsAndOfASceneInTurn) {
   for (const Row& row : rows) EXPECT_TRUE(is_whole(row.measurement));
 }
 
-// The points that are not timed come between the first round and the second.
-TEST(Times, LeaveRoomBetweenTheRounds) {
-  const ScratchFolder folder;
-  std::vector<std::string> runs;
-  Study counting = counting_study(3);
-  counting.measure = [&runs, right = counting.measure](const Point& point, Lab& lab) {
-    runs.push_back("counted");
-    return right(point, lab);
-  };
-  run_studies(lab_request(folder.folder(), {timed_study({"a"}, runs), counting}));
-  const std::string round = "a boxes, a exact, a boxes, a exact";
-  EXPECT_EQ(joined(runs), round + ", counted, counted, counted, " + round + ", " + round);
-}
-
 TEST(Times, GoOnWithTheNextRoundWhereTheyWereEnded) {
   const ScratchFolder folder, parts;
   std::vector<std::string> runs;

@@ -269,39 +269,6 @@ TEST(Tiles, NameMissedPairsAsInTheWholeScene) {
   EXPECT_EQ(example["b"]["triangle"], tile.part.numbers.triangles.back());
 }
 
-TEST(Tiles, SayWhereAWholeSceneHasNothingToTest) {
-  for (const bool self : {false, true}) {
-    for (const std::vector<std::uint32_t>& counts :
-         std::vector<std::vector<std::uint32_t>>{{}, {0}, {1}, {2}, {2, 0}, {0, 0, 3}, {1, 1}}) {
-      Scene scene;
-      scene.vertices.resize(3);
-      for (const std::uint32_t count : counts) {
-        scene.objects.push_back(
-            {.name = {},
-             .first_triangle = static_cast<std::uint32_t>(scene.triangles.size()),
-             .triangle_count = count,
-             .self = self});
-        scene.triangles.resize(scene.triangles.size() + count, {0, 1, 2});
-      }
-      scene.source_face.resize(scene.triangles.size());
-      const NothingToTest told = nothing_to_test(take_census(source_of(scene), 0));
-      EXPECT_EQ(told.reason, nothing_to_test(scene).reason);
-      EXPECT_EQ(told.with_self, nothing_to_test(scene).with_self);
-    }
-  }
-}
-
-TEST(Tiles, RefuseOtherMethodsAndLimits) {
-  RandomNumbers random(7);
-  Session session("native");
-  TileQuestion question{.options = native(0)};
-  question.options.limit = 3;
-  EXPECT_THROW(run_tile(source_of(small_scene(random)), question, session), std::logic_error);
-  question.options.limit = 0;
-  question.options.method = Method::exact;
-  EXPECT_THROW(run_tile(source_of(small_scene(random)), question, session), std::logic_error);
-}
-
 // What load_scene() reads at once.
 void expect_same(const std::vector<std::string>& arguments, std::size_t least_parts) {
   SCOPED_TRACE(arguments[0]);

@@ -138,54 +138,9 @@ TEST(MovingScenes, SuffixesApplyToEveryFrameAndAGroundStays) {
           << v;
     }
   }
-  // The older motions move every object.
-  for (const char* name : {"two-spheres", "crowd:50", "field:2000"}) {
-    const Scene rest = make_builtin_scene(name);
-    MovingScene moving(name, 11);
-    const Scene& now = moving.at(3);
-    for (const Object& object : rest.objects) {
-      const std::uint32_t v = rest.triangles[object.first_triangle][0];
-      EXPECT_NE(now.vertices[v], rest.vertices[v]) << name << ' ' << object.name;
-    }
-  }
   EXPECT_FALSE(has_motion("two-tori"));
   EXPECT_EQ(error_of([] { MovingScene("two-tori", 3); }).where, "two-tori");
   EXPECT_EQ(error_of([] { MovingScene("crowd:1", 3); }).where, "crowd:1");
-}
-
-TEST(MovingScenes, APathGoesFromFrameZeroToItsLast) {
-  MovingScene five("cylinders:3", 5), nine("cylinders:3", 9);
-  for (long frame = 0; frame < 5; ++frame)
-    EXPECT_EQ(scene_hash(five.at(frame)), scene_hash(nine.at(2 * frame)));
-  // So the end of a motion can be run by itself; with another last frame it is another motion.
-  FrameSource end({"cylinders:3"}, {3, 8}, false), other({"cylinders:3"}, {3, 7}, false);
-  for (long frame = 3; frame < 8; ++frame) {
-    EXPECT_EQ(scene_hash(end.at(frame)), scene_hash(nine.at(frame)));
-    EXPECT_NE(scene_hash(other.at(frame)), scene_hash(nine.at(frame)));
-  }
-}
-
-TEST(MovingScenes, ASimulationDependsOnTheNumberOfItsFrame) {
-  MovingScene few("cloth:200:1e3", 13), many("cloth:200:1e3", 20);
-  for (long frame = 10; frame < 13; ++frame) {
-    EXPECT_EQ(scene_hash(few.at(frame)), scene_hash(many.at(frame)));
-    EXPECT_EQ(few.notes(), many.notes());
-  }
-  MovingScene stiff("cloth:200:1e6", 20);
-  EXPECT_NE(scene_hash(stiff.at(12)), scene_hash(many.at(12)));
-  EXPECT_TRUE(few.at(11).objects[0].self);
-  EXPECT_FALSE(few.at(11).objects[1].self);
-  EXPECT_EQ(few.warning(), "");
-  const FramesResult result = frames_of("cloth:200:1e3", Method::boxes);
-  for (const auto& frame : result.json["frames"]) {
-    double sum = 0;
-    for (const char* part : {"kinetic J", "elastic J", "bending J", "gravitational J", "contact J"})
-      sum += frame["motion"][part].get<double>();
-    EXPECT_NEAR(sum, frame["motion"]["total J"].get<double>(), 8 * 0x1p-53);  // of parts below 1
-    EXPECT_EQ(frame["motion"]["converged"], 1);
-    EXPECT_GT(frame["motion"]["iterations"], 0);
-  }
-  EXPECT_TRUE(has_text(result.table, "residual N"));
 }
 
 // Two triangles, one of which falls; it has something to say of some frames.
@@ -220,95 +175,6 @@ TEST(MovingScenes, NotesAndWarningsReachTheRecordAndTheTable) {
                        "\nwarning  it fell far (frame 2 and 1 more)\n"
                        "warning  it fell through (frame 4)\n"));
   EXPECT_TRUE(result.table.ends_with("(frame 4)\n"));
-}
-
-TEST(MovingScenes, SizesAreThoseOfTheirNames) {
-  const std::map<std::string, std::pair<std::size_t, std::size_t>> expected = {
-      {"cylinders:7", {7, 1400}},   {"torii:20000", {6, 120'000}}, {"torii:72", {6, 432}},
-      {"tree-leaves:3", {4, 4600}}, {"shells:10", {10, 6960}},     {"needles:16", {4, 44}}};
-  for (const auto& [name, counts] : expected) {
-    const Scene scene = make_builtin_scene(name);
-    EXPECT_EQ(scene.objects.size(), counts.first) << name;
-    EXPECT_EQ(scene.triangles.size(), counts.second) << name;
-  }
-  for (const std::uint64_t size : {72u, 100u, 997u, 1234u, 5000u}) {
-    const std::string name = "torii:" + std::to_string(size);
-    const double each = static_cast<double>(make_builtin_scene(name).triangles.size()) / 6;
-    EXPECT_NEAR(each / static_cast<double>(size), 1, 0.25) << name;
-  }
-}
-
-TEST(MovingScenes, CrowdHasTheDensityOfItsName) {
-  char usual[80];
-  std::snprintf(usual, sizeof usual, "crowd:400:%.17g", 400.0 / (12 * 12 * 12));
-  const std::string hash = scene_hash(make_builtin_scene("crowd"));
-  EXPECT_EQ(scene_hash(make_builtin_scene(usual)), hash);
-  EXPECT_EQ(scene_hash(make_builtin_scene("crowd:400")), hash);
-  double colliding = 0;
-  for (const char* density : {"0.05", "0.2", "0.8"}) {
-    const Scene scene = make_builtin_scene(std::string("crowd:1000:") + density);
-    Box centres = Box::empty();
-    for (const Box& box : object_boxes(scene, triangle_boxes(scene)))
-      centres.add(Vec3((box.lo + box.hi) / 2));
-    // Of 1,000 drawn places one lies within a hundredth of a side, but for a chance of 0.99^1000,
-    // and the middle of a box within 0.36 of its place: an object of scale 0.6 or less reaches 0.6
-    // farther to one side than to the other. Half a side is 5.3 or more, so each extent is within
-    // 0.078 of the cube's, and the density within 0.28.
-    EXPECT_NEAR(1000 / (centres.hi - centres.lo).prod() / std::stod(density), 1, 0.28) << density;
-    const auto pairs = static_cast<double>(all_colliding_pairs(scene).pairs.size());
-    EXPECT_GT(pairs, 1.5 * colliding) << density;
-    colliding = pairs;
-  }
-}
-
-TEST(MovingScenes, NeedlesKeepTheirObliqueOnesAndLieAlongTheAxes) {
-  const Scene few = make_builtin_scene("needles:8"), many = make_builtin_scene("needles");
-  for (std::size_t o = 0; o < 2; ++o) {
-    for (std::uint32_t t = 0; t < 8; ++t) {
-      EXPECT_EQ(few.corners(few.objects[o].first_triangle + t),
-                many.corners(many.objects[o].first_triangle + t));
-    }
-  }
-  MovingScene moving("needles", kFrames);
-  for (long frame = 0; frame < kFrames; ++frame) {
-    const Scene& scene = moving.at(frame);
-    std::array<int, 3> along = {};
-    for (std::uint32_t t = scene.objects[2].first_triangle; t < scene.triangles.size(); ++t) {
-      const auto [a, b, c] = scene.corners(t);
-      int zeros = 0;
-      for (int k = 0; k < 3; ++k) {
-        zeros += a[k] == b[k];
-        along[static_cast<std::size_t>(k)] += a[k] != b[k];
-      }
-      EXPECT_EQ(zeros, 2) << t;
-    }
-    for (const int n : along) EXPECT_EQ(n, 100);
-  }
-}
-
-TEST(MovingScenes, CylindersAndLeavesAreOpenAndToriiClosed) {
-  for (const char* name : {"cylinders:4", "tree-leaves:4", "torii:400"}) {
-    const Scene scene = make_builtin_scene(name);
-    for (const Object& object : scene.objects) {
-      const std::size_t open = edges_with(scene, object, 1);
-      std::size_t expected = 40;                         // both rims; the leaf's outline
-      if (object.name == "tree") expected = 50 * 2 * 8;  // of 50 tubes
-      if (object.name.starts_with("torus")) expected = 0;
-      EXPECT_EQ(open, expected) << name << ' ' << object.name;
-      EXPECT_EQ(edges_with(scene, object, 2) + open, edges_of(scene, object).size());
-      EXPECT_EQ(object.triangle_count, object.name == "tree"              ? 4000u
-                                       : object.name.starts_with("torus") ? 400u
-                                                                          : 200u);
-    }
-  }
-  // The tree stands still; every leaf falls.
-  MovingScene moving("tree-leaves:6", kFrames);
-  const Scene first = moving.at(0);
-  const Scene& last = moving.at(kFrames - 1);
-  const std::vector<Box> from = object_boxes(first, triangle_boxes(first));
-  const std::vector<Box> to = object_boxes(last, triangle_boxes(last));
-  EXPECT_EQ(from[0].lo, to[0].lo);
-  for (std::size_t o = 1; o < to.size(); ++o) EXPECT_LT(to[o].lo.z(), from[o].lo.z() - 2);
 }
 
 // The gap is exact at every vertex, in every frame, so two neighbours in the stack are translates;
@@ -394,40 +260,6 @@ TEST(MovingScenes, ChangedTopologyIsSeen) {
     EXPECT_EQ(lab::missed(truth, found), 0u) << frame;
     EXPECT_EQ(lab::missed(truth, first) > 0, frame > 0) << frame;
   }
-}
-
-double area_of(const Mesh& mesh, std::size_t t) {
-  const auto& [a, b, c] = mesh.triangles[t];
-  return 0.5 *
-         (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
-}
-
-TEST(Refined, DividesTheLongestEdgesAndKeepsTheSurface) {
-  shapes::Random random(5);
-  const Mesh coarse = shapes::blob(2, random);
-  for (const std::uint64_t wanted : {321u, 1000u, 5001u}) {
-    const Mesh fine = refined(coarse, wanted);
-    EXPECT_GE(fine.triangles.size(), wanted);
-    EXPECT_LE(fine.triangles.size(), wanted + 1);  // closed: two a division
-    EXPECT_EQ(fine.vertices, refined(coarse, wanted).vertices);
-    SceneBuilder builder("fine", "fine");
-    builder.add(fine, "fine", Split::kNone, {});
-    const Scene scene = builder.finish();
-    EXPECT_EQ(edges_with(scene, scene.objects[0], 2), edges_of(scene, scene.objects[0]).size());
-    // The parts of a triangle have its area: a midpoint is off by at most 2 u of its size, 2 here,
-    // in each coordinate, which changes an area by at most that times the perimeter, 6; and there
-    // are at most all parts in one.
-    std::vector<double> area(coarse.triangles.size(), 0);
-    for (std::size_t t = 0; t < fine.triangles.size(); ++t)
-      area[fine.source_face[t]] += area_of(fine, t);
-    const double off = 4 * 0x1p-53 * 2 * 6 * static_cast<double>(fine.triangles.size());
-    for (std::size_t t = 0; t < area.size(); ++t) EXPECT_NEAR(area[t], area_of(coarse, t), off);
-  }
-  EXPECT_EQ(refined(coarse, 5).triangles, coarse.triangles);
-  // An open edge has one triangle, a fan of three at one edge divides at once.
-  const Mesh fan = shapes::finished({{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {2, -1, 0}, {2, 0, 1}},
-                                    {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 0, 1}});
-  EXPECT_EQ(refined(fan, 5).triangles.size(), 7u);
 }
 
 }  // namespace

@@ -50,25 +50,6 @@ std::vector<Sample> samples() {
           {"b.stl", MeshFormat::kStl, binary_stl("b", {{0, 0, 0, 1, 0, 0, 0, 1, 0}})}};
 }
 
-// Sizes around the 16384 bytes that are compressed and decompressed at a time; noise, which grows,
-// and one letter, which becomes nearly nothing.
-TEST(Gzip, WhatIsCompressedComesBack) {
-  for (const std::size_t size : {0u, 1u, 16383u, 16384u, 16385u, 100'000u}) {
-    std::string noise;
-    std::uint32_t state = 2463534242;
-    for (std::size_t i = 0; i < size; ++i) {
-      state ^= state << 13, state ^= state >> 17, state ^= state << 5;
-      noise += static_cast<char>(state);
-    }
-    for (const std::string& bytes : {noise, std::string(size, 'a')}) {
-      const std::string small = gzip(bytes);
-      ASSERT_TRUE(is_gzip(small)) << size;
-      EXPECT_TRUE(gunzip(small, "small") == bytes) << size;
-      EXPECT_TRUE(gzip(bytes) == small) << size;
-    }
-  }
-}
-
 TEST(GzipMesh, IsReadByNameAndByContentsInEveryFormat) {
   const ScratchFolder folder;
   for (const Sample& sample : samples()) {
@@ -85,26 +66,6 @@ TEST(GzipMesh, IsReadByNameAndByContentsInEveryFormat) {
     }
   }
   EXPECT_EQ(mesh_format("A.OBJ.GZ"), MeshFormat::kObj);
-}
-
-TEST(GzipMesh, KeepsTheLinesOfTheText) {
-  const std::string wrong = kThree + "\nf 1 2 3\nf 1 2 x\n";
-  const Error plain = error_of([&] { parse_mesh(wrong, MeshFormat::kObj, "m.obj.gz"); });
-  EXPECT_EQ(plain.line, 6);
-  const Error packed = error_of([&] { parse_mesh(gzipped(wrong), MeshFormat::kObj, "m.obj.gz"); });
-  EXPECT_STREQ(packed.what(), plain.what());
-}
-
-TEST(GzipMesh, RefusesAWrongName) {
-  const ScratchFolder folder;
-  const std::string plain = folder.write("plain.obj.gz", kObj);
-  expect_error(error_of([&] { load_mesh(plain); }), plain, 0, "not compressed by gzip");
-  expect_error(error_of([] { mesh_format("bunny.gz"); }), "bunny.gz", 0, "before .gz");
-  expect_error(error_of([] { mesh_format("a.txt.gz"); }), "a.txt.gz", 0, "'.txt.gz'");
-  const std::string nothing = folder.write("nothing.obj.gz", gzipped(""));
-  expect_error(error_of([&] { load_mesh(nothing); }), nothing, 0, "empty");
-  const std::string empty = folder.write("empty.obj.gz", "");
-  expect_error(error_of([&] { load_mesh(empty); }), empty, 0, "empty");
 }
 
 TEST(GzipMesh, RefusesEveryPrefix) {
@@ -129,26 +90,6 @@ TEST(GzipMesh, RefusesAChangedDigitThatWouldBeAMesh) {
   bytes[at + 2] = '9';
   EXPECT_EQ(obj(replaced(kObj, "v 1 0 0", "v 9 0 0")).vertices[1].x(), 9);
   expect_error(error_of([&] { obj(bytes); }), "m.obj", 0, "damaged");
-}
-
-TEST(GzipMesh, AnswersEveryFlippedBitWithTheMeshOrAnError) {
-  const std::string bytes = gzipped(kObj);
-  const Mesh plain = obj(kObj);
-  int read = 0, refused = 0;
-  for (std::size_t bit = 24; bit < 8 * bytes.size(); ++bit) {
-    std::string changed = bytes;
-    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << bit % 8));
-    try {
-      EXPECT_TRUE(same(obj(changed), plain)) << "bit " << bit;
-      ++read;
-    } catch (const Error& error) {
-      EXPECT_FALSE(error.remedy.empty());
-      ++refused;
-    }
-  }
-  // Time, hints and system in the header mean nothing, and one of its flags; all else does.
-  EXPECT_LE(read, 8 * 6 + 8);
-  EXPECT_GT(refused, 8 * 40);
 }
 
 TEST(GzipMesh, JoinsMembersAndRefusesWhatIsNone) {
@@ -185,20 +126,6 @@ TEST(GzipMesh, IsNoStlFileWhoseHeaderBeginsLikeGzip) {
   EXPECT_THROW(stl(bytes + "x"), Error);
 }
 
-TEST(GzipMesh, MayBeNumberedAndNamesItsObject) {
-  const ScratchFolder folder;
-  folder.write("f_0003.obj.gz", gzipped(kObj));
-  folder.write("f_0004.obj.gz", gzipped(kThree + "f 3 2 1\n"));
-  MeshCache meshes(3);
-  const std::string name = folder.path("f_%04d.obj.gz");
-  EXPECT_EQ(meshes.get(name).triangles.size(), 2u);
-  meshes.set_frame(4);
-  EXPECT_EQ(meshes.get(name).triangles.size(), 1u);
-  const Scene scene = load_scene({folder.path("f_0003.obj.gz"), folder.path("f_0004.obj.gz")});
-  EXPECT_EQ(scene.objects[0].name, "f_0003");
-  EXPECT_EQ(scene.name, "f_0003+f_0004");
-}
-
 TEST(ForeignMesh, IsNamedByItsExtensionWithWhatConvertsIt) {
   struct Case {
     const char *path, *remedy;
@@ -215,7 +142,6 @@ TEST(ForeignMesh, IsNamedByItsExtensionWithWhatConvertsIt) {
   }
   EXPECT_FALSE(foreign_mesh("a.obj"));
   EXPECT_FALSE(foreign_mesh("a.xyz"));
-  EXPECT_FALSE(foreign_mesh("stl"));
 }
 
 }  // namespace

@@ -106,13 +106,6 @@ TEST(MeshHabits, AFileThatMixesEndsOfLinesIsRefused) {
   EXPECT_EQ(obj(first + "# more\r\r\nv 0 0 1\r").triangles.size(), 1u);
 }
 
-TEST(MeshHabits, StripsBesideFacesAreNotPassedOver) {
-  const std::string text =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n";
-  EXPECT_TRUE(has_text(error_of([&] { ply(text); }).reason, "has triangle strips"));
 }
 
 // Two triangles whose common edge is written twice, and differs in the last digits.

@@ -68,39 +68,6 @@ TEST(Turn, IsTheSignOfTheRationalOnDoublesOfAnySize) {
   EXPECT_GT(rounded_wrongly, 1000);
 }
 
-// Counts the turns of a triangulation that rounded arithmetic leaves in doubt.
-int doubts = 0;
-int counting_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
-  doubts += certain_turn(a, b, c, u, v) == 0;
-  return turn(a, b, c, u, v);
-}
-
-// A star whose rays differ.
-int doubts_of_star(std::size_t corners, int exponent) {
-  Polygon star;
-  for (std::size_t i = 0; i < corners; ++i) {
-    const double angle =
-        2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
-    const double radius =
-        std::ldexp((i % 2 == 0 ? 1 : 0.9) + 1e-3 * std::sin(7.0 * i * i), exponent);
-    star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
-  }
-  doubts = 0;
-  std::vector<Triangle> triangles;
-  EXPECT_EQ(triangulate(star, triangles, counting_turn), Triangulation::whole);
-  EXPECT_EQ(triangles.size(), corners - 2);
-  return doubts;
-}
-
-// Where products overflow or underflow, all turns once took the sum without rounding: a star of
-// 8,190 corners took 24 s.
-TEST(Triangulate, NeedsNoExactSumsBecauseOfTheSizeOfAPolygon) {
-  const int usual = doubts_of_star(1022, 0);
-  for (const int exponent : {600, -600, 1022, -1000})
-    EXPECT_EQ(doubts_of_star(1022, exponent), usual);
-  EXPECT_LT(usual, 1022 * 1022 / 8);  // of the turns of a search that takes about 1022^2 of them
-}
-
 // ---- random polygons
 
 using Spot = std::array<int, 2>;
@@ -248,71 +215,6 @@ TEST(Polygons, ATriangleOutsideOneDoesNotMeetIts) {
 }
 
 // ---- chosen polygons
-
-TEST(Triangulate, KeepsTheAreaOfSimplePolygons) {
-  const std::vector<Polygon> polygons = {
-      {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}},  // square
-      {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}},  // dart
-      {{4, 0, 0}, {1, 1, 0}, {0, 4, 0}, {0, 0, 0}},  // dart from a sharp corner
-      {{1, 1, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}},  // dart from its notch
-      {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {0, 4, 0}},  // corners on edges
-      {{0, 0, 0},
-       {6, 0, 0},
-       {6, 4, 0},
-       {5, 4, 0},
-       {5, 1, 0},
-       {1, 1, 0},
-       {1, 4, 0},
-       {0, 4, 0}},                                                                    // U
-      {{0, 0, 0}, {1, 3, 0}, {2, 0, 0}, {3, 3, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}},  // teeth
-      // A square with a hole, cut open along a seam that is walked twice.
-      {{0, 0, 0},
-       {6, 0, 0},
-       {6, 6, 0},
-       {0, 6, 0},
-       {0, 0, 0},
-       {2, 2, 0},
-       {2, 4, 0},
-       {4, 4, 0},
-       {4, 2, 0},
-       {2, 2, 0}},
-  };
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    std::vector<Triangle> triangles;
-    EXPECT_EQ(triangulate(polygons[i], triangles), Triangulation::whole) << i;
-    EXPECT_TRUE(keeps_area(polygons[i], triangles, 0, 1)) << i;
-    EXPECT_EQ(triangles.size(), polygons[i].size() - 2) << i;
-  }
-}
-
-TEST(Triangulate, SeesAnyPlaneEitherSideAndAnySize) {
-  const Polygon dart = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}};
-  std::vector<Triangle> expected;
-  ASSERT_EQ(triangulate(dart, expected), Triangulation::whole);
-  for (const double size : {1.0, 1e-300, 1e-322, 4e307}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      Polygon turned;
-      for (const Vec3& p : dart)
-        turned.push_back(Vec3(p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]) * size / 4);
-      std::vector<Triangle> triangles;
-      ASSERT_EQ(triangulate(turned, triangles), Triangulation::whole);
-      EXPECT_EQ(triangles, expected) << size << " " << axis;
-    }
-  }
-  // Backwards the notch is still the corner that both triangles share.
-  const Polygon back = {dart[3], dart[2], dart[1], dart[0]};
-  std::vector<Triangle> triangles;
-  ASSERT_EQ(triangulate(back, triangles), Triangulation::whole);
-  for (const auto& t : triangles) EXPECT_EQ(std::ranges::count(t, 1u), 1);
-}
-
-// Its area is lost in the rounding of all three projections, and 0 in two of them.
-TEST(Triangulate, FindsThePlaneOfASliver) {
-  const Polygon sliver = {{1, 0, 1}, {1 + 0x1p-52, 1, 1}, {1 + 0x1p-51, 2, 1}, {1 + 0x1p-51, 1, 1}};
-  std::vector<Triangle> triangles;
-  EXPECT_EQ(triangulate(sliver, triangles), Triangulation::whole);
-  EXPECT_TRUE(keeps_area(sliver, triangles, 0, 1));
-}
 
 TEST(Triangulate, NamesWhatIsFoldedAndGivesTwoLessThanCorners) {
   const double big = std::numeric_limits<double>::max();
