@@ -15,12 +15,13 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
-
 namespace {
 
 constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
