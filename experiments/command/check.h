@@ -20,6 +20,9 @@ Certificate read_certificate(const std::string& path);
 /// Replaces what a terminal cannot show, line by line.
 std::string clean_lines(const std::string& text);
 
+/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
+using TakeWord = std::function<void(std::uint64_t)>;
+
 /// Asks the proved checker as well. Throws Error unless it proves just what this one has proved.
 /// status: of this one. words: gives those of the scene.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
@@ -32,8 +35,6 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
 
 // ---- the checker that Coq has proved (verify/certificate/coq), a program of its own
 
-/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
-using TakeWord = std::function<void(std::uint64_t)>;
 /// Gives all words of a scene, or those of its coordinates alone.
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
