@@ -87,34 +87,6 @@ TEST(Filter, DecidesWhatIsNotClose) {
   }
 }
 
-// A flat sheet has nothing but coplanar neighbours; its pairs must not all go the slow way.
-TEST(Filter, DecidesNeighboursInAFlatSheet) {
-  const auto at = [](double x, double y) { return Vec3(0.1 * x, 0.1 * y, 0.3); };
-  const Vec3 v = at(0, 0);
-  EXPECT_EQ(filter_beyond_edge(v, at(1, 1), at(1, 0), at(0, 1)), Triage::no);
-  EXPECT_EQ(filter_beyond_vertex(v, at(1, 0), at(1, 1), at(-1, 0), at(-1, -1)), Triage::no);
-  EXPECT_EQ(filter_beyond_vertex(v, at(1, 0), at(1, 1), at(0, 1), at(-1, 0)), Triage::no);
-}
-
-TEST(Filter, DoesNotKnowContactsAndDegenerateTriangles) {
-  const Triangle unit = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  const Triangle touching = {Vec3(1, 1, 0), Vec3(1, 1, 4), Vec3(2, 1, 4)};
-  EXPECT_EQ(filter_planes(unit, touching), Triage::unknown);
-  EXPECT_EQ(filter_planes(unit, unit), Triage::unknown);
-  const Triangle needle = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
-  EXPECT_EQ(filter_planes(unit, needle), Triage::unknown);
-  EXPECT_EQ(filter_beyond_edge(unit[0], unit[1], unit[2], Vec3(1, 1, 0)), Triage::unknown);
-}
-
-TEST(Filter, SaysNothingWhereArithmeticOverflows) {
-  const double s = 1e200;
-  const auto scaled = [s](Triangle t) { return Triangle{s * t[0], s * t[1], s * t[2]}; };
-  const Triangle a = scaled({Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)});
-  const Triangle b = scaled({Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3(0, 4, 1)});
-  EXPECT_EQ(filter_planes(a, b), Triage::unknown);
-  EXPECT_FALSE(intersects(a, b));
-}
-
 // With these smaller bounds the filter is wrong about some pairs, and with the proved ones it is
 // right about the same pairs.
 template <class Bounds>
