@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from cli_lab import case, program, read, rows, write
+from cli_lab import case, program, read, rows
 
 os.environ['PATH'] = os.path.dirname(program) + ':' + os.environ['PATH']
 

@@ -5,7 +5,7 @@ import os
 import re
 import shlex
 
-from cli_lab import bash, case, good, launch, read, rows, write
+from cli_lab import bash, good, read, rows, write
 
 
 def same(tiles, scene):

@@ -55,7 +55,7 @@ printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4
   '3 0 1 2' '3 3 4 5' '3 6 7 8' '3 9 10 11' '3 12 13 14' '3 15 16 17' >b.off
 "$farcull" picture a.off b.off --compare exact --size 200x160 --html kinds.html >/dev/null || exit 1
 "$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv \
+PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$here/page_test.py" tori.html said pairs.csv \
   kinds.html kinds.csv flat.png || exit 1
 
 # The page of `farcull clash`.

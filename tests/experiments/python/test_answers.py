@@ -52,14 +52,14 @@ def of_program(program, *words):
         for d in record["pairs"]]
 
 
-QUESTIONS = [dict(kind="objects"), dict(kind="objects", inside="parity"), dict(kind="objects", self=True), dict(kind="nearest", k=2), dict(kind="all", within=0.75)]
+QUESTIONS = [dict(kind="objects"), dict(kind="objects", self=True), dict(kind="nearest", k=2), dict(kind="all", within=0.75)]
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_arrays_of_distances_are_the_objects_of_the_program(scene, question):
     V, F, program = scene
     words = ["--pairs", question["kind"]] + ["--self"] * ("self" in question)
-    words += [f"--{name}={question[name]}" for name in ("k", "within", "inside") if name in question]
+    words += [f"--{name}={question[name]}" for name in ("k", "within") if name in question]
     found = farcull.distances(V, F, OBJECTS, **question)
     truth = of_program(program, *words)
     assert as_objects(found) == list(found) == truth and len(found) == len(truth) > 2

@@ -8,8 +8,6 @@ import os
 import pathlib
 import re
 import runpy
-import subprocess
-import sys
 
 import pytest
 

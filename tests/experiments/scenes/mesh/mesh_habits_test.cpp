@@ -106,8 +106,6 @@ TEST(MeshHabits, AFileThatMixesEndsOfLinesIsRefused) {
   EXPECT_EQ(obj(first + "# more\r\r\nv 0 0 1\r").triangles.size(), 1u);
 }
 
-}
-
 // Two triangles whose common edge is written twice, and differs in the last digits.
 constexpr const char* kNearlyJoined =
     "v 0 0 0\nv 1 0 0\nv 0 -1 0\nv 0 0 1e-17\nv 1 0 -1e-17\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
