@@ -2,6 +2,8 @@
 // that remember every step, and the pixel-exact sense in which raw triangles collide.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <rapidcheck.h>
 #include "core/cull/cull.h"
 #include "core/cull/pass.h"
@@ -118,7 +120,9 @@ inline Trace run_by(const PassRule& rule, const Scene& scene, const Drawing& dra
                     CullSettings settings) {
   Trace run;
   settings.watch = [&](const CullStep& s) {
-    run.steps.push_back({s.name, s.bits, s.draws, s.queries, s.draws_saved, s.queries_saved});
+    const std::string name = fmt::format("level {}, {}, round {}, {} pass", s.level, s.view, s.round,
+                                         s.first_pass ? "first" : "second");
+    run.steps.push_back({name, s.bits, s.draws, s.queries, s.draws_saved, s.queries_saved});
   };
   run.result =
       cull_by(rule, scene, find_regions(scene, {.self = settings.self}), settings, *drawing.canvas);

@@ -166,7 +166,7 @@ Found crumpled_sum(const Fattener& fattener, int scenes, Twin twin = Twin::none,
   return sum;
 }
 
-constexpr int kScenes = 12;
+constexpr int kFewScenes = 12;
 
 TEST(FarSelf, MissesNothingOnSheetsThatPierceThemselves) {
   for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
@@ -183,19 +183,19 @@ TEST(FarSelf, MissesNothingOnSheetsThatPierceThemselves) {
 }
 
 TEST(FarSelfTwin, PairsInsideAPatchAreLostWhereTheyAreNotJoined) {
-  EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::inside_not_joined).missed, 0u);
+  EXPECT_GT(crumpled_sum(obb_fattener(), kFewScenes, Twin::inside_not_joined).missed, 0u);
 }
 
 TEST(FarSelfTwin, BitsOfAnotherDivisionLosePairs) {
-  EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::other_division).missed, 0u);
+  EXPECT_GT(crumpled_sum(obb_fattener(), kFewScenes, Twin::other_division).missed, 0u);
 }
 
 TEST(FarSelfTwin, BitsReadInTheOppositeOrderLosePairs) {
-  EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::order_reversed).missed, 0u);
+  EXPECT_GT(crumpled_sum(obb_fattener(), kFewScenes, Twin::order_reversed).missed, 0u);
 }
 
 TEST(FarSelfTwin, TrianglesOfDrawnPairsThatAreNotDrawnLosePairs) {
-  EXPECT_GT(crumpled_sum(obb_fattener(), kScenes, Twin::not_drawn).missed, 0u);
+  EXPECT_GT(crumpled_sum(obb_fattener(), kFewScenes, Twin::not_drawn).missed, 0u);
 }
 
 // Scene `seed` of a family of extreme scenes, its objects marked, and how it is asked about: in
