@@ -3,8 +3,8 @@
 #pragma once
 
 #include <fmt/format.h>
-
 #include <rapidcheck.h>
+
 #include "core/cull/cull.h"
 #include "core/cull/pass.h"
 #include "offsets/offsets.h"

@@ -2,7 +2,6 @@
 #include "verify/certificate/integer_pair.h"
 
 #include "experiments/generators/pair_generators.h"
-#include "experiments/lemma/lemma.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/box_pairs.h"
@@ -99,25 +98,12 @@ TEST(IntegerPair, MachineIntegersNeverOverflow) {
   }
 }
 
-TEST(IntegerPair, AgreesWithCgalOnEveryGenerator) {
-  for (const OracleRow& row : compare_oracles(20'000, 20240607)) {
-    SCOPED_TRACE(to_string(row.question));
-    EXPECT_EQ(row.pairs, row.question == OracleQuestion::intersects ? 20'000u : 2'000u);
-    EXPECT_EQ(row.disagreements, 0u) << row.generator << ": " << row.example;
-    EXPECT_GT(row.intersecting, 0u);
-    EXPECT_LT(row.intersecting, row.pairs);
-    if (row.question != OracleQuestion::intersects) continue;
-    // A generator whose pairs all meet, or none, would test nothing.
-    EXPECT_GT(row.intersecting, row.pairs / 50) << row.generator;
-    EXPECT_LT(row.intersecting, row.pairs - row.pairs / 50) << row.generator;
-  }
-}
-
 // Completeness: a direction for every disjoint pair, a point for every other one, never both, never
 // neither.
 TEST(IntegerPair, ADirectionOrAPointForEveryPair) {
   for (const PairGenerator& generator : pair_generators()) {
     RandomDraws random(99);
+    int met = 0;
     for (int n = 0; n < 4'000; ++n) {
       const auto [a, b] = generator.make(random);
       IntegerPair pair(a, b);
@@ -125,7 +111,10 @@ TEST(IntegerPair, ADirectionOrAPointForEveryPair) {
       ASSERT_EQ(pair.separating_direction().has_value(), !expected)
           << generator.name << ": " << text(a, b);
       ASSERT_EQ(pair.has_common_point(), expected) << generator.name << ": " << text(a, b);
+      met += expected;
     }
+    // A generator whose pairs all meet, or none, would test nothing.
+    EXPECT_TRUE(met > 80 && met < 3'920) << generator.name << ": " << met;
   }
 }
 
