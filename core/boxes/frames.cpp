@@ -23,7 +23,7 @@ std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std:
 
 // Pairs of blocks that overlap and of which one moved, each once. moved: per block; moved_blocks:
 // the blocks that did, ascending.
-BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectMeeting>& meetings,
+BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
   struct Question {
@@ -36,7 +36,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectMeeti
          k != moved_blocks.end() && *k < blocks.first[of + 1]; ++k)
       questions.push_back({*k, of, with, second});
   };
-  for (const ObjectMeeting& meeting : meetings) {
+  for (const ObjectOverlap& meeting : meetings) {
     ask(meeting.a, meeting.b, false);
     if (meeting.a != meeting.b) ask(meeting.b, meeting.a, true);
   }
@@ -97,7 +97,7 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
   }
   const Vec3 origin = blocks.origin;
   update_boxes(scene, memory.clearance, moved, threads, blocks);
-  const ObjectMeetings meetings = find_meetings(scene, blocks, memory.ignored);
+  const ObjectOverlaps meetings = find_meetings(scene, blocks, memory.ignored);
   if (decide_by_meetings(blocks, meetings)) return std::nullopt;
   if (origin == blocks.origin) {
     memory.trees->update(blocks, moved_blocks);
@@ -136,7 +136,7 @@ BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemor
   const double clearance = memory.clearance;
   memory.blocks = std::make_shared<TriangleBlocks>(make_ordered_blocks(scene, clearance, threads));
   const TriangleBlocks& blocks = *memory.blocks;
-  const ObjectMeetings meetings = find_meetings(scene, blocks, memory.ignored);
+  const ObjectOverlaps meetings = find_meetings(scene, blocks, memory.ignored);
   auto decision = decide_by_meetings(blocks, meetings);
   if (!decision) {
     decision = decide_by_pairs(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,

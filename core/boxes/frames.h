@@ -28,7 +28,7 @@ struct FrameMemory {
   std::vector<ObjectPair> ignored;
   std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
   bool oriented = false;  // by oriented boxes, so they are of use only while nothing moves
-  /// Counts of that frame: of BlockMeetings and ObjectMeetings.
+  /// Counts of that frame: of BlockMeetings and ObjectOverlaps.
   std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
 
   /// Blocks of the last frame, with all triangles of scattered objects in order; null: not made

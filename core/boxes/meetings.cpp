@@ -18,12 +18,12 @@ constexpr std::size_t kMeetingsPerBlock = 8;
 
 }  // namespace
 
-ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
+ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored) {
   std::vector<std::uint32_t> objects(blocks.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
   const std::size_t most = kMeetingsPerBlock * blocks.ranges.size();
-  ObjectMeetings out;
+  ObjectOverlaps out;
   out.self = static_cast<std::uint64_t>(std::ranges::count_if(scene.objects, collides_with_itself));
   const std::vector<TrianglePair> pairs = box_join(blocks.objects, objects, objects, most);
   out.crowded = pairs.size() > most;
@@ -41,9 +41,9 @@ ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
 }
 
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
-                                   std::span<const ObjectMeeting> meetings) {
+                                   std::span<const ObjectOverlap> meetings) {
   std::vector<Box> out(blocks.objects.size(), Box::empty());
-  for (const ObjectMeeting& meeting : meetings) {
+  for (const ObjectOverlap& meeting : meetings) {
     const Box common = intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
     out[meeting.a].add(common);
     out[meeting.b].add(common);
@@ -61,9 +61,9 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 namespace {
 
 // Whether a stretched object can meet another one or itself.
-bool is_uneven(const TriangleBlocks& blocks, const ObjectMeetings& meetings) {
+bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
   if (blocks.stretched.empty()) return false;
-  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectMeeting& meeting) {
+  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {
            return blocks.is_stretched(meeting.a) || blocks.is_stretched(meeting.b);
          });
 }
@@ -78,13 +78,13 @@ constexpr std::uint32_t kBlocksOfPart = 256;
 
 // The most pairs of blocks of a meeting: kPairsPerBlock for each block, whether or not it overlaps
 // any.
-std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectMeeting& meeting) {
+std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectOverlap& meeting) {
   const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
   return kPairsPerBlock * (blocks.count(meeting.a) + b);
 }
 
 std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
-                                  const std::vector<ObjectMeeting>& meetings) {
+                                  const std::vector<ObjectOverlap>& meetings) {
   std::vector<MeetingPart> parts;
   for (std::uint32_t k = 0; k < meetings.size(); ++k) {
     const std::uint32_t a = meetings[k].a, end = blocks.first[a] + blocks.count(a);
@@ -120,7 +120,7 @@ void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
 }
 
 // Puts the pairs of each meeting where they belong. Returns false if too many of a meeting overlap.
-bool sort_in(const std::vector<ObjectMeeting>& all, std::span<MeetingPart> parts,
+bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts,
              BlockMeetings& out) {
   BlockCounter counter(out.of->ranges.size());
   std::size_t between = 0, inside = 0;
@@ -130,7 +130,7 @@ bool sort_in(const std::vector<ObjectMeeting>& all, std::span<MeetingPart> parts
   out.pairs.inside.reserve(inside);
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const std::uint32_t own = parts[begin].meeting;
-    const ObjectMeeting& meeting = all[own];
+    const ObjectOverlap& meeting = all[own];
     std::size_t pairs = 0;
     counter.start();
     for (; end < parts.size() && parts[end].meeting == own; ++end) {
@@ -158,11 +158,11 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
 // Looks for the pairs of blocks of each part, and gives a meeting with more than most_pairs() up,
-// or everything if there are more of the whole scene. ObjectMeetings that are given up count as one
+// or everything if there are more of the whole scene. ObjectOverlaps that are given up count as one
 // pair more than they may have, so that the answer does not depend on threads. find(meeting, part,
 // most): appends pairs to the part, as pair_blocks().
 template <class Find>
-Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectMeeting>& meetings,
+Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
   std::vector<std::atomic<std::size_t>> found(meetings.size());
   std::atomic<std::size_t> sum = 0;
@@ -174,7 +174,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectMeeting>
     MeetingPart scratch;  // so that a part has room for its own pairs only
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
-      const ObjectMeeting& meeting = meetings[part.meeting];
+      const ObjectOverlap& meeting = meetings[part.meeting];
       std::atomic<std::size_t>& of_meeting = found[part.meeting];
       const std::size_t most = std::min(most_pairs(blocks, meeting), most_of_all);
       if (sum > most_of_all) return;
@@ -219,7 +219,7 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
 
 // All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
-                                               const std::vector<ObjectMeeting>& meetings,
+                                               const std::vector<ObjectOverlap>& meetings,
                                                std::span<const Box> regions, double clearance,
                                                unsigned threads) {
   BlockMeetings out;
@@ -229,7 +229,7 @@ std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
   std::vector<MeetingPart> parts = parts_of(*out.of, meetings);
   const Found found = find_blocks(
       *out.of, meetings, threads, parts,
-      [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
+      [&](const ObjectOverlap& meeting, MeetingPart& part, std::size_t most) {
         pair_oriented(*out.oriented, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
       });
   if (found != Found::all || !sort_in(meetings, parts, out) ||
@@ -242,7 +242,7 @@ std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
 }  // namespace
 
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
-                                                const ObjectMeetings& meetings) {
+                                                const ObjectOverlaps& meetings) {
   const bool uneven = is_uneven(blocks, meetings);
   if (!uneven && !meetings.crowded) return std::nullopt;
   return BlockDecision{.blocks = {},
@@ -251,7 +251,7 @@ std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                        .self = meetings.self};
 }
 
-BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings,
+BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> of) {
   const TriangleBlocks& blocks = *of;
@@ -261,7 +261,7 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings
   std::vector<MeetingPart> parts = parts_of(blocks, meetings.all);
   const Found found =
       find_blocks(blocks, meetings.all, threads, parts,
-                  [&](const ObjectMeeting& meeting, MeetingPart& part, std::size_t most) {
+                  [&](const ObjectOverlap& meeting, MeetingPart& part, std::size_t most) {
                     pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
                   });
   if (found == Found::all && sort_in(meetings.all, parts, out.blocks) &&
@@ -283,7 +283,7 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads,
                                std::span<const ObjectPair> ignored) {
   const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads));
-  const ObjectMeetings meetings = find_meetings(scene, *blocks, ignored);
+  const ObjectOverlaps meetings = find_meetings(scene, *blocks, ignored);
   if (auto decision = decide_by_meetings(*blocks, meetings)) return *std::move(decision);
   const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
   gather_scattered(scene, clearance, regions, threads, *blocks);

@@ -18,25 +18,25 @@ namespace farcull {
 
 /// Two objects whose boxes, grown by half the clearance, overlap, or one that is tested against
 /// itself (a == b). a has no more blocks than b.
-struct ObjectMeeting {
+struct ObjectOverlap {
   std::uint32_t a, b;
 };
 
 /// All meetings of a scene.
-struct ObjectMeetings {
-  std::vector<ObjectMeeting> all;
+struct ObjectOverlaps {
+  std::vector<ObjectOverlap> all;
   std::uint64_t pairs = 0;  // of two objects
   std::uint64_t self = 0;   // of an object with itself
   bool crowded = false;     // there are more pairs of objects than 8 for each block. They are not
                             // listed, since that takes more memory than the scene: `all` is empty
 };
 /// ignored: objects that are not tested against each other, as in_order() gives them.
-ObjectMeetings find_meetings(const Scene& scene, const TriangleBlocks& blocks,
+ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored);
 
 /// Per object the box in which it can meet another one or itself; empty if it cannot.
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
-                                   std::span<const ObjectMeeting> meetings);
+                                   std::span<const ObjectOverlap> meetings);
 
 /// Boxes of blocks decide if at most so many pairs of them overlap for each block that overlaps
 /// any, in each meeting.
@@ -54,7 +54,7 @@ struct BlockDecision {
   BlockMeetings blocks;               // empty if nothing can meet, or if a tree decides
   Reason tree = Reason::none;         // why a tree decides; none: blocks decide
   std::uint64_t tree_n = 0;           // the number that the reason speaks of
-  std::uint64_t pairs = 0, self = 0;  // as ObjectMeetings has them
+  std::uint64_t pairs = 0, self = 0;  // as ObjectOverlaps has them
 };
 
 /// Compares the boxes of the blocks of objects that meet, and decides by how often these overlap.
@@ -69,10 +69,10 @@ BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned th
 /// As above, where the blocks and meetings are known. Null: the decision depends on the pairs of
 /// blocks.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
-                                                const ObjectMeetings& meetings);
+                                                const ObjectOverlaps& meetings);
 /// Likewise, where the blocks have their boxes or lanes, and decide_by_meetings() says nothing.
 /// regions: where its objects meet.
-BlockDecision decide_by_pairs(const Scene& scene, const ObjectMeetings& meetings,
+BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 

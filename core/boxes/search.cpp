@@ -131,8 +131,8 @@ BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* m
   if (progress) progress(plan.by_tree() ? StageKind::join : StageKind::blocks);
   if (plan.by_tree()) {
     OrderedPairs tree(scene, clearance, ignored, neighbours, plan.threads);
-    out.given = static_cast<bool>(take);
-    if (out.given) {
+    out.streamed = static_cast<bool>(take);
+    if (out.streamed) {
       out.count = tree.give(take);
     } else {
       out.candidates = tree.all();
@@ -141,15 +141,15 @@ BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* m
     out.stage.in = scene.triangles.size();
   } else if (!plan.nothing_can_meet()) {
     const BlockMeetings& blocks = plan.decision.blocks;
-    out.given = take && !lists && !plan.remembers;
-    if (out.given) {
+    out.streamed = take && !lists && !plan.remembers;
+    if (out.streamed) {
       out.count = give_pairs_of_blocks(scene, blocks, blocks.pairs, clearance, neighbours,
                                        plan.threads, take);
     } else {
       out.candidates = pairs_of_blocks(scene, blocks, clearance, neighbours, plan.threads);
     }
   }
-  if (!out.given) out.count = out.candidates.size();
+  if (!out.streamed) out.count = out.candidates.size();
   if (plan.remembers) remember(plan, out.candidates, *memory);
   out.stage.ms = watch.ms();
   out.stage.out = out.count;

@@ -52,7 +52,7 @@ Stage planned_stage(const BoxesPlan& plan);
 struct BoxesResult {
   std::vector<TrianglePair> candidates;  // sorted, each once; the closed boxes, grown by half
                                          // the clearance, overlap
-  bool given = false;                    // all candidates went to `take` instead, as found
+  bool streamed = false;                 // all candidates went to `take` instead, as found
   std::uint64_t count = 0;               // of candidates
   Stage stage;
 };

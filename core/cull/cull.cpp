@@ -42,7 +42,7 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
 }
 
 // A view of the run, and the state that its last visit left.
-struct Place {
+struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
   // For the first and second pass at triangle level: the number of changes of the stored set when
   // the pass last ran, so that an unchanged set is recognized.
@@ -74,10 +74,10 @@ bool has_object_level(const Scene& scene, const Regions& regions, const CullSett
 }
 
 // The window of each view; empty where doubles cannot resolve its pixels.
-std::vector<Place> places_of(const Regions& regions, const CullSettings& settings) {
-  std::vector<Place> places;
+std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings& settings) {
+  std::vector<ViewState> places;
   for (const View& view : settings.views) {
-    Place& place = places.emplace_back();
+    ViewState& place = places.emplace_back();
     if (!regions.places.empty())
       place.window = fit_window(view, regions.places, settings.resolution);
   }
@@ -86,8 +86,8 @@ std::vector<Place> places_of(const Regions& regions, const CullSettings& setting
 
 // Stages that no pixel decides: views that cannot be drawn, and whether there are clusters.
 std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
-                                  const CullSettings& settings, const std::vector<Place>& places,
-                                  std::size_t live) {
+                                  const CullSettings& settings,
+                                  const std::vector<ViewState>& places, std::size_t live) {
   std::vector<Stage> stages;
   bool any = false;
   for (std::size_t v = 0; v < places.size(); ++v) {
@@ -164,7 +164,7 @@ class Culling {
   const Level& triangles() const { return triangles_; }
 
   void open_views() {
-    places_ = places_of(regions_, settings_);
+    places_ = view_states_of(regions_, settings_);
     for (std::size_t v = 0; v < places_.size(); ++v)
       result_.views.push_back(report_of(settings_.views[v].name, places_[v]));
     result_.stages = opening_stages(scene_, regions_, settings_, places_, state_.live.size());
@@ -231,7 +231,7 @@ class Culling {
 
   // Whether the visit that comes is left out; records why.
   bool leaves_out(std::size_t view) {
-    Place& place = places_[view];
+    ViewState& place = places_[view];
     view_ = settings_.views[view].name;
     if (!place.window && settings_.clear == ClearRule::all) agreed_ = start_.bits;
     if (!place.window || done_) return true;
@@ -321,7 +321,7 @@ class Culling {
   }
 
  private:
-  ViewReport report_of(const std::string& name, const Place& place) const {
+  ViewReport report_of(const std::string& name, const ViewState& place) const {
     ViewReport report{.name = name, .budget = {}};
     if (!place.window) return report;
     const Window& w = *place.window;
@@ -354,7 +354,7 @@ class Culling {
   // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
   // Versions count where bits join from view to view and triangles are asked one by one.
-  bool due(const Place& place, Bit bit) const {
+  bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
   }
@@ -437,7 +437,7 @@ class Culling {
   Level objects_{kObjectLevel, &state_.owner};
   std::vector<Level> clusters_;
   Level triangles_{kTriangleLevel};
-  std::vector<Place> places_;
+  std::vector<ViewState> places_;
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
@@ -450,7 +450,7 @@ class Culling {
 
   // The state of the visit in progress.
   std::string view_;
-  Place* place_ = nullptr;
+  ViewState* place_ = nullptr;
   std::vector<std::uint32_t> items_;
   Drawables drawables_;
   Stopwatch watch_;
@@ -460,7 +460,7 @@ class Culling {
 
 std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings) {
-  const std::vector<Place> places = places_of(regions, settings);
+  const std::vector<ViewState> places = view_states_of(regions, settings);
   const std::size_t live = regions.triangles.size();
   std::vector<Stage> stages = opening_stages(scene, regions, settings, places, live);
   std::vector<std::uint32_t> levels;

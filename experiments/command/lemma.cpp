@@ -207,12 +207,12 @@ int LemmaCommand::run() {
   LemmaCanvas on(arguments, fattener);
   const Stopwatch watch;
   const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
-  const bool promises = !rule.published && rule.factor >= 1;
+  const bool guaranteed = !rule.published && rule.factor >= 1;
   const double seconds = watch.ms() / 1000;
   terminal.clear();
   if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, result));
-  return promises && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
+  return guaranteed && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
 }
 
 }  // namespace

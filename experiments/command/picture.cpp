@@ -236,7 +236,7 @@ int PictureCommand::run() const {
     require_three();
   }
   TerminalProgress terminal;
-  Lab lab(arguments.panels.front().device, terminal.callback());
+  MeasurementContext lab(arguments.panels.front().device, terminal.callback());
   require_asked(open_scene(arguments, lab), {});
   if (html_) require_page_size(page_arguments, lab);
   const PictureResult result = make_picture(arguments, lab);

@@ -14,8 +14,8 @@
 #include "experiments/command/command.h"
 #include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
-#include "experiments/method/asked.h"
-#include "experiments/method/misses.h"
+#include "experiments/method/miss_model.h"
+#include "experiments/method/untested.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
@@ -129,7 +129,8 @@ class RunCommand {
   }
   bool leaves_out() const { return options_.has("only") || !ignored().empty(); }
   // The pairs of objects that are not tested: those of --ignore, and all but those of --only.
-  std::vector<ObjectPair> left_out(const Scene& scene, Lacking lacking = Lacking::refused) const;
+  std::vector<ObjectPair> left_out(const Scene& scene,
+                                   UnknownName lacking = UnknownName::refused) const;
   // The files that the command reads, which no output may overwrite.
   std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const;
   // The command line that tests a scene of one object, with --self.
@@ -242,7 +243,7 @@ PairColumns RunCommand::columns() const {
           .kinds = kinds_ ? parse_kinds(*kinds_) : std::vector<ContactKind>()};
 }
 
-std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, Lacking lacking) const {
+std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, UnknownName lacking) const {
   std::vector<ObjectPair> out = ignored_objects(scene, ignored(), lacking);
   const Text& only = options_.text("only");
   if (!only) return out;
@@ -365,9 +366,9 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .columns = columns(),
                           .certificates = outputs.certificate.has_value()};
   if (leaves_out()) {
-    question.ignored = [this, lacking = Lacking::refused](const Scene& scene) mutable {
+    question.ignored = [this, lacking = UnknownName::refused](const Scene& scene) mutable {
       std::vector<ObjectPair> out = left_out(scene, lacking);
-      lacking = Lacking::passed_over;
+      lacking = UnknownName::passed_over;
       return out;
     };
   }

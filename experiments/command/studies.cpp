@@ -285,7 +285,7 @@ int MergeCommand::run_tiles() const {
   write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
                                 counted(merged.tiles, "tile", "tiles"), out));
   if (!merged.verified) write_output("-", "not verified: a tile was run with --no-verify\n");
-  if (!merged.promises) {
+  if (!merged.guaranteed) {
     write_output("-",
                  "no promise: a tile was run on a device that may miss pairs; its record has the "
                  "reason\n");

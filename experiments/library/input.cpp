@@ -320,8 +320,8 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
 
 }  // namespace
 
-void take(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
-          FrameChange* change, bool asked) {
+void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
+                TakenInput& taken, FrameChange* change, bool asked) {
   try {
     bool same = false;
     if (input.poses.empty()) {
@@ -365,17 +365,17 @@ void check(const Options& options) {
 
 ContactDetail detail_of(Contacts contacts) { return static_cast<ContactDetail>(contacts); }
 
-Contact given_out(const ContactShape& shape) {
+Contact to_public(const ContactShape& shape) {
   const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
   return {.kind = static_cast<Contact::Kind>(shape.kind),
           .dimension = shape.dimension,
           .ends = {point(shape.ends[0]), point(shape.ends[1])}};
 }
 
-std::vector<Contact> given_out(const std::vector<ContactShape>& shapes) {
+std::vector<Contact> to_public(const std::vector<ContactShape>& shapes) {
   std::vector<Contact> out;
   out.reserve(shapes.size());
-  for (const ContactShape& shape : shapes) out.push_back(given_out(shape));
+  for (const ContactShape& shape : shapes) out.push_back(to_public(shape));
   return out;
 }
 

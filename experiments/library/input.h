@@ -107,8 +107,8 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 /// each. change: receives what is new since the last call; may be null. asked: a scene in which
 /// there is nothing to test is an error. Throws Error for input that is not as Input says, and
 /// leaves `taken` empty then.
-void take(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
-          FrameChange* change = nullptr, bool asked = true);
+void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
+                TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
 /// Throws Error naming an option that is bad for any input.
 void check(const Options& options);
@@ -120,7 +120,7 @@ ContactDetail detail_of(Contacts contacts);
 std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2>>& ignore,
                                    std::size_t objects);
 
-Contact given_out(const ContactShape& shape);
-std::vector<Contact> given_out(const std::vector<ContactShape>& shapes);
+Contact to_public(const ContactShape& shape);
+std::vector<Contact> to_public(const std::vector<ContactShape>& shapes);
 
 }  // namespace farcull

@@ -8,9 +8,9 @@
 #include "core/base/stopwatch.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
-#include "experiments/method/asked.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
+#include "experiments/method/untested.h"
 #include "experiments/record/stage_words.h"
 
 namespace farcull {
@@ -25,7 +25,7 @@ RunOptions run_options(const Options& options) {
           .contacts = detail_of(options.contacts)};
 }
 
-std::vector<Pair> given_out(const std::vector<TrianglePair>& pairs) {
+std::vector<Pair> to_public(const std::vector<TrianglePair>& pairs) {
   std::vector<Pair> out(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) out[k] = {pairs[k].a, pairs[k].b};
   return out;
@@ -61,7 +61,7 @@ void Collider::State::take_scene(const Input& input) {
   const FrameMemory* const memory = session.frame_memory();
   const bool compares = memory && !memory->moved.waits();
   change = {};
-  take(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
+  load_input(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }
 
 Result Collider::State::find(const Stopwatch& start, const FloatingPoint& callers,
@@ -80,10 +80,10 @@ Result Collider::State::find(const Stopwatch& start, const FloatingPoint& caller
   report.passed_over = taken.passed_over;
   report.exact_ms = record.ms.exact;
   report.contacts_ms = record.ms.contacts;
-  out.pairs = given_out(record.collisions.pairs);
-  out.neighbour_pairs = given_out(record.collisions.neighbour_pairs);
-  out.contacts = given_out(record.contacts);
-  out.neighbour_contacts = given_out(record.neighbour_contacts);
+  out.pairs = to_public(record.collisions.pairs);
+  out.neighbour_pairs = to_public(record.collisions.neighbour_pairs);
+  out.contacts = to_public(record.contacts);
+  out.neighbour_contacts = to_public(record.neighbour_contacts);
   out.complete = record.complete;
   if (callers != kProved) report.callers_arithmetic = to_string(callers);
   for (const Stage& s : record.trace)
@@ -159,7 +159,7 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
   return out;
 }
 
-DistanceAnswer given_out(const Distance& d) {
+DistanceAnswer to_public(const Distance& d) {
   const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
   return {.object_a = d.objects.a,
           .object_b = d.objects.b,
@@ -195,7 +195,7 @@ DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
 
 std::vector<DistanceAnswer> DistanceFinder::find(const Input& input) {
   return exclusive(state_, "DistanceFinder", [&](State& state) {
-    take(input, state.given.self, state.given.self_objects, state.taken);
+    load_input(input, state.given.self, state.given.self_objects, state.taken);
     Scene& scene = state.taken.scene;
     scene.ignored = ignored_of(state.given.ignore, scene.objects.size());
     require_asked(scene, {}, "ignore", "give `self`");
@@ -204,7 +204,7 @@ std::vector<DistanceAnswer> DistanceFinder::find(const Input& input) {
     });
     std::vector<DistanceAnswer> out;
     out.reserve(record.distances.size());
-    for (const Distance& d : record.distances) out.push_back(given_out(d));
+    for (const Distance& d : record.distances) out.push_back(to_public(d));
     return out;
   });
 }

@@ -132,10 +132,10 @@ std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs) {
   return out;
 }
 
-Truth without_neighbours(const Scene& scene, const Truth& truth) {
+TruePairs without_neighbours(const Scene& scene, const TruePairs& truth) {
   if (!has_self(scene)) return truth;
   const std::vector<std::uint32_t> owner = owners(scene);
-  Truth out{.pairs = {}, .triangles = 0, .ms = truth.ms};
+  TruePairs out{.pairs = {}, .triangles = 0, .ms = truth.ms};
   std::copy_if(truth.pairs.begin(), truth.pairs.end(), std::back_inserter(out.pairs),
                [&](const TrianglePair& pair) {
                  return owner[pair.a] != owner[pair.b] ||
@@ -149,16 +149,16 @@ std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<Tria
   return count_lacking(a, b);
 }
 
-Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
+Errors errors_of(const TruePairs& truth, const std::vector<TrianglePair>& pairs) {
   return {.missed = lacking(truth.pairs, pairs),
           .missed_triangles = count_lacking(members_of(truth.pairs), members_of(pairs)),
           .wrong = lacking(pairs, truth.pairs)};
 }
 
-Lab::Lab(std::string device, Progress progress, unsigned threads)
+MeasurementContext::MeasurementContext(std::string device, Progress progress, unsigned threads)
     : device_(std::move(device)), progress_(std::move(progress)), session_(device_, threads) {}
 
-void Lab::begin_scene(const std::string& name, long frame, long frames) {
+void MeasurementContext::begin_scene(const std::string& name, long frame, long frames) {
   current_ = nullptr;
   truth_.reset();
   // Frames of one motion share the source and the lists of i-collide.
@@ -171,7 +171,7 @@ void Lab::begin_scene(const std::string& name, long frame, long frames) {
   frames_ = frames;
 }
 
-const Scene& Lab::scene(const std::string& name, long frame, long frames) {
+const Scene& MeasurementContext::scene(const std::string& name, long frame, long frames) {
   if (frame < 0) {
     return scene(name, [&] {
       if (progress_) progress_("reading " + name);
@@ -187,7 +187,8 @@ const Scene& Lab::scene(const std::string& name, long frame, long frames) {
   return *current_;
 }
 
-const Scene& Lab::scene(const std::string& name, const std::function<Scene()>& make) {
+const Scene& MeasurementContext::scene(const std::string& name,
+                                       const std::function<Scene()>& make) {
   if (current_ != nullptr && name == name_ && frame_ < 0) return *current_;
   begin_scene(name, -1, 0);
   scene_ = make();
@@ -195,7 +196,7 @@ const Scene& Lab::scene(const std::string& name, const std::function<Scene()>& m
   return scene_;
 }
 
-const Truth& Lab::truth() {
+const TruePairs& MeasurementContext::truth() {
   if (!truth_) {
     if (progress_) progress_("exact tests of every pair");
     ExactResult result = all_colliding_pairs(*current_, {}, current_->ignored);
@@ -208,6 +209,6 @@ const Truth& Lab::truth() {
   return *truth_;
 }
 
-const Scene& Lab::current() const { return *current_; }
+const Scene& MeasurementContext::current() const { return *current_; }
 
 }  // namespace farcull

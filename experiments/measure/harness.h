@@ -2,8 +2,8 @@
 // runs when, how its times are summed up with which intervals, and how times are written. Medians
 // and their ratios are estimated by the bootstrap, slopes by Student's t.
 //
-// Lab keeps the state that measurements of one process share: the device with its shaders, the
-// scene that was read last, and the pairs that truly collide in that scene.
+// MeasurementContext keeps the state that measurements of one process share: the device with its
+// shaders, the scene that was read last, and the pairs that truly collide in that scene.
 #pragma once
 
 #include <cstddef>
@@ -92,7 +92,7 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
 
 /// The colliding pairs of a scene, by exact predicates on every pair whose boxes meet
 /// (verify/exact.h).
-struct Truth {
+struct TruePairs {
   std::vector<TrianglePair> pairs;  // colliding, neighbours included; sorted
   std::uint64_t triangles = 0;      // in at least one of the pairs
   double ms = 0;                    // time of finding the pairs
@@ -103,7 +103,7 @@ std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
 
 /// The truth without pairs of triangles of one object that share a vertex position, which other
 /// libraries leave out.
-Truth without_neighbours(const Scene& scene, const Truth& truth);
+TruePairs without_neighbours(const Scene& scene, const TruePairs& truth);
 
 /// How an answer differs from the truth. All pairs count, neighbours among them.
 struct Errors {
@@ -112,15 +112,15 @@ struct Errors {
   std::uint64_t wrong = 0;             // pairs of the answer that do not collide
 };
 /// pairs: sorted.
-Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs);
+Errors errors_of(const TruePairs& truth, const std::vector<TrianglePair>& pairs);
 
 /// How many pairs of a are not in b. Both are sorted.
 std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<TrianglePair>& b);
 
-class Lab {
+class MeasurementContext {
  public:
   /// device: as --device, "" for what Session chooses. threads: as in Session.
-  explicit Lab(std::string device, Progress progress = {}, unsigned threads = 0);
+  explicit MeasurementContext(std::string device, Progress progress = {}, unsigned threads = 0);
 
   Session& session() { return session_; }
   const std::string& device() const { return device_; }
@@ -134,7 +134,7 @@ class Lab {
   const Scene& scene(const std::string& name, const std::function<Scene()>& make);
   /// The scene asked for last, and its colliding pairs. Precondition: a scene was asked for.
   const Scene& current() const;
-  const Truth& truth();
+  const TruePairs& truth();
   /// The notes of the scene's motion on its current frame (FrameNotes); empty if the scene was read
   /// without frames.
   FrameNotes notes() const { return source_ ? source_->notes() : FrameNotes{}; }
@@ -152,7 +152,7 @@ class Lab {
   std::optional<FrameSource> source_;
   Scene scene_;
   const Scene* current_ = nullptr;
-  std::optional<Truth> truth_;
+  std::optional<TruePairs> truth_;
 };
 
 }  // namespace farcull

@@ -23,7 +23,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (options.offset == "obb") return {obb_fattener()};
   // A new offset goes here.
   // Where nothing is promised, boxes before would be one more chance to miss.
-  if (options.full || !promises(options)) return {minkowski_fattener()};
+  if (options.full || !guaranteed(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
 }
 
@@ -37,7 +37,7 @@ Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
 CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
   const bool self = tests_self_alone(options.method);
   // What a method that promises leaves out costs time alone, never a pair.
-  const bool thrifty = promises(options) && !options.full;
+  const bool thrifty = guaranteed(options) && !options.full;
   return {.views = parse_views(views_of(options)),
           .resolution = resolution_of(options),
           .fattener = {},

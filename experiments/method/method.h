@@ -36,7 +36,7 @@ class Session;      // session.h
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
 /// Runs the method: finds the candidates of the scene that was planned. take: receives them as they
-/// are found, if a tree of boxes finds them (Candidates::given); empty: they are listed.
+/// are found, if a tree of boxes finds them (Candidates::streamed); empty: they are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 

@@ -137,7 +137,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   out.ignored = result.ignored;
   out.ms = result.join_ms;
   out.decided_ms = result.predicates_ms;
-  out.given = true;
+  out.streamed = true;
   out.decided = std::move(result);
   out.trace.push_back({.kind = StageKind::join,
                        .ran = true,
@@ -231,7 +231,7 @@ Candidates find_by_boxes(const Scene& scene, const Plan& plan, Session&, const P
       find_boxes(scene, std::get<BoxesPlan>(plan.work), plan.memory, progress, take);
   Candidates out;
   out.pairs = std::move(result.candidates);
-  out.given = result.given;
+  out.streamed = result.streamed;
   out.count = result.count;
   out.trace.push_back(std::move(result.stage));
   out.ms = watch.ms();

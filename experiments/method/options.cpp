@@ -87,7 +87,7 @@ QueryMode query_of(const RunOptions& options) {
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);
 }
 
-bool promises(const RunOptions& options) {
+bool guaranteed(const RunOptions& options) {
   switch (traits(options.method).promises) {
     case Promises::never:
       return false;

@@ -140,7 +140,7 @@ DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
 /// Whether the method promises to miss nothing: boxes and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
-bool promises(const RunOptions& options);
+bool guaranteed(const RunOptions& options);
 /// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
 /// command line: "--rounds 1 --clear all"; empty if there are none.
 std::string form_text(const RunOptions& options);

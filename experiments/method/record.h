@@ -43,7 +43,7 @@ struct SweptObjects {
 
 struct Candidates {
   std::vector<TrianglePair> pairs;       // sorted; empty if they were given
-  bool given = false;                    // they were decided as they were found, and not listed
+  bool streamed = false;                 // they were decided as they were found, and not listed
   std::uint64_t count = 0;               // of candidate pairs
   std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
   std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for boxes
@@ -89,7 +89,7 @@ struct RunTimes {
 
 /// Whether a miss would break a guarantee.
 struct Promise {
-  bool holds = false;  // the method promises (see promises()), and the device that it used keeps
+  bool holds = false;  // the method promises (see guaranteed()), and the device that it used keeps
                        // what the promise rests on
   std::string reason;  // why, or why not
   std::optional<DeviceVerdict> verdict;  // of that device; empty if the promise rests on no device

@@ -27,9 +27,9 @@ void count_kept(const Scene& scene, Candidates& found) {
 
 // Decides candidates as they are found, in the threads that find them. marks: marks their
 // triangles.
-class Deciding {
+class StreamingDecider {
  public:
-  Deciding(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
+  StreamingDecider(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
       : scene_(scene),
         is_ignored_(scene, plan.options.ignored),
         question_(question),
@@ -227,10 +227,10 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
               .unit = Unit::pairs};
   if (record.options.verify && !record.limited) {
     if (progress) progress(StageKind::verify);
-    const bool given = record.found.given;
+    const bool streamed = record.found.streamed;
     const std::vector<TrianglePair> colliding =
-        given ? record.collisions.all() : std::vector<TrianglePair>();
-    record.verification = account(scene, given ? colliding : record.found.pairs,
+        streamed ? record.collisions.all() : std::vector<TrianglePair>();
+    record.verification = account(scene, streamed ? colliding : record.found.pairs,
                                   {.clearance = record.options.clearance,
                                    .max_examples = std::numeric_limits<std::size_t>::max(),
                                    .ignored = record.options.ignored});
@@ -264,12 +264,12 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session, const Pr
                 const ExactQuestion* question, bool marks) {
   const FloatingPointGuard guard;
   try {
-    std::optional<Deciding> deciding;
+    std::optional<StreamingDecider> deciding;
     if (question) deciding.emplace(scene, plan, *question, marks);
     Candidates found = traits(plan.options.method)
                            .find(scene, plan, session, progress,
                                  question ? TakePairs(std::ref(*deciding)) : TakePairs());
-    if (found.given && !found.decided) deciding->finish(found);
+    if (found.streamed && !found.decided) deciding->finish(found);
     const std::uint64_t removed = remove_ignored(scene, plan.options.ignored, found.pairs);
     found.ignored += removed;
     found.count -= removed;
@@ -282,7 +282,7 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session, const Pr
 
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
   Promise promise;
-  promise.holds = promises(options);
+  promise.holds = guaranteed(options);
   promise.reason =
       promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
   if (!promise.holds || !device.relies) return promise;
@@ -315,7 +315,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     record.promise = promise_of(options, found.device, session);
   }
   if (use.filter) {
-    if (found.given) throw std::logic_error("run: no filter, since the method culls nothing");
+    if (found.streamed) throw std::logic_error("run: no filter, since the method culls nothing");
     verify_stage(scene, progress, record);
     use.filter(found.pairs);
     found.count = found.pairs.size();
@@ -361,12 +361,12 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 }
 
 std::vector<TrianglePair> pairs_left(const Record& record) {
-  const bool listed = !record.found.given && culls(record.options.method);
+  const bool listed = !record.found.streamed && culls(record.options.method);
   return listed ? record.found.pairs : record.collisions.all();
 }
 
 bool broken(const Record& record, bool strict) {
-  return (strict || promises(record.options)) && record.verification &&
+  return (strict || guaranteed(record.options)) && record.verification &&
          record.verification->false_negatives > 0;
 }
 

@@ -110,7 +110,7 @@ Contestant of_options(const RunOptions& options, const std::string& says, const 
   const Method method = options.method;
   return contestant({.name = to_string(method),
                      .neighbours = tests_self(method),
-                     .promises = !culls(method) || promises(options),
+                     .guaranteed = !culls(method) || guaranteed(options),
                      .call = "farcull run --method " + to_string(method) + " --device " + device(),
                      .says = says,
                      .use = use},
@@ -160,7 +160,7 @@ Contestant exact() {
 Contestant boxes_of_library(const std::string& says) {
   return contestant({.name = "boxes",
                      .neighbours = true,
-                     .promises = true,
+                     .guaranteed = true,
                      .call = "farcull::Collider::find()",
                      .says = says,
                      .use = "where no pair may be missed"},

@@ -207,7 +207,7 @@ std::string answer_card(const Contestant& contestant, const std::string& begin) 
       {"means", card.means == Means::closed ? "closed" : "crossing"},
       {"degenerate", word(card.degenerate)},
       {"neighbours", word(card.neighbours)},
-      {"promises", word(card.promises)},
+      {"promises", word(card.guaranteed)},
       {"margin", shortest(card.margin)},
       {"call", card.call},
       {"says", card.says},

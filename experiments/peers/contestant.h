@@ -34,7 +34,7 @@ struct ContestantCard {
   bool degenerate = true;   // the library takes triangles that are segments or points
   bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
-  bool promises = false;  // only for farcull's methods: a miss breaks a promise
+  bool guaranteed = false;  // only for farcull's methods: a miss breaks a promise
   // Of libraries of the study these texts stand in experiments/report/chapters/libraries.csv.
   std::string call = {};    // the function that is called, and its arguments
   std::string says = {};    // what its documentation says of exactness and of touching

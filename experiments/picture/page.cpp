@@ -184,7 +184,8 @@ namespace {
 
 class PageMaker {
  public:
-  PageMaker(const PageArguments& arguments, Lab& lab) : arguments_(arguments), lab_(lab) {
+  PageMaker(const PageArguments& arguments, MeasurementContext& lab)
+      : arguments_(arguments), lab_(lab) {
     const Scene& scene = open_scene(arguments_.picture, lab_);
     require_page_size(scene);
     box_ = box_of(scene);
@@ -280,7 +281,7 @@ class PageMaker {
   }
 
   const PageArguments& arguments_;
-  Lab& lab_;
+  MeasurementContext& lab_;
   Box box_ = Box::empty();
   PageBlocks blocks_;
   json frame_, steps_ = json::array();
@@ -312,12 +313,13 @@ void require_three() {
               "install libjs-three (Debian) and build farcull again, or give -o alone");
 }
 
-void require_page_size(const PageArguments& arguments, Lab& lab) {
+void require_page_size(const PageArguments& arguments, MeasurementContext& lab) {
   const Scene& scene = open_scene(arguments.picture, lab);
   require_page_size(scene);
 }
 
-PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab) {
+PageResult make_page(const PageArguments& arguments, const PictureResult& flat,
+                     MeasurementContext& lab) {
   require_three();
   return PageMaker(arguments, lab).finish(flat);
 }

@@ -158,7 +158,7 @@ std::string device_of(const Record& record) {
 
 }  // namespace
 
-const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
+const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab) {
   const std::vector<std::string> words = arguments.scene.words();
   if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
   // '\n' separates the parts: no name of a scene contains it.
@@ -180,7 +180,7 @@ const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
   });
 }
 
-MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
+MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab) {
   options.verify = false;
   options.device = lab.device();
   const Record record = run(scene, options, lab.session(), lab.progress());
@@ -204,7 +204,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
   result.kept = kept.size();
   result.idle = answer.idle.size();
   // As in `farcull run`, this does not depend on the probes of the device.
-  result.broken = promises(record.options) && !answer.missed.empty();
+  result.broken = guaranteed(record.options) && !answer.missed.empty();
   result.device = device_of(record);
   result.headline = headline_of(result);
   return answer;
@@ -256,7 +256,7 @@ Image scene_image(const Scene& scene, const Window& window, const std::vector<st
 }
 
 DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window& window,
-                    const Truth& truth, Lab& lab, const GlContext& context) {
+                    const TruePairs& truth, MeasurementContext& lab, const GlContext& context) {
   const MethodAnswer answer = answer_of(options, scene, lab);
   std::vector<std::uint8_t> kind(scene.triangles.size(), kRest);
   for (const std::uint32_t t : answer.idle) kind[t] = kKept;
@@ -317,7 +317,7 @@ PngTexts provenance(const PictureArguments& arguments, const PictureResult& resu
 }
 
 std::string subtitle(const PictureArguments& arguments, const PictureResult& result,
-                     const Truth& truth) {
+                     const TruePairs& truth) {
   std::string out = counted(result.objects, "object", "objects") + ", " +
                     counted(result.triangles, "triangle", "triangles") + ", " +
                     counted(truth.pairs.size(), "colliding pair", "colliding pairs");
@@ -329,7 +329,7 @@ std::string subtitle(const PictureArguments& arguments, const PictureResult& res
   return out;
 }
 
-Window window_of(const PictureArguments& arguments, const Scene& scene, const Truth& truth) {
+Window window_of(const PictureArguments& arguments, const Scene& scene, const TruePairs& truth) {
   const View view = camera(arguments);
   std::vector<Box> boxes = triangle_boxes(scene);
   if (!arguments.zoom)
@@ -342,13 +342,13 @@ Window window_of(const PictureArguments& arguments, const Scene& scene, const Tr
 
 }  // namespace
 
-PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
+PictureResult make_picture(const PictureArguments& arguments, MeasurementContext& lab) {
   validate(arguments);
   const Scene& scene = open_scene(arguments, lab);
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
   for (const RunOptions& options : arguments.panels) require_scene(scene, options.method);
-  const Truth& truth = lab.truth();
+  const TruePairs& truth = lab.truth();
   const Window window = window_of(arguments, scene, truth);
 
   std::optional<GlContext> own;

@@ -26,12 +26,12 @@ struct MethodAnswer {
 };
 
 /// The scene of the arguments, kept by the lab. Throws Error as load_scene() and FrameSource do.
-const Scene& open_scene(const PictureArguments& arguments, Lab& lab);
+const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab);
 
 /// Runs the method on the last scene that the lab opened, and compares with the lab's truth. The
 /// lab's device answers; the options' device and verification are ignored. Throws Error as run()
 /// does.
-MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab);
+MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab);
 
 struct PictureResult {
   Image image;
@@ -45,7 +45,7 @@ struct PictureResult {
 /// Runs the methods of the panels and draws. The lab's device answers; if it is "cpu", the first GL
 /// device draws the picture. Throws Error for bad arguments, a scene without triangles or one that
 /// a method does not accept, and for faults of the device.
-PictureResult make_picture(const PictureArguments& arguments, Lab& lab);
+PictureResult make_picture(const PictureArguments& arguments, MeasurementContext& lab);
 
 // `farcull picture --html`: one file with the scene, the answers of methods on it, and everything
 // that a browser needs to show and explore them. Its data are text: numbers and bits, compressed
@@ -92,13 +92,14 @@ struct PageResult {
 /// Runs the methods of the steps and writes the page. `flat`: the flat picture of the same scene,
 /// for printing and for browsers without WebGL 2. Throws Error if the program was built without
 /// three.js, for a scene that is too large, and as make_picture() does.
-PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab);
+PageResult make_page(const PageArguments& arguments, const PictureResult& flat,
+                     MeasurementContext& lab);
 
 /// Throws Error naming --html if the program was built without three.js.
 void require_three();
 
 /// Throws Error naming --html if the scene of the page has more triangles or objects than a page
 /// holds. Called before any run. Throws as open_scene() does.
-void require_page_size(const PageArguments& arguments, Lab& lab);
+void require_page_size(const PageArguments& arguments, MeasurementContext& lab);
 
 }  // namespace farcull

@@ -32,13 +32,13 @@ namespace py = pybind11;
 /// ms: if a handler of Python raises, as that of Ctrl-C does, the work is asked to stop, and the
 /// handler's exception is thrown when the work has ended. `work` must not touch Python. Its
 /// exceptions are thrown here. Precondition: the lock is held.
-void beside(const std::function<void()>& work);
+void run_without_gil(const std::function<void()>& work);
 
-/// Runs `work` as beside() does, and returns its value.
+/// Runs `work` as run_without_gil() does, and returns its value.
 template <class Work>
 auto without_gil(const Work& work) {
   std::optional<decltype(work())> out;
-  beside([&] { out.emplace(work()); });
+  run_without_gil([&] { out.emplace(work()); });
   return std::move(*out);
 }
 

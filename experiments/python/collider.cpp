@@ -79,7 +79,7 @@ class KeptFinder {
  public:
   KeptFinder(const char* name, Asked given)
       : options(std::move(given)), name_(name), process_(::getpid()) {
-    beside([&] { finder_ = std::make_unique<Finder>(options); });
+    run_without_gil([&] { finder_ = std::make_unique<Finder>(options); });
   }
 
   auto find(const py::array& vertices, const py::array& triangles, const py::array& starts,

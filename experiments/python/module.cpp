@@ -172,7 +172,7 @@ void translate(std::exception_ptr failure) {
 
 }  // namespace
 
-void beside(const std::function<void()>& work) {
+void run_without_gil(const std::function<void()>& work) {
   keep_small_memory();
   StoppableCall call([&work] {
     const FloatingPointGuard guard;

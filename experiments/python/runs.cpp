@@ -19,8 +19,8 @@
 #include "core/scene/scene.h"
 #include "experiments/library/input.h"
 #include "experiments/measure/harness.h"
-#include "experiments/method/asked.h"
 #include "experiments/method/clash.h"
+#include "experiments/method/untested.h"
 #include "experiments/picture/clash_page.h"
 #include "experiments/picture/picture.h"
 #include "experiments/python/arrays.h"
@@ -50,7 +50,7 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   const MeshArrays given(vertices, triangles, starts, poses);
   return without_gil([&] {
     TakenInput taken;
-    take(given.input(), self, self_objects, taken, nullptr, false);
+    load_input(given.input(), self, self_objects, taken, nullptr, false);
     Scene& scene = taken.scene;
     scene.name = name;
     if (!names.empty() && names.size() != scene.objects.size()) {
@@ -89,7 +89,7 @@ class Frames {
  public:
   Frames(const std::vector<std::string>& names, const std::string& weld, const std::string& range,
          bool self) {
-    beside([&] {
+    run_without_gil([&] {
       range_ = parse_frames(range);
       source_ = std::make_unique<FrameSource>(arguments_of(names, weld), range_, self);
     });
@@ -126,7 +126,7 @@ py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
   const std::span<const double> points(vertices.data(), static_cast<std::size_t>(vertices.size()));
   const std::span<const std::int64_t> corners(triangles.data(),
                                               static_cast<std::size_t>(triangles.size()));
-  beside([&] {
+  run_without_gil([&] {
     Mesh mesh;
     for (std::size_t k = 0; k + 2 < points.size(); k += 3)
       mesh.vertices.emplace_back(points[k], points[k + 1], points[k + 2]);
@@ -338,7 +338,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
     arguments.height = height;
     for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));
     validate(arguments);
-    Lab lab(device, stopping_progress(), threads);
+    MeasurementContext lab(device, stopping_progress(), threads);
     lab.scene(kept.scene->name, [&] { return *kept.scene; });
     PictureResult flat = make_picture(arguments, lab);
     if (page) {

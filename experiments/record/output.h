@@ -13,7 +13,7 @@
 
 #include "core/base/fields.h"
 #include "experiments/method/distances.h"
-#include "experiments/method/misses.h"
+#include "experiments/method/miss_model.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
 #include "experiments/system/output_file.h"

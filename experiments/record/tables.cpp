@@ -345,7 +345,7 @@ std::string default_method_line(const RunOptions& options) {
 }
 
 std::string faster_line(const RunOptions& options) {
-  if (!draws(options.method) || !promises(options)) return "";
+  if (!draws(options.method) || !guaranteed(options)) return "";
   return fmt::format("hint       on a CPU {} {} takes less time than drawing\n",
                      option_word("method"), to_string(kDefaultMethod));
 }

@@ -78,7 +78,7 @@ const Scene& FrameSource::at(long frame) {
     for (Object& object : scene_.objects) object.self = object.self || self_;
   } else if (arguments_.ignore) {
     scene_ = built_in_->at(frame);  // the copies stay in the same memory
-    ignore_more(scene_, arguments_, first_ ? Lacking::refused : Lacking::passed_over);
+    ignore_more(scene_, arguments_, first_ ? UnknownName::refused : UnknownName::passed_over);
   }
   const Scene& scene = built_in_ && !arguments_.ignore ? built_in_->at(frame) : scene_;
   const bool same = vertices_ == scene.vertices.size() && triangles_ == scene.triangles &&

@@ -85,7 +85,7 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
 constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
 
 /// Appends the pairs of objects that names.text stands for.
-void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
+void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
   const auto fail = [&](const std::string& reason) {
@@ -112,7 +112,8 @@ void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
     }
   }
   if (text.find(':') == std::string_view::npos) fail("has no colon");
-  if (lacking == Lacking::passed_over && (places == 0 || (first.size() == 1 && first == second)))
+  if (lacking == UnknownName::passed_over &&
+      (places == 0 || (first.size() == 1 && first == second)))
     return;
   if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
   if (places > 1) fail("can be divided at more than one colon");
@@ -125,21 +126,21 @@ void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
 
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
-                                      const std::string& what, long line, Lacking lacking) {
+                                      const std::string& what, long line, UnknownName lacking) {
   const auto objects = [&](const std::string& pattern) {
     std::vector<std::uint32_t> out = objects_of(scene, pattern);
     if (doubtful(scene, pattern, out)) {
       throw Error(where, fmt::format("{} names '{}', which {}", what, pattern, kDoubtful),
                   "call the object something without a *", line);
     }
-    if (!out.empty() || lacking == Lacking::passed_over) return out;
+    if (!out.empty() || lacking == UnknownName::passed_over) return out;
     throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
                 "give names of objects, in which * stands for any characters; the scene has " +
                     some_names(scene),
                 line);
   };
   const std::vector<std::uint32_t> a = objects(first), b = objects(second);
-  if (a.size() == 1 && a == b && lacking == Lacking::refused) {
+  if (a.size() == 1 && a == b && lacking == UnknownName::refused) {
     throw Error(where, fmt::format("{} names '{}' alone", what, scene.objects[a[0]].name),
                 "give two different objects; whether an object is tested against itself is said "
                 "by self",
@@ -185,7 +186,7 @@ std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
 }
 
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
-                                        Lacking lacking) {
+                                        UnknownName lacking) {
   std::vector<ObjectPair> out;
   for (const IgnoredNames& one : names) append(scene, one, lacking, out);
   return in_order(std::move(out));

@@ -11,7 +11,7 @@ namespace farcull {
 
 /// Treatment of a name that no object has. After the first frame it is no error: objects may come
 /// and go, and an absent object need not be ignored.
-enum class Lacking { refused, passed_over };
+enum class UnknownName { refused, passed_over };
 
 /// The pairs of an object that the pattern `first` matches and a different object that `second`
 /// matches. A * in a pattern stands for any characters. Errors name `where`, `line` and the pair as
@@ -21,7 +21,7 @@ enum class Lacking { refused, passed_over };
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
                                       const std::string& what, long line = 0,
-                                      Lacking lacking = Lacking::refused);
+                                      UnknownName lacking = UnknownName::refused);
 
 /// Two groups of objects by their names, as in "link*:gripper". A * stands for any characters.
 struct IgnoredNames {
@@ -45,6 +45,6 @@ std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
 /// colons, or if a name is ambiguous as in pairs_between(). Unless `lacking` is passed_over, also
 /// throws Error if no object has a name, or if both groups are one and the same object.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
-                                        Lacking lacking = Lacking::refused);
+                                        UnknownName lacking = UnknownName::refused);
 
 }  // namespace farcull

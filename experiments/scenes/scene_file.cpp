@@ -149,7 +149,7 @@ class SceneFile {
 
   // Precondition: the scene has the objects of the file. Only their names are read.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
-                                       Lacking lacking = Lacking::refused) const {
+                                       UnknownName lacking = UnknownName::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
     require(pairs.is_array(), "ignore", "must be an array", form);
     std::vector<ObjectPair> out;
@@ -363,8 +363,8 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
   const bool later_frame = !meshes.numbered_paths().empty();  // the first frame has read them
   Scene scene = reader.read(file.root).finish();
   if (file.root.contains("ignore")) {
-    scene.ignored = reader.read_ignored(file.root["ignore"], scene,
-                                        later_frame ? Lacking::passed_over : Lacking::refused);
+    scene.ignored = reader.read_ignored(
+        file.root["ignore"], scene, later_frame ? UnknownName::passed_over : UnknownName::refused);
   }
   return scene;
 }
@@ -480,7 +480,7 @@ std::vector<std::string> SceneArguments::words() const {
   return out;
 }
 
-void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking) {
+void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking) {
   for (const ObjectPair& pair :
        ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
     scene.ignored.push_back(pair);
@@ -509,7 +509,7 @@ Scene load_scene(const SceneArguments& arguments, MeshCache& meshes) {
   try {
     meshes.read_as(reading_of(arguments));
     Scene out = load_any_scene(arguments.names, meshes);
-    ignore_more(out, arguments, later_frame ? Lacking::passed_over : Lacking::refused);
+    ignore_more(out, arguments, later_frame ? UnknownName::passed_over : UnknownName::refused);
     return out;
   } catch (const std::bad_alloc&) {
     throw Error(arguments.names[0], "the scene does not fit into memory",

@@ -68,7 +68,7 @@ Scene load_scene(const SceneArguments& arguments);
 void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
 /// ignored_objects().
-void ignore_more(Scene& scene, const SceneArguments& arguments, Lacking lacking);
+void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking);
 /// load_scene() that takes meshes from the cache `meshes`, where they stay.
 Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 

@@ -118,7 +118,7 @@ struct PlacementCounts {
 };
 
 /// Counts of a point of the study "model": a method that may miss, at several positions of the grid
-/// of pixels, beside what method/misses.h predicts.
+/// of pixels, beside what method/miss_model.h predicts.
 struct ForecastCounts {
   std::uint64_t colliding = 0, positions = 0;
   std::uint64_t missed_in_all = 0;                  // pairs, the sum over the positions
@@ -219,7 +219,7 @@ using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, 
                             DistanceCounts>;
 
 /// The values of counts, with the fields of members in place of the members.
-NamedCounts named(const Counts& counts);
+NamedCounts to_columns(const Counts& counts);
 
 /// Milliseconds; they differ between runs.
 struct PointTimes {

@@ -113,7 +113,7 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_accuracy(const Point& point, Lab& lab) {
+PointResult measure_accuracy(const Point& point, MeasurementContext& lab) {
   const auto& run = std::get<RunPoint>(point);
   return run.resolution <= kMostOfForms ? measure_with_risk(run, lab) : measure_run(run, lab);
 }
@@ -190,7 +190,7 @@ std::vector<Point> timed_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_timed(const Point& point, Lab& lab) {
+PointResult measure_timed(const Point& point, MeasurementContext& lab) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return measure_run(*run, lab);
   PointResult out = measure_peer(std::get<PeerPoint>(point), lab, usable_cores());
   // Keeps only the time of the whole call; not every library reports the times of its parts.
@@ -288,7 +288,7 @@ std::vector<Point> stability_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_stability(const Point& point, Lab& lab) {
+PointResult measure_stability(const Point& point, MeasurementContext& lab) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return measure_with_risk(*run, lab);
   PointResult out = measure_peer(std::get<PeerPoint>(point), lab, 1);
   if (auto* counts = std::get_if<PeerCounts>(&out.counts)) {
@@ -328,7 +328,7 @@ double note(const FrameNotes& notes, const std::string& name) {
   throw std::logic_error("the cloth says nothing of " + name);
 }
 
-PointResult measure_cloth(const Point& point, Lab& lab) {
+PointResult measure_cloth(const Point& point, MeasurementContext& lab) {
   const auto& of = std::get<RunPoint>(point);
   const Scene& scene = open_scene(of.scene, lab);
   const FrameNotes notes = lab.notes();
@@ -347,7 +347,7 @@ PointResult measure_cloth(const Point& point, Lab& lab) {
   counts.accounted = all.pairs_total;
   counts.by_boxes = all.certified_by_boxes;
   counts.by_predicates = all.certified_by_predicates;
-  counts.promises = promises(record.options);
+  counts.promises = guaranteed(record.options);
   if (counts.promises && !record.promise.holds) counts.revoked = true;
   counts.scene_hash = record.scene_hash;
   std::tie(counts.left_by_boxes, counts.views_used) = mechanism_of(scene, record);

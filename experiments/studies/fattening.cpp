@@ -107,7 +107,7 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure(const Point& of, Lab& lab) {
+PointResult measure(const Point& of, MeasurementContext& lab) {
   const RunPoint& point = std::get<RunPoint>(of);
   Record record;
   PointResult out = measure_with_risk(point, lab, &record);
@@ -246,7 +246,7 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_precision(const Point& point, Lab& lab) {
+PointResult measure_precision(const Point& point, MeasurementContext& lab) {
   return measure_lemma(std::get<LemmaPoint>(point), lab);
 }
 
@@ -376,7 +376,7 @@ std::vector<Point> radius_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_radius(const Point& point, Lab& lab) {
+PointResult measure_radius(const Point& point, MeasurementContext& lab) {
   if (const auto* lemma = std::get_if<LemmaPoint>(&point)) return measure_lemma(*lemma, lab);
   if (const auto* placed = std::get_if<PlacementPoint>(&point))
     return measure_placements(*placed, lab);
@@ -385,13 +385,13 @@ PointResult measure_radius(const Point& point, Lab& lab) {
 
 }  // namespace
 
-PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
+PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab) {
   const bool fixed = point.depth_mode == DepthMode::fixed;
   const Fattener fattener = fixed ? obb_surface_fattener() : obb_fattener();
   const bool bits24 = point.depth_format == DepthFormat::fixed24;
   PointResult out;
   LemmaCounts counts;
-  // The rule of promises() in method/run.h for runs of FAR.
+  // The rule of guaranteed() in method/run.h for runs of FAR.
   counts.promises = !fixed && !point.radius.published && point.radius.factor >= 1;
   std::unique_ptr<WorstCanvas> worst;
   std::unique_ptr<CoarseCanvas> coarse;

@@ -95,7 +95,7 @@ LibraryCounts counts_of(const Json& found) {
   return out;
 }
 
-PointResult measure(const Point& at, Lab& lab) {
+PointResult measure(const Point& at, MeasurementContext& lab) {
   const auto& point = std::get<LibraryPoint>(at);
   const Asked& asked = ask_card(known_contestant(point.contestant));
   if (!asked.missing.empty()) return {.device = "none", .left_out = asked.missing};

@@ -11,7 +11,7 @@
 
 #include "core/view/regions.h"
 #include "experiments/measure/harness.h"
-#include "experiments/method/misses.h"
+#include "experiments/method/miss_model.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
@@ -46,11 +46,11 @@ Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution
   return out;
 }
 
-PointResult measure_model(const Point& point, Lab& lab) {
+PointResult measure_model(const Point& point, MeasurementContext& lab) {
   const auto& of = std::get<RunPoint>(point);
   const Scene& scene = open_scene(of.scene, lab);
   const RunOptions options = options_of(of, lab);
-  const Truth& truth = lab.truth();
+  const TruePairs& truth = lab.truth();
   const Plan planned = plan(scene, options);
   const auto& work = std::get<DrawPlan>(planned.work);
   PointResult out{.device = "none", .left_out = "the images of too many triangles overlap"};

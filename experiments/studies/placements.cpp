@@ -283,7 +283,7 @@ std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) 
   return (std::uint64_t{out[0]} << 32) | out[1];
 }
 
-PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
+PointResult measure_placements(const PlacementPoint& point, MeasurementContext& lab) {
   const PatchSource source(make_builtin_scene(point.from));
   RunOptions options;
   options.method = Method::far;
@@ -292,7 +292,7 @@ PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
   options.resolution = point.resolution;
   options.verify = false;
   PlacementCounts counts;
-  counts.promises = promises(options);
+  counts.promises = guaranteed(options);
   PointResult out{.device = "native"};
   for (std::uint64_t window = 0; counts.placements < point.placements; ++window) {
     if (lab.progress()) {

@@ -56,7 +56,7 @@ void require_alike(const std::string& where, const Exact& exact) {
 }
 
 const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::string& where,
-                      Lab& lab) {
+                      MeasurementContext& lab) {
   static std::map<std::pair<std::string, DistanceTask>, Exact> known;
   Scene scene = open_scene(wanted, lab);
   for (Object& object : scene.objects) object.self = false;
@@ -179,7 +179,7 @@ void add_counts(bool quick, std::vector<Point>& out) {
 
 }  // namespace
 
-PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab) {
+PointResult measure_neighbours(const NeighbourPoint& point, MeasurementContext& lab) {
   const Exact& exact = exact_of(point.scene, DistanceTask::nearest, describe(Point(point)), lab);
   const Stopwatch watch;
   NeighbourSets sets = neighbour_sets(exact.scene,
@@ -201,7 +201,7 @@ PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab) {
 }
 
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
-                              Lab& lab) {
+                              MeasurementContext& lab) {
   PointResult none{.device = "none", .left_out = contestant.missing};
   if (!none.left_out.empty()) return none;
   const Exact& exact = exact_of(point.scene, point.task, describe(Point(point)), lab);
@@ -232,7 +232,7 @@ std::vector<DistancePeer> distance_contestants() {
   return out;
 }
 
-PointResult measure_distances(const DistancePoint& point, Lab& lab) {
+PointResult measure_distances(const DistancePoint& point, MeasurementContext& lab) {
   for (const DistancePeer& contestant : distance_contestants()) {
     if (contestant.name == point.contestant) return measure_distances(point, contestant, lab);
   }
@@ -266,7 +266,7 @@ Study proximity_study() {
     add_counts(choice.quick, out);
     return out;
   };
-  study.measure = [](const Point& point, Lab& lab) {
+  study.measure = [](const Point& point, MeasurementContext& lab) {
     if (const auto* of = std::get_if<NeighbourPoint>(&point)) return measure_neighbours(*of, lab);
     return measure_distances(std::get<DistancePoint>(point), lab);
   };

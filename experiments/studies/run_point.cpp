@@ -111,7 +111,7 @@ Scene cloth_apart(const ClothApart& wanted) {
   return scene;
 }
 
-void fill(AnswerCounts& counts, const Scene& scene, const Truth& truth, const Errors& errors,
+void fill(AnswerCounts& counts, const Scene& scene, const TruePairs& truth, const Errors& errors,
           std::uint64_t candidates) {
   counts.colliding = truth.pairs.size();
   counts.missed = errors.missed;
@@ -122,7 +122,7 @@ void fill(AnswerCounts& counts, const Scene& scene, const Truth& truth, const Er
 }
 
 // The number of missed pairs that penetrate.
-std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
+std::uint64_t missed_penetrating(const Scene& scene, const TruePairs& truth,
                                  const std::vector<TrianglePair>& pairs) {
   std::vector<TrianglePair> missed;
   std::set_difference(truth.pairs.begin(), truth.pairs.end(), pairs.begin(), pairs.end(),
@@ -136,7 +136,7 @@ std::uint64_t hash_of(const std::vector<TrianglePair>& pairs) {
   return hash.value();
 }
 
-PointResult result_of(const Scene& scene, const Truth& truth, const Record& record) {
+PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& record) {
   const std::vector<TrianglePair> pairs = record.collisions.all();
   PointResult out{.answer = hash_of(pairs), .device = answered(record)};
   RunCounts counts;
@@ -146,7 +146,7 @@ PointResult result_of(const Scene& scene, const Truth& truth, const Record& reco
   counts.kept_triangles = record.found.triangle_count;
   counts.kept_objects = record.found.object_count;
   std::tie(counts.left_by_boxes, counts.views_used) = mechanism_of(scene, record);
-  counts.promises = promises(record.options);
+  counts.promises = guaranteed(record.options);
   if (counts.promises && !record.promise.holds) counts.revoked = true;
   counts.scene_hash = record.scene_hash;
   const Method method = record.options.method;
@@ -179,7 +179,7 @@ std::string text_of(const CountValue& value) {
 
 }  // namespace
 
-const Scene& open_scene(const PointScene& scene, Lab& lab) {
+const Scene& open_scene(const PointScene& scene, MeasurementContext& lab) {
   if (const auto* of = std::get_if<NamedScene>(&scene)) return lab.scene(of->name);
   if (const auto* of = std::get_if<MotionFrame>(&scene))
     return lab.scene(of->name, of->frame, of->frames);
@@ -206,8 +206,8 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;
   };
-  for (const auto& [name, value] : named(first.counts)) at(name).first = text_of(value);
-  for (const auto& [name, value] : named(other.counts)) at(name).second = text_of(value);
+  for (const auto& [name, value] : to_columns(first.counts)) at(name).first = text_of(value);
+  for (const auto& [name, value] : to_columns(other.counts)) at(name).second = text_of(value);
   for (const auto& [name, both] : values) {
     if (both.first != both.second) add(name + " " + both.first + " and " + both.second);
   }
@@ -255,7 +255,7 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
   return {left, std::ranges::count_if(record.found.views(), &ViewReport::drawn)};
 }
 
-RunOptions options_of(const RunPoint& point, const Lab& lab) {
+RunOptions options_of(const RunPoint& point, const MeasurementContext& lab) {
   RunOptions options;
   options.method = point.method;
   options.resolution = point.resolution;
@@ -273,7 +273,7 @@ RunOptions options_of(const RunPoint& point, const Lab& lab) {
   return options;
 }
 
-PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
+PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* kept) {
   const bool moving = std::holds_alternative<MotionFrame>(point.scene);
   if (point.repeat < 1 || (moving && point.repeat > 1))
     throw std::logic_error("measure_run: runs of " + describe(Point(point)));
@@ -289,7 +289,7 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
     }
     options.resolution = static_cast<int>(size->resolution);
   }
-  const Truth& truth = lab.truth();
+  const TruePairs& truth = lab.truth();
   if (!moving) lab.session().sweep().forget();
   Record record = run(scene, options, lab.session(), lab.progress());
   PointResult out = result_of(scene, truth, record);
@@ -302,7 +302,8 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
   return out;
 }
 
-std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point, Lab& lab) {
+std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
+                                                      MeasurementContext& lab) {
   const auto missed_at = [&](double factor) {
     RunPoint smaller = repeated(point, 1);
     smaller.radius = RadiusRule{.factor = factor};
@@ -312,7 +313,7 @@ std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point, Lab
   return {smaller, missed_at(0)};
 }
 
-PointResult measure_with_risk(const RunPoint& point, Lab& lab, Record* record) {
+PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab, Record* record) {
   PointResult out = measure_run(point, lab, record);
   auto* counts = std::get_if<RunCounts>(&out.counts);
   if (point.method == Method::far && counts != nullptr && counts->promises)
@@ -327,13 +328,13 @@ std::string library_of_peer(const Point& point) {
   return peer.missing.empty() ? peer.library : "";
 }
 
-PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads) {
+PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads) {
   const Scene& scene = open_scene(point.scene, lab);
   const Peer peer = peer_named(point.peer);
   PointResult out{.device = "cpu"};
   out.left_out = !peer.missing.empty() ? peer.missing : peer.refuses ? peer.refuses(scene) : "";
   if (!out.left_out.empty()) return out;
-  const Truth truth = without_neighbours(scene, lab.truth());
+  const TruePairs truth = without_neighbours(scene, lab.truth());
   const BenchRun run = peer.set_up(threads);
   if (lab.progress()) lab.progress()(peer.name);
   const Stopwatch watch;

@@ -21,7 +21,7 @@ namespace farcull {
 
 /// Makes the scene of the point the current one of the lab. Throws Error as load_scene() and
 /// FrameSource do.
-const Scene& open_scene(const PointScene& scene, Lab& lab);
+const Scene& open_scene(const PointScene& scene, MeasurementContext& lab);
 
 /// The least resolution at which the triangles of the scene that can take part cover `pixels`
 /// pixels (the area of their image) on average, over the triangles and the views x, y, z. 0 if they
@@ -32,7 +32,7 @@ SizeCounts size_for(const Scene& scene, double pixels);
 constexpr int kMostSizedResolution = 8192;
 
 /// The options of a run at the point, without the accounting: the run is compared with the truth.
-RunOptions options_of(const RunPoint& point, const Lab& lab);
+RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
 /// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
 /// and z at kCellsResolution. In half of the cells the triangles meet at a corner of a pixel, so
@@ -53,22 +53,24 @@ std::string answered(const Record& record);
 /// the previous frame, which is its purpose; a second run of the same frame would find them sorted,
 /// so `repeat` is 1 there (std::logic_error otherwise). Throws Error as run() does. The counts are
 /// RunCounts without `fragments`. record: receives the run; may be null.
-PointResult measure_run(const RunPoint& point, Lab& lab, Record* record = nullptr);
+PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* record = nullptr);
 /// The same for a Point that is a RunPoint, without the record.
-inline PointResult measure_run_point(const Point& point, Lab& lab) {
+inline PointResult measure_run_point(const Point& point, MeasurementContext& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
 }
 
 /// The pairs that FAR misses at the point with 0.9 of its radius, and without a ball:
 /// RunCounts::at_risk and at_risk_bare. Runs it twice.
-std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point, Lab& lab);
+std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
+                                                      MeasurementContext& lab);
 /// measure_run(), for FAR at a radius that promises with the pairs at risk.
-PointResult measure_with_risk(const RunPoint& point, Lab& lab, Record* record = nullptr);
+PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab,
+                              Record* record = nullptr);
 
 /// Opens the scene and runs the library on it once on `threads` threads. Pairs of neighbours count
 /// neither as missed nor as wrong, since libraries leave them out. Left out if this build lacks the
 /// library or the library refuses the scene. Throws std::logic_error if there is no such peer.
-PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads);
+PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads);
 
 /// The library of a PeerPoint with its version; empty if this build lacks it, and for all other
 /// points (Study::library).
@@ -80,7 +82,7 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
 
 /// Runs the generator of the point. Left out if the window is larger than the device can draw. The
 /// counts are LemmaCounts. Throws Error for faults of the device.
-PointResult measure_lemma(const LemmaPoint& point, Lab& lab);
+PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab);
 
 // Potential neighbours and distances of the study "proximity". The exact answers of a scene are
 // those of `farcull distance`. They count only if the accounting (verify/distance_accounting.h),
@@ -89,14 +91,15 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab);
 
 /// Runs the method once on one thread. The counts are SetCounts. Left out if the diagram would keep
 /// too many pairs. Throws Error if the accounting refutes the exact answers.
-PointResult measure_neighbours(const NeighbourPoint& point, Lab& lab);
+PointResult measure_neighbours(const NeighbourPoint& point, MeasurementContext& lab);
 
 /// The same for a DistancePoint and its contestant. The counts are DistanceCounts. Left out if this
 /// build lacks the library or the library refuses the scene. Throws std::logic_error if there is no
 /// such contestant.
-PointResult measure_distances(const DistancePoint& point, Lab& lab);
+PointResult measure_distances(const DistancePoint& point, MeasurementContext& lab);
 /// The same for the given contestant, whatever its name.
-PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant, Lab& lab);
+PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
+                              MeasurementContext& lab);
 
 /// "farcull" and all peers, including those that this build lacks.
 std::vector<DistancePeer> distance_contestants();
@@ -162,6 +165,6 @@ double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 /// the native canvas, until all placements of the point are done. With subpixel bits, corners of
 /// proxies are snapped to multiples of 2^-bits px before drawing, as devices do. Exact predicates
 /// decide which pairs collide. The counts are PlacementCounts.
-PointResult measure_placements(const PlacementPoint& point, Lab& lab);
+PointResult measure_placements(const PlacementPoint& point, MeasurementContext& lab);
 
 }  // namespace farcull

@@ -455,7 +455,7 @@ class Runner {
   Store& store_;
   const std::function<void(const StudiesProgress&)>& progress_;
   StudiesProgress now_;
-  std::optional<Lab> lab_;
+  std::optional<MeasurementContext> lab_;
   std::int64_t run_ = 0;
   Interruptible* interruptible_ = nullptr;
   std::set<Place> closed_;                   // points that are whole, or failed

@@ -63,7 +63,7 @@ const Json& JsonObject::operator[](const char* key) const {
   return static_cast<const Json&>(*value_)[key];
 }
 
-NamedCounts named(const Counts& counts) {
+NamedCounts to_columns(const Counts& counts) {
   NamedCounts out;
   std::visit(
       [&](const auto& of) {
@@ -79,7 +79,7 @@ NamedCounts named(const Counts& counts) {
 
 Measurement stored(const PointResult& result) {
   Measurement out{.device = result.device, .left_out = result.left_out};
-  for (const auto& [name, value] : named(result.counts))
+  for (const auto& [name, value] : to_columns(result.counts))
     std::visit([&, &key = name](const auto& of) { (*out.counts)[key] = of; }, value);
   result.times.fields([&](std::string_view name, const auto& ms) {
     if constexpr (requires { ms.has_value(); }) {

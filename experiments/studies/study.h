@@ -12,7 +12,7 @@
 
 namespace farcull {
 
-class Lab;
+class MeasurementContext;
 
 /// Chooses the grid of a study.
 struct GridChoice {
@@ -30,7 +30,7 @@ struct Study {
   /// gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
   /// Throws Error for faults of the device or the machine: the run ends there and can be resumed.
-  std::function<PointResult(const Point&, Lab&)> measure;
+  std::function<PointResult(const Point&, MeasurementContext&)> measure;
   /// The library that would answer the point now, with its version, as in "CGAL 5.5.1": the value
   /// of the count `library` in its row. Empty: no library answers it, or the library is missing.
   /// Null: no point of this study asks a library.

@@ -85,7 +85,7 @@ double percentile(const std::vector<double>& sorted, double part) {
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-PointResult measure_scene(const Point& point, Lab& lab) {
+PointResult measure_scene(const Point& point, MeasurementContext& lab) {
   const Scene& scene = open_scene(std::get<RunPoint>(point).scene, lab);
   const std::size_t all = lab.truth().pairs.size();
   SceneCounts counts;
@@ -135,7 +135,7 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
 
 // Libraries leave neighbours out, but boxes gives them to the predicates. They are counted
 // here, for the number of candidates without them.
-PointResult measure_culling(const Point& point, Lab& lab) {
+PointResult measure_culling(const Point& point, MeasurementContext& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
   PointResult out = measure_run(std::get<RunPoint>(point), lab, &record);

@@ -268,7 +268,7 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
   require_other_files(sources, out);
   MergedTiles merged{.tiles = sources.size(), .verified = true};
   for (const Source& source : sources) {
-    merged.promises = merged.promises && at<bool>(source, "/promises");
+    merged.guaranteed = merged.guaranteed && at<bool>(source, "/promises");
     if (at<Json>(source, "/verification").is_object())
       merged.false_negatives += at<std::uint64_t>(source, "/verification/false_negatives");
     else

@@ -172,7 +172,7 @@ struct MergedTiles {
   std::uint64_t rows = 0;             // of the list
   std::uint64_t false_negatives = 0;  // of all accountings
   bool verified = false;              // every tile has an accounting
-  bool promises = true;               // every tile promises to miss nothing (docs/record.md)
+  bool guaranteed = true;             // every tile promises to miss nothing (docs/record.md)
 };
 
 /// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists

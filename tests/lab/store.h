@@ -43,7 +43,7 @@ inline Study counting_study(std::size_t points, std::chrono::microseconds pause 
                 return out;
               },
           .measure =
-              [=](const Point& point, Lab&) {
+              [=](const Point& point, MeasurementContext&) {
                 std::this_thread::sleep_for(pause);
                 const auto& lemma = std::get<LemmaPoint>(point);
                 const auto side = static_cast<std::uint64_t>(lemma.side);
@@ -91,7 +91,7 @@ inline Study timed_study(const std::vector<std::string>& scenes, std::vector<std
                 return out;
               },
           .measure =
-              [&runs](const Point& point, Lab&) {
+              [&runs](const Point& point, MeasurementContext&) {
                 const PointKey key = key_of(point);
                 runs.push_back(key.scene + " " + key.method);
                 RunCounts counts;

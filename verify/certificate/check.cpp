@@ -15,7 +15,7 @@
 namespace farcull {
 namespace {
 
-enum class Finding : std::uint8_t {
+enum class EvidenceFault : std::uint8_t {
   as_claimed,
   // These leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
@@ -28,13 +28,13 @@ enum class Finding : std::uint8_t {
   neighbours,  // neighbours meet only in what they share, but are claimed to meet
 };
 
-bool refutes(Finding finding) { return finding >= Finding::culled_meets; }
+bool refutes(EvidenceFault finding) { return finding >= EvidenceFault::culled_meets; }
 
 enum class Kind : std::uint8_t { separated, neighbours, meeting };
 
 struct Decision {
   Kind kind = Kind::separated;
-  Finding finding = Finding::as_claimed;
+  EvidenceFault finding = EvidenceFault::as_claimed;
 };
 
 [[noreturn]] void contradiction() {
@@ -51,56 +51,58 @@ Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, 
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);
   const bool kept = (byte & kKept) != 0;
   const int claim = byte & ~kKept;
-  const auto meeting = [&](Finding if_kept) {
-    return Decision{Kind::meeting, kept ? if_kept : Finding::culled_meets};
+  const auto meeting = [&](EvidenceFault if_kept) {
+    return Decision{Kind::meeting, kept ? if_kept : EvidenceFault::culled_meets};
   };
   if (one_object && integers.shares_position()) {
     if (integers.meets_beyond_shared()) {
-      return meeting(claim == kMeets                               ? Finding::as_claimed
-                     : claim < kDirections || claim == kNeighbours ? Finding::meets
-                                                                   : Finding::no_evidence);
+      return meeting(claim == kMeets                               ? EvidenceFault::as_claimed
+                     : claim < kDirections || claim == kNeighbours ? EvidenceFault::meets
+                                                                   : EvidenceFault::no_evidence);
     }
-    return {Kind::neighbours, claim == kNeighbours ? Finding::as_claimed
-                              : claim == kMeets    ? Finding::neighbours
-                                                   : Finding::not_neighbours};
+    return {Kind::neighbours, claim == kNeighbours ? EvidenceFault::as_claimed
+                              : claim == kMeets    ? EvidenceFault::neighbours
+                                                   : EvidenceFault::not_neighbours};
   }
   if (claim == kMeets) {
-    if (integers.is_within()) return meeting(Finding::as_claimed);
+    if (integers.is_within()) return meeting(EvidenceFault::as_claimed);
     if (!integers.separating_direction()) contradiction();
-    return {Kind::separated, Finding::separated};
+    return {Kind::separated, EvidenceFault::separated};
   }
   const bool direction = claim < kDirections;
-  if (direction && integers.separated_by(claim)) return {Kind::separated, Finding::as_claimed};
+  if (direction && integers.separated_by(claim))
+    return {Kind::separated, EvidenceFault::as_claimed};
   if (integers.separating_direction())
-    return {Kind::separated, direction ? Finding::wrong_direction : Finding::no_evidence};
+    return {Kind::separated,
+            direction ? EvidenceFault::wrong_direction : EvidenceFault::no_evidence};
   if (!integers.is_within()) contradiction();
-  return meeting(direction ? Finding::meets : Finding::no_evidence);
+  return meeting(direction ? EvidenceFault::meets : EvidenceFault::no_evidence);
 }
 
-std::string sentence(Finding finding, int byte, bool clearance) {
+std::string sentence(EvidenceFault finding, int byte, bool clearance) {
   switch (finding) {
-    case Finding::culled_meets:
+    case EvidenceFault::culled_meets:
       return clearance ? "the pair is called culled, and it is within the clearance"
                        : "the pair is called culled, and it meets";
-    case Finding::meets:
+    case EvidenceFault::meets:
       return clearance ? "the pair is called farther apart than the clearance, and it is not"
                        : "the pair is called disjoint, and it meets";
-    case Finding::separated:
+    case EvidenceFault::separated:
       return clearance ? "the pair is said to be within the clearance, and it is farther apart"
                        : "the pair is said to meet, and it is disjoint";
-    case Finding::wrong_direction:
+    case EvidenceFault::wrong_direction:
       return "direction " + std::to_string(byte & ~kKept) +
              (clearance
                   ? " does not show that the pair is farther apart than the clearance, as it is"
                   : " does not separate the pair, which is disjoint");
-    case Finding::neighbours:
+    case EvidenceFault::neighbours:
       return "the pair is said to meet, and these neighbours share only vertices or an edge";
-    case Finding::not_neighbours:
+    case EvidenceFault::not_neighbours:
       return "the byte " + std::to_string(byte) +
              " does not say that these are neighbours that share only vertices or an edge";
-    case Finding::no_evidence:
+    case EvidenceFault::no_evidence:
       return "the byte " + std::to_string(byte) + " is no evidence";
-    case Finding::as_claimed:
+    case EvidenceFault::as_claimed:
       break;
   }
   return "";
@@ -164,7 +166,7 @@ class Tally {
                                            : result_.found.separated);
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
-    if (decision.finding == Finding::as_claimed) return;
+    if (decision.finding == EvidenceFault::as_claimed) return;
     // Names the first pair that refutes; if there is none yet, the first that is not proved.
     const bool refuted = refutes(decision.finding);
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;

@@ -167,7 +167,7 @@ TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
 BlockMeetings along_axes(const Scene& scene, double clearance,
                          std::span<const ObjectPair> ignored = {}) {
   const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, 2));
-  const ObjectMeetings meetings = find_meetings(scene, *blocks, ignored);
+  const ObjectOverlaps meetings = find_meetings(scene, *blocks, ignored);
   const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
   gather_scattered(scene, clearance, regions, 2, *blocks);
   const BlockTrees trees(*blocks, regions);

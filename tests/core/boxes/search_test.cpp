@@ -158,7 +158,7 @@ TEST(Boxes, OfWhatBlocksDoNotDecideATreeFindsThePairs) {
           });
       std::ranges::sort(all);
       EXPECT_EQ(all, listed.candidates);
-      EXPECT_TRUE(given.given && given.candidates.empty());
+      EXPECT_TRUE(given.streamed && given.candidates.empty());
       EXPECT_EQ(given.count, listed.count);
       const std::vector<TrianglePair> truth = truth_of(either);
       EXPECT_GT(truth.size(), 1000u);

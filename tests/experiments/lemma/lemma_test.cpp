@@ -205,7 +205,7 @@ TEST(Lemma, BuffersOfTheWorstCanvasBoundAtTheBudgetInDeepAndWideWindows) {
 }
 
 TEST(LemmaPoint, PromisesAtTheBudgetAndAViolationThereBreaksIt) {
-  Lab lab("cpu");
+  MeasurementContext lab("cpu");
   const auto at = [&](const RadiusRule& radius, DepthMode mode = DepthMode::fragment) {
     return stored(measure_lemma({.generator = "pixel corners",
                                  .points = 100,

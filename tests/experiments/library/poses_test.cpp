@@ -50,7 +50,7 @@ Pose random_pose(RandomNumbers& random, double far) {
 
 /// taken: the input of the last call.
 std::vector<double> taken_vertices(const Input& input, TakenInput&& taken = {}) {
-  take(input, false, {}, taken);
+  load_input(input, false, {}, taken);
   std::vector<double> out;
   for (const Vec3& p : taken.scene.vertices) out.insert(out.end(), p.data(), p.data() + 3);
   return out;

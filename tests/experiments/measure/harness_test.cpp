@@ -44,18 +44,18 @@ TEST(Harness, TakesTheMeanOfTwoMiddleValuesAndTheFasterOfTwoMiddleRuns) {
   EXPECT_EQ(median_run({7}), 0u);
 }
 
-TEST(Lab, ReadsAMotionAnewWhereItHasOtherFrames) {
-  Lab lab("cpu");
+TEST(MeasurementContext, ReadsAMotionAnewWhereItHasOtherFrames) {
+  MeasurementContext lab("cpu");
   const auto hash = [&](long frames) { return scene_hash(lab.scene("crowd:30", 1, frames)); };
   const std::string of4 = hash(4), of12 = hash(12);
   EXPECT_EQ(hash(4), of4);
-  Lab fresh("cpu");
+  MeasurementContext fresh("cpu");
   EXPECT_EQ(scene_hash(fresh.scene("crowd:30", 1, 12)), of12);
   EXPECT_NE(of4, of12) << "else it would not matter";
 }
 
-TEST(Lab, TheTruthIsWithoutWhatTheSceneIgnores) {
-  Lab lab("cpu");
+TEST(MeasurementContext, TheTruthIsWithoutWhatTheSceneIgnores) {
+  MeasurementContext lab("cpu");
   Scene scene = make_builtin_scene("two-tori");
   lab.scene("whole", [&] { return scene; });
   EXPECT_GT(lab.truth().pairs.size(), 0u);

@@ -57,7 +57,7 @@ void expect_as_exact(const Scene& scene, double clearance = 0) {
   }
   EXPECT_TRUE(pairs.promise.holds);
   EXPECT_FALSE(pairs.found.device.cpu || pairs.found.device.gl);
-  EXPECT_TRUE(pairs.found.given || pairs.found.count == pairs.found.pairs.size());
+  EXPECT_TRUE(pairs.found.streamed || pairs.found.count == pairs.found.pairs.size());
 }
 
 TEST(RunPairs, GivesTheExactPairs) {
@@ -128,7 +128,7 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
     const Record exact = run(scene, asked(Method::exact));
     EXPECT_GT(exact.collisions.pairs.size(), 100u);
     const Record record = run(scene, asked(Method::boxes));
-    EXPECT_TRUE(record.found.given);
+    EXPECT_TRUE(record.found.streamed);
     EXPECT_TRUE(record.found.pairs.empty());
     EXPECT_EQ(record.found.count, exact.found.count);
     EXPECT_EQ(record.decided, record.found.count);
@@ -146,7 +146,7 @@ TEST(RunPairs, DecidesThePairsOfATreeAsTheyAreFound) {
     RunOptions first = asked(Method::boxes);
     first.limit = 3;
     const Record some = run(scene, first);
-    EXPECT_FALSE(some.found.given);
+    EXPECT_FALSE(some.found.streamed);
     EXPECT_FALSE(some.limited) << "no crowd: all candidates are listed";
     EXPECT_EQ(some.found.count, record.found.count);
     EXPECT_EQ(some.found.triangles, record.found.triangles);
@@ -169,14 +169,14 @@ TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
         make_builtin_scene("cad-cut:4000")}) {
     RunOptions options = on_cpu(Method::boxes);
     const Record listed = run(scene, options);
-    EXPECT_FALSE(listed.found.given);
+    EXPECT_FALSE(listed.found.streamed);
     ASSERT_TRUE(listed.verification);
     const Record exact = run(scene, on_cpu(Method::exact));
     options.verify = false;
     for (const unsigned threads : {1u, 3u}) {
       Session session("cpu", threads);
       const Record given = run(scene, options, session);
-      EXPECT_TRUE(given.found.given) << scene.name;
+      EXPECT_TRUE(given.found.streamed) << scene.name;
       EXPECT_TRUE(given.found.pairs.empty());
       EXPECT_EQ(given.found.count, listed.found.count);
       EXPECT_EQ(given.decided, listed.found.pairs.size());
@@ -195,11 +195,11 @@ TEST(RunPairs, DecidesThePairsOfBlocksAsTheyAreFound) {
       }
     }
     options.limit = 3;
-    EXPECT_FALSE(run(scene, options).found.given);
+    EXPECT_FALSE(run(scene, options).found.streamed);
     options.limit = 0;
     Session frames("cpu");
     frames.remember_frames();
-    EXPECT_FALSE(run(scene, options, frames).found.given);
+    EXPECT_FALSE(run(scene, options, frames).found.streamed);
   }
 }
 
@@ -244,7 +244,7 @@ TEST(RunPairs, ALostPartOfGivenPairsIsMissed) {
           if (loses) some.resize(some.size() / 2);
           kept.insert(kept.end(), some.begin(), some.end());
         });
-    ASSERT_TRUE(result.given);
+    ASSERT_TRUE(result.streamed);
     std::ranges::sort(kept);
     EXPECT_EQ(account(scene, kept).false_negatives > 0, loses);
   }

@@ -11,8 +11,8 @@
 namespace farcull {
 namespace {
 
-Lab& shared_lab() {
-  static Lab lab("");
+MeasurementContext& shared_lab() {
+  static MeasurementContext lab("");
   return lab;
 }
 

@@ -47,7 +47,8 @@ TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
   const ScratchFolder other;
   StudiesRequest request = lab_request(other.folder(), two_studies());
   request.shard = {2, 3};
-  request.studies[0].measure = [right = request.studies[0].measure](const Point& p, Lab& lab) {
+  request.studies[0].measure = [right = request.studies[0].measure](const Point& p,
+                                                                    MeasurementContext& lab) {
     if (number_of(p) == 5) throw Error("device", "is lost", "try again");
     return right(p, lab);
   };
@@ -143,7 +144,7 @@ constexpr int kPoints = 12;
 Study asking(const std::string& version, int fails_from = kPoints + 1) {
   Study out = counting_study(kPoints);
   out.library = [=](const Point&) { return version; };
-  out.measure = [=](const Point& point, Lab&) {
+  out.measure = [=](const Point& point, MeasurementContext&) {
     if (number_of(point) >= fails_from) throw Error("device", "is lost", "try again");
     if (version.empty()) return PointResult{.device = "none", .left_out = "it is not there"};
     return PointResult{.counts = LibraryCounts{{{"library", version}}}, .device = "process"};

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/method/misses.h"
+#include "experiments/method/miss_model.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/studies/run_point.h"
@@ -74,7 +74,7 @@ double factor_between(double a, double b) { return std::max(a / b, b / a); }
 
 TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
   const Study& study = study_named("model");
-  Lab lab("native");
+  MeasurementContext lab("native");
   int judged = 0, twins = 0;
   for (const Point& point : study.grid({.quick = true})) {
     const auto& of = std::get<RunPoint>(point);

@@ -87,14 +87,14 @@ inline std::string text_of(const CountValue& value) {
 /// key: that of the point, whatever was measured.
 inline std::string row_of(const Study& study, const std::string& key, const Counts& counts) {
   std::string out = study.name + ";" + key, hash;
-  for (const auto& [name, value] : named(counts))
+  for (const auto& [name, value] : to_columns(counts))
     (name == "scene_hash" ? hash : out) += " " + name + "=" + text_of(value);
   return out + hash;
 }
 
 /// Measures the point. Throws Error as the study does, and where nothing could be measured.
 inline std::string measured_row(const Study& study, const Point& point, const std::string& key,
-                                Lab& lab) {
+                                MeasurementContext& lab) {
   const PointResult result = study.measure(point, lab);
   if (!result.left_out.empty()) throw Error(describe(point), result.left_out, "look into it");
   return row_of(study, key, result.counts);

@@ -67,7 +67,7 @@ Arguments arguments_of(const std::vector<std::string>& words) {
 Table measure(const Arguments& arguments, const std::vector<Part>& parts, unsigned threads,
               bool print) {
   Table out;
-  Lab lab("native", {}, threads);
+  MeasurementContext lab("native", {}, threads);
   for (const Study& study : studies()) {
     if (!arguments.study.empty() && study.name != arguments.study) continue;
     for (const StudyGridPoint& point : quick_points(study)) {

@@ -24,7 +24,7 @@ TEST(NativeCounts, TheFileHasEveryMethodOfEveryStudyAndIsWhatItWouldBeWrittenAs)
 }
 
 TEST(NativeCounts, TellEveryChangedDigit) {
-  Lab lab("native");
+  MeasurementContext lab("native");
   const Study& study = study_named("accuracy");
   const std::vector<StudyGridPoint> points = quick_points(study);
   const auto at = std::ranges::find_if(
@@ -58,7 +58,7 @@ TEST(NativeCounts, TellEveryChangedDigit) {
 
 // Each change of what is drawn changes a count, beyond that of the radius itself.
 TEST(NativeCounts, TellAnotherRadiusDepthResolutionAndOffset) {
-  Lab lab("native");
+  MeasurementContext lab("native");
   // Large enough that the exact offset goes on where the boxes end.
   const RunPoint good = far_point(NamedScene{"two-tori"}, "obb", kBudgetRadius, 64);
   const auto row = [&](const RunPoint& point) {

@@ -16,7 +16,7 @@ const DistanceCounts& distances_of(const PointResult& result) {
 }
 
 TEST(Proximity, WhatPromisesLosesNothingAndADiagramThatIsNotWidenedDoes) {
-  Lab lab("cpu");
+  MeasurementContext lab("cpu");
   const ClusteredScene scene{.ratio = 16, .seed = 3};
   for (const NeighbourPoint& point :
        {NeighbourPoint{.scene = scene, .method = NeighbourMethod::boxes},
@@ -49,7 +49,7 @@ TEST(Proximity, WhatPromisesLosesNothingAndADiagramThatIsNotWidenedDoes) {
 }
 
 TEST(Proximity, ThePublishedDiagramLosesLessWithMoreCells) {
-  Lab lab("cpu");
+  MeasurementContext lab("cpu");
   const auto missed = [&](int cells) {
     return sets_of(measure_neighbours({.scene = ClusteredScene{.ratio = 64, .seed = 1},
                                        .method = NeighbourMethod::voronoi,
@@ -78,7 +78,7 @@ DistancePeer liar(std::function<void(std::vector<PeerDistance>&)> spoil) {
 }
 
 TEST(Proximity, APeerThatLiesShowsAnError) {
-  Lab lab("cpu");
+  MeasurementContext lab("cpu");
   const auto wrong = [](const PointResult& result) {
     return stored(result).counts["wrong"].get<std::uint64_t>();
   };

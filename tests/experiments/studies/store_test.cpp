@@ -200,7 +200,7 @@ TEST(RunStudies, TheComparisonOfStoresSeesARowThatDiffers) {
   const ScratchFolder one, two, three;
   run_studies(lab_request(one.folder(), {counting_study(20)}));
   Study wrong = counting_study(20);
-  wrong.measure = [right = wrong.measure](const Point& point, Lab& lab) {
+  wrong.measure = [right = wrong.measure](const Point& point, MeasurementContext& lab) {
     PointResult out = right(point, lab);
     if (number_of(point) == 13)
       std::get<LemmaCounts>(out.counts).largest_px = std::nextafter(13 / 3.0, 0.0);
@@ -209,7 +209,7 @@ TEST(RunStudies, TheComparisonOfStoresSeesARowThatDiffers) {
   run_studies(lab_request(two.folder(), {wrong}));
   EXPECT_EQ(difference(store_path(one.folder()), store_path(two.folder())), "counting: row 12");
   Study half = counting_study(20);
-  half.measure = [right = half.measure](const Point& point, Lab& lab) {
+  half.measure = [right = half.measure](const Point& point, MeasurementContext& lab) {
     if (number_of(point) == 5) throw Error("device", "lost", "try again");
     return right(point, lab);
   };
@@ -299,7 +299,7 @@ TEST(RunStudies, TriesAgainWhatWasLeftOutAndNothingElse) {
   const ScratchFolder folder, undisturbed;
   const Study study = counting_study(10);
   Study lacking = study;
-  lacking.measure = [right = study.measure](const Point& point, Lab& lab) {
+  lacking.measure = [right = study.measure](const Point& point, MeasurementContext& lab) {
     if (number_of(point) == 3) return PointResult{.device = "none", .left_out = "it is not there"};
     return right(point, lab);
   };
@@ -314,7 +314,7 @@ TEST(RunStudies, TriesAgainWhatWasLeftOutAndNothingElse) {
 TEST(RunStudies, NamesARowThatBreaksAPromiseAlsoAfterAResume) {
   const ScratchFolder folder;
   Study study = counting_study(3);
-  study.measure = [right = study.measure](const Point& point, Lab& lab) {
+  study.measure = [right = study.measure](const Point& point, MeasurementContext& lab) {
     PointResult out = right(point, lab);
     RunCounts counts;
     counts.promises = number_of(point) != 3;

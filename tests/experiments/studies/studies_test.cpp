@@ -126,25 +126,27 @@ TEST(ErrorTime, HasEveryLibraryOnEveryScene) {
 // ---- That a point's row depends on the point alone, not on what the lab measured before, nor on
 // which of several runs was looked at.
 
-PointResult measured(Lab& lab, const std::string& scene, Method method) {
+PointResult measured(MeasurementContext& lab, const std::string& scene, Method method) {
   return measure_run(plain_point(NamedScene{scene}, method), lab);
 }
 
 TEST(RunPoint, DoesNotDependOnEarlierRunsOfTheSession) {
-  Lab fresh("cpu");
+  MeasurementContext fresh("cpu");
   const PointResult first = measured(fresh, "far-apart", Method::boxes);
-  Lab used("cpu");
+  MeasurementContext used("cpu");
   measured(used, "two-spheres", Method::boxes);
   const PointResult later = measured(used, "far-apart", Method::boxes);
-  EXPECT_EQ(named(first.counts), named(later.counts));
+  EXPECT_EQ(to_columns(first.counts), to_columns(later.counts));
   EXPECT_EQ(first.device, later.device);
 }
 
 // Whether the lists of i-collide are those of a run just before.
-bool is_warm(Lab& lab) { return lab.session().sweep().find(lab.current()).counts.sorts == 0; }
+bool is_warm(MeasurementContext& lab) {
+  return lab.session().sweep().find(lab.current()).counts.sorts == 0;
+}
 
 TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
-  Lab lab("cpu");
+  MeasurementContext lab("cpu");
   const auto stages_of = [&](const RunPoint& point) {
     Record record;
     measure_run(point, lab, &record);
@@ -169,7 +171,7 @@ TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
 // would miss nearly all with a smaller ball, which is the twin. A method without a radius has
 // nothing at risk of it, and without a view nothing is drawn.
 TEST(ContactCells, AreFoundByTheBudgetAndLostBySmallerBalls) {
-  Lab lab("native");
+  MeasurementContext lab("native");
   const auto counts_of = [&lab](const RunPoint& point) {
     return std::get<RunCounts>(stability_study().measure(point, lab).counts);
   };
@@ -333,7 +335,7 @@ TEST(Placements, AreDrawnAnewForWhatIsAddedUp) {
 }
 
 PlacementCounts measured(const RadiusRule& radius, int bits) {
-  Lab lab("native");
+  MeasurementContext lab("native");
   const PlacementPoint point{.from = "random-soup",
                              .grazing = true,
                              .side = 1,

@@ -47,7 +47,7 @@ TEST(Times, GoOnWithTheNextRoundWhereTheyWereEnded) {
   std::vector<std::string> runs;
   Study study = timed_study({"a"}, runs), ends = study;
   bool lost = false;
-  ends.measure = [&, right = study.measure](const Point& point, Lab& lab) {
+  ends.measure = [&, right = study.measure](const Point& point, MeasurementContext& lab) {
     if (runs.size() == 6 && !std::exchange(lost, true)) throw Error("device", "is lost", "again");
     return right(point, lab);
   };
@@ -127,7 +127,7 @@ TEST(Times, RefuseAnAnswerThatChangesFromRoundToRound) {
   const ScratchFolder folder;
   std::vector<std::string> runs;
   Study moody = timed_study({"a"}, runs);
-  moody.measure = [&runs, right = moody.measure](const Point& point, Lab& lab) {
+  moody.measure = [&runs, right = moody.measure](const Point& point, MeasurementContext& lab) {
     PointResult out = right(point, lab);
     out.answer = runs.size() == 9;
     return out;

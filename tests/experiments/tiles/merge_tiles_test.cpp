@@ -201,9 +201,9 @@ TEST_F(MergeTiles, JoinLongLists) {
 }
 
 TEST_F(MergeTiles, PromiseWhatEveryTilePromises) {
-  EXPECT_TRUE(merge_tiles({record(1), record(2), record(3)}, out()).promises);
+  EXPECT_TRUE(merge_tiles({record(1), record(2), record(3)}, out()).guaranteed);
   change(2, [](Json& json) { json["promises"] = false; });
-  EXPECT_FALSE(merge_tiles({record(1), record(2), record(3)}, out()).promises);
+  EXPECT_FALSE(merge_tiles({record(1), record(2), record(3)}, out()).guaranteed);
 }
 
 TEST_F(MergeTiles, AddUpMissedPairs) {

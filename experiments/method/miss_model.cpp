@@ -2,7 +2,7 @@
 // images, on one side of the line in which the two planes have equal depths. A triangle is kept in
 // a view if a pixel centre lies in such a part. The probability of that follows from the area, the
 // width and the height of the part; a pair is missed unless both triangles are kept in each view.
-#include "experiments/method/misses.h"
+#include "experiments/method/miss_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -422,7 +422,7 @@ double centre_probability(double area, double width, double height, double radiu
 std::string why_unpredicted(const RunOptions& options) {
   if (!has_broad_phase(options.method))
     return "the method does not draw objects against each other";
-  if (promises(options)) return "the method misses nothing";
+  if (guaranteed(options)) return "the method misses nothing";
   if (options.conservative) return "conservative rasterization";
   if (options.objects_alone) return "objects are culled as a whole";
   if (options.radius.published) return "the published radius";
@@ -433,7 +433,7 @@ std::string why_unpredicted(const RunOptions& options) {
 
 MissesOfPlan misses_of(const Scene& scene, const Plan& plan) {
   const auto* work = std::get_if<DrawPlan>(&plan.work);
-  if (work == nullptr || promises(plan.options)) return {};
+  if (work == nullptr || guaranteed(plan.options)) return {};
   MissesOfPlan out;
   out.why_not =
       has_self(scene) ? "objects are tested against themselves" : why_unpredicted(plan.options);

@@ -1,4 +1,4 @@
-#include "experiments/method/asked.h"
+#include "experiments/method/untested.h"
 
 #include "core/base/error.h"
 #include "core/base/text.h"
