@@ -1,4 +1,6 @@
 // Motions and loads of the suite, and our own answers about them.
+#include <fmt/format.h>
+
 #include "experiments/generators/pair_generators.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
