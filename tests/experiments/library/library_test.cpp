@@ -52,28 +52,6 @@ TEST(Library, ClearanceFindsWhatIsNear) {
             all_colliding_pairs(scene).pairs.size());
 }
 
-// tests/cases/misunderstood.json has inputs that are not what they were meant to be, and what is
-// said of each. The tests of Python read it too. The last ones are twins, which have an answer.
-TEST(Library, WhatIsMisunderstoodIsAnErrorWithARemedy) {
-  std::ifstream file(FARCULL_TEST_DIR "/cases/misunderstood.json");
-  const nlohmann::json cases = nlohmann::json::parse(file);
-  for (const auto& [name, one] : cases.items()) {
-    SCOPED_TRACE(name);
-    const auto vertices = one["vertices"].get<std::vector<double>>();
-    const auto triangles = one["triangles"].get<std::vector<std::uint32_t>>();
-    const auto starts = one["object_starts"].get<std::vector<std::uint32_t>>();
-    const bool self = one["self"].get<bool>();
-    const Input input{vertices, triangles, starts};
-    const auto expect = [&](const auto& call) {
-      const auto [where, reason] = refusal(call);
-      EXPECT_EQ(where, one.value("where", "nothing was thrown"));
-      EXPECT_TRUE(has_text(reason, one.value("reason", "nothing was thrown"))) << reason;
-    };
-    expect([&] { Collider({.self = self}).find(input); });
-    expect([&] { distances(input, {.self = self}); });
-  }
-}
-
 // Frames one after the other, in which some vertices move, triangles or objects become others, or
 // the input is bad. The collider keeps what did not move; each answer is that of a new one.
 TEST(Library, FramesAreAsFresh) {

@@ -35,18 +35,6 @@ std::vector<TrianglePair> brute_force(const Scene& scene) {
   return decide(scene, all, {.neighbours = false}).pairs;
 }
 
-// Sheets, each crossed by every blade: more candidates than any part that is decided at once.
-Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
-  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
-  for (std::uint32_t i = 0; i < sheets; ++i)
-    objects[0].push_back({Vec3(0, 0, i + .5), Vec3(1, 0, i + .5), Vec3(0, 1, i + .5)});
-  for (std::uint32_t i = 0; i < blades; ++i) {
-    const double x = 0.1 + 1e-4 * i;
-    objects[1].push_back({Vec3(x, 0.1, 0), Vec3(x, 0.1, sheets + 1.), Vec3(x, 0.3, sheets / 2.)});
-  }
-  return lab::scene_of(objects);
-}
-
 // All contestants that there are agree, and those that must be there are. `degenerate`: the scene
 // has triangles that not all peers take.
 BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
@@ -100,22 +88,6 @@ TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
   EXPECT_EQ(expect_agreement(some).rows[0].pairs, 0u) << "an object that is not self has no pairs";
 }
 
-// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a
-// manifold has none of these.
-TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
-  Scene scene;
-  scene.name = "book";
-  scene.vertices = {{0, 0, 0}, {0, 0, 4},  {3, 0, 2},  {0, 3, 2}, {-3, 0, 2}, {0, -3, 2},
-                    {1, 1, 2}, {-1, 1, 2}, {1, -1, 2}, {9, 9, 9}, {9, 8, 9},  {0, 9, 0}};
-  scene.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {1, 0, 5},  {6, 7, 8},
-                     {6, 7, 8}, {7, 6, 8}, {9, 0, 6}, {9, 10, 6}, {11, 0, 9}};
-  scene.source_face.resize(scene.triangles.size());
-  scene.objects = {{"book", 0, static_cast<std::uint32_t>(scene.triangles.size()), true}};
-  validate(scene, scene.name);
-  ASSERT_GT(brute_force(scene).size(), 5u);
-  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, brute_force(scene).size());
-}
-
 // Bullet's own comparison of two trees loses half of such pairs: boxes of 1e-5 that touch, 1e6 from
 // the origin. FCL's oriented boxes lose a third (docs/bench.md), so they are not asked.
 TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
@@ -135,11 +107,6 @@ TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
       continue;
     EXPECT_EQ(peer.set_up(2)(scene).pairs, all) << peer.name;
   }
-}
-
-TEST(Bench, PeersAgreeWhenCandidatesAreDecidedInParts) {
-  const Scene scene = sheets_and_blades(700, 600);
-  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, 420'000u);
 }
 
 TEST(Bench, PeersAgreeOnScenesOfNothing) {
@@ -472,13 +439,6 @@ TEST(DistanceBench, OursIsExactAndTheFastestPeerIsNamed) {
     EXPECT_EQ(json["rows"].size(), result.rows.size());
     EXPECT_TRUE(has_text(distance_bench_table(tower(), options, result), "farcull"));
   }
-}
-
-TEST(DistanceBench, AsksNobodyAboutAnObjectAndItself) {
-  Scene scene = tower();
-  for (Object& object : scene.objects) object.self = true;
-  for (const DistanceBenchRow& row : bench_distances(scene, {.repeat = 1}).rows)
-    EXPECT_EQ(row.errors.answers, 6u) << row.name;
 }
 
 TEST(DistanceBench, RefusesWhatItCannotMeasure) {

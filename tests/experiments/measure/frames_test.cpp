@@ -138,24 +138,6 @@ TEST(Frames, ARecordIsWholeAfterEachFrame) {
   EXPECT_EQ(whole.json["frames"].size(), 5u);
 }
 
-TEST(Frames, AMissingMeshLeavesTheFramesBeforeIt) {
-  const ScratchFolder folder;
-  for (const int frame : {0, 1, 3}) folder.write("m_" + std::to_string(frame) + ".obj", kFloor);
-  const std::string floor = folder.write("floor.obj", kFloor), path = folder.path("record.json");
-  {
-    FrameRecord record(path);
-    const auto run = [&] {
-      run_frames({folder.path("m_%d.obj"), floor}, question(Method::exact, {0, 3}), {},
-                 [&](const FrameReport& report) { record.add(report); });
-    };
-    EXPECT_EQ(error_of(run).where, folder.path("m_2.obj"));
-  }
-  const auto json = nlohmann::json::parse(read_text(path));
-  EXPECT_EQ(json["frames"].size(), 2u);
-  EXPECT_EQ(json["summary"]["frames"], 2);
-  EXPECT_EQ(json["summary"]["wanted"], 4);
-}
-
 // A file that may not grow any more holds what it held.
 TEST(GrowingOutput, AFullDiskLeavesWhatWasWhole) {
   const ScratchFolder folder;
@@ -235,19 +217,6 @@ TEST(Frames, RatesAreThoseOfTheTimes) {
   for (const char* column : {"fps", "PCS objects", "PCS triangles"})
     EXPECT_TRUE(has_text(result.table, column)) << column;
   EXPECT_FALSE(has_text(result.table, "  draws"));
-}
-
-TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {
-  for (const char* name : {"two-spheres", "crowd"}) {
-    const FramesResult result = run_frames({name}, question(Method::boxes, {0, 4}));
-    EXPECT_EQ(result.json["summary"]["missed"], 0);
-    std::set<int> candidates;
-    for (const auto& frame : result.json["frames"]) {
-      candidates.insert(frame["candidate_pairs"].get<int>());
-      EXPECT_EQ(frame["verification"]["false_negatives"], 0);
-    }
-    EXPECT_GT(candidates.size(), 2u) << name << " does not move";
-  }
 }
 
 }  // namespace

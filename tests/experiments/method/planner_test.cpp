@@ -135,22 +135,6 @@ TEST(Planner, OptionsOfDrawingAreNullWhereNothingIsLeftToDraw) {
   }
 }
 
-TEST(Planner, BoxesBeforePixelsGiveTheAnswerOfExactInsideObjectsToo) {
-  Session native("native");
-  for (const std::string name : {"crumpled:3000", "random-soup", "needles"}) {
-    Scene scene = make_builtin_scene(name);
-    for (Object& object : scene.objects) object.self = true;
-    const Record exact = run(scene, {.method = Method::exact});
-    for (const BroadPhase phase : {BroadPhase::objects, BroadPhase::triangles}) {
-      const RunOptions far{.method = Method::far, .resolution = 256, .broad_phase = phase};
-      const Record record = run(scene, far, native);
-      EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs) << name;
-      EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << name;
-      EXPECT_EQ(record.verification->false_negatives, 0) << name;
-    }
-  }
-}
-
 // Two triangles that share a vertex are no drawn pair, and boxes of others do not overlap.
 TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
   Scene scene = lab::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}},

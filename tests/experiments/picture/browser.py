@@ -136,13 +136,6 @@ class Browser:
         for kind in ("mousePressed", "mouseReleased"):
             self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
-    def drag(self, x, y, to_x, to_y, button="left"):
-        self.ask("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, button=button, clickCount=1)
-        for part in (0.3, 0.7, 1):
-            self.ask("Input.dispatchMouseEvent", type="mouseMoved", x=x + part * (to_x - x),
-                     y=y + part * (to_y - y), button=button)
-        self.ask("Input.dispatchMouseEvent", type="mouseReleased", x=to_x, y=to_y, button=button, clickCount=1)
-
     def key(self, key, text=None, shift=False):
         names = {"key": key, "modifiers": 8 if shift else 0}
         self.ask("Input.dispatchKeyEvent", type="keyDown",
@@ -163,9 +156,6 @@ class Pixels:
     def __init__(self, png):
         import matplotlib.image  # here, since a browser alone does without
         self.rows = (255 * matplotlib.image.imread(io.BytesIO(png))[:, :, :3]).round().astype(int)
-
-    def at(self, x, y):
-        return tuple(self.rows[int(y)][int(x)].tolist())
 
     def as_rows(self):
         """The colours, row by row."""

@@ -103,7 +103,7 @@ def test_an_argument_that_is_wrong_is_named(name, value):
     assert error.where == name or (name == "V" and error.where == "F")
 
 
-# The cases of the tests of C++.
+# Inputs that are not what they were meant to be, and what is said of each. The last ones are twins, which have an answer.
 with open(os.path.join(os.environ["FARCULL_ROOT"], "tests/cases/misunderstood.json")) as file:
     CASES = json.load(file)
 

@@ -11,10 +11,6 @@ import warnings
 import farcull
 import numpy as np
 import pytest
-from hypothesis import given, seed, settings
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
-from lab import same_pairs
 
 CALLS = int(os.environ.get("FARCULL_FUZZ_CALLS", "2000"))
 SEED = int(os.environ.get("FARCULL_SEED", "20261124"))
@@ -153,57 +149,3 @@ def test_random_calls_answer_or_say_what_is_wrong():
     # Else the calls would show nothing.
     assert min(answered, refused, compared) > CALLS // 10, (answered, refused, compared)
     assert not missing - wheres
-
-
-@st.composite
-def scenes(draw):
-    """Small scenes of whole numbers, so that every type can hold them, as arrays of any type."""
-    number = arrays.floating_dtypes() | arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
-    index = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
-    n, m = draw(st.integers(3, 7)), draw(st.integers(1, 6))
-    vertices = draw(arrays.arrays("i1", (n, 3), elements=st.integers(0, 3), fill=st.nothing()))
-    triangles = draw(arrays.arrays("i1", (m, 3), elements=st.integers(0, n - 1), fill=st.nothing()))
-    starts = [0] + sorted(draw(st.sets(st.integers(1, max(m - 1, 1)), max_size=2)))
-    return vertices.astype(draw(number)), triangles.astype(draw(index)), starts
-
-
-def test_arrays_of_any_type_and_layout():
-    seen = {"answered": 0, "with a pair": 0, "refused": 0}
-
-    @settings(max_examples=150, deadline=None, database=None)
-    @given(scenes(), st.booleans(), st.sampled_from([lambda a: a, laid_out, np.asfortranarray, read_only]))
-    def look(scene, self_collision, layout):
-        vertices, triangles, objects = scene
-        vertices, triangles = layout(vertices), layout(triangles)
-        try:
-            result = farcull.collide(vertices, triangles, objects, self=self_collision, threads=1)
-        except farcull.InputError as error:
-            require_clear(error)
-            seen["refused"] += 1
-            return
-        # The answer is that of the same numbers as doubles, packed.
-        plain = np.array(vertices, np.float64, order="C")
-        assert same_pairs(result, farcull.collide(plain, triangles.astype(np.int64), objects, self=self_collision))
-        seen["answered"] += 1
-        seen["with a pair"] += len(result.pairs) > 0
-
-    for more in range(20):
-        seed(SEED + more)(look)()
-        if seen["answered"] > 60 and seen["with a pair"] > 10:
-            return
-    pytest.fail(f"it would show nothing: {seen}")
-
-
-soups = st.lists(st.tuples(*[st.integers(-2, 2)] * 9), min_size=2, max_size=9)
-
-
-@seed(SEED)
-@settings(max_examples=100, deadline=None, database=None)
-@given(soups, st.permutations(range(3)))
-def test_answers_do_not_depend_on_the_order_of_the_axes_or_of_the_corners(soup, axes):
-    corners = np.array(soup, float).reshape(-1, 3)
-    triangles = np.arange(len(corners)).reshape(-1, 3)
-    expected = farcull.collide(corners, triangles, [0, 1]).pairs
-    assert np.array_equal(farcull.collide(corners[:, axes], triangles, [0, 1]).pairs, expected)
-    assert np.array_equal(farcull.collide(corners, triangles[:, axes], [0, 1]).pairs, expected)
-    assert np.array_equal(farcull.collide(-4 * corners, triangles, [0, 1]).pairs, expected)

@@ -63,45 +63,6 @@ def test_ctrl_c_ends_a_call(call):
     print(f"ended after {float(out.split()[1]) - start:.2f} s")
 
 
-def test_a_collider_that_was_interrupted_answers_as_a_new_one():
-    python("""
-    import farcull, random, signal, time
-    import numpy as np
-
-    class Stop(Exception):
-        pass
-
-    def stop(*_):
-        raise Stop
-
-    signal.signal(signal.SIGALRM, stop)
-    rng, draw = np.random.default_rng(11), random.Random(11)
-    V = (rng.uniform(0, 9, size=(80000, 1, 3)) + rng.normal(0, 0.1, size=(80000, 3, 3))).reshape(-1, 3)
-    F = np.arange(240000).reshape(-1, 3)
-    collider = farcull.Collider(self=True)
-    begun = time.monotonic()
-    collider.find(V, F)
-    whole = time.monotonic() - begun
-    interrupted = tried = 0
-    while interrupted < 3 or tried < 8:
-        tried += 1
-        V = V.copy()
-        moved = rng.random(len(V)) < draw.choice([0.001, 0.3, 1])
-        V[moved] += rng.normal(0, 0.01, size=(moved.sum(), 3))
-        try:
-            # Signals are looked for every 50 ms: the call ends in one step or another.
-            signal.setitimer(signal.ITIMER_REAL, draw.uniform(0.001, whole))
-            collider.find(V, F)
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            whole /= 1.5
-        except Stop:
-            interrupted += 1
-    kept, fresh = collider.find(V, F), farcull.collide(V, F, self=True)
-    assert np.array_equal(kept.pairs, fresh.pairs) and len(fresh.pairs) > 1000
-    assert np.array_equal(kept.neighbour_pairs, fresh.neighbour_pairs)
-    """)
-
-
 def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():
     out = python("""
     import farcull, threading

@@ -194,10 +194,6 @@ class Ask(unittest.TestCase):
         self.expect(faulty('yes'), wrong=PAIRS // 2, own_wrong=PAIRS // 2)
         self.expect(faulty('no'), missed=PAIRS // 2, own_missed=PAIRS // 2)
 
-    def test_after_many_deaths_the_rest_is_not_asked(self):
-        row = faulty('dies', '--deaths', '1')
-        self.expect(row, crashed=1, not_asked=PAIRS - 10)
-
     def test_a_refusal_is_honest(self):
         rows = ask('python3 faulty.py none', '--only', 'self,inside,clash')
         self.expect(rows['inside', 'cubes'], refused=2)
@@ -285,17 +281,6 @@ class Ask(unittest.TestCase):
             module.score_distance('0x1p+0,0x1p+0', numbers, [1.0, 1.0, 1.0, -shift, 1.0, 1.0, 1.0 + shift], found)
             self.assertEqual((found['points'], found['points off']), (1, off), shift)
 
-    def test_our_own_contestants_answer_all_kinds_rightly(self):
-        ours = f'{contestants}/farcull_contestant_ours'
-        rows = ask(ours + ' exact')
-        self.assertEqual({*rows}, {('pair', 'few'), ('distance', 'few'), ('mesh', 'cubes'), ('mesh', 'cross'), ('self', 'cubes'),
-                                   ('inside', 'cubes'), ('clash', 'cubes')})
-        for row in rows.values():
-            self.assertGreater(int(row['asked']), 0, row)
-            self.expect(row)
-        self.assertEqual(rows['distance', 'few']['points'], str(PAIRS))
-        self.assertIn('every answer obeys', run('python3', 'suite/ask.py', '--check', ours + ' exact'))
-
     def test_an_answer_has_an_end(self):
         """The limits hold for all lines of an answer together."""
         mesh = [module.Question('mesh', ['0', 'a', 'b'])]
@@ -333,13 +318,6 @@ class Ask(unittest.TestCase):
         answers, differs = module.ask_twice(['python3', 'ends.py'], questions, options)
         self.assertEqual([answer.outcome for answer in answers], ['crashed'] * 2 + ['not asked'] * 2 + ['answered'] * 21)
         self.assertEqual([i for i, differ in enumerate(differs) if differ is not None], [4, 20, 24])
-
-    def test_a_pair_of_a_mesh_has_four_numbers(self):
-        for fields in ['1'] * 3, ['1'] * 5, ['1', '1', '1', '0_1'], ['1', '1', '1', '-1'], ['1', '1', '1', '1' * 19]:
-            with self.assertRaises(ValueError):
-                module.parse('mesh', ['pair', *fields], [])
-        module.parse('mesh', ['pair', '0', '1', '2', '3'], found := [])
-        self.assertEqual(found, [(0, 1, 2, 3)])
 
     def test_a_segment_through_a_triangle_counts_where_the_card_takes_segments(self):
         a, b = [[0.25, 0.25, -1], [0.25, 0.25, 1], [0.25, 0.25, 1]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
@@ -397,12 +375,6 @@ def study(folder, *options):
 
 class Study(unittest.TestCase):
     """What farcull experiment libraries keeps."""
-
-    def test_it_counts_as_ask_py_does(self):
-        row = ask(f'{contestants}/farcull_contestant_textbook moeller-float', '--only', 'pair')['pair', 'few']
-        count = study('out', '--suite', 'suite', '--contestants', 'moeller-float')['moeller-float', 'pair']
-        for key in ('missed', 'wrong', 'own_missed', 'own_wrong', 'refused', 'crashed', 'hung', 'asked'):
-            self.assertEqual(count[key], int(row[key.replace('_', ' ')]), key)
 
     def test_all_kinds_of_questions_are_kept(self):
         counts = study('all-kinds', '--suite', 'suite', '--contestants', 'exact')

@@ -2,15 +2,12 @@
 // frame of any of them.
 #include <Eigen/Geometry>
 
-#include "core/boxes/search.h"
-#include "core/view/view.h"
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/moving.h"
-#include "tests/lab/pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -19,23 +16,6 @@ namespace {
 using lab::kFrames;
 
 const BuiltinScene& entry_of(const std::string& name) { return *parse_scene_name(name).entry; }
-
-// How many triangles meet at each edge of a part of a scene, by vertex indices.
-std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges_of(const Scene& scene,
-                                                                const Object& object) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    const auto& c = scene.triangles[object.first_triangle + t];
-    for (std::size_t k = 0; k < 3; ++k) ++edges[std::minmax(c[k], c[(k + 1) % 3])];
-  }
-  return edges;
-}
-
-std::size_t edges_with(const Scene& scene, const Object& object, int triangles) {
-  std::size_t count = 0;
-  for (const auto& [edge, n] : edges_of(scene, object)) count += n == triangles;
-  return count;
-}
 
 bool same_topology(const Scene& a, const Scene& b) {
   return a.triangles == b.triangles && a.vertices.size() == b.vertices.size() &&
@@ -175,91 +155,6 @@ TEST(MovingScenes, NotesAndWarningsReachTheRecordAndTheTable) {
                        "\nwarning  it fell far (frame 2 and 1 more)\n"
                        "warning  it fell through (frame 4)\n"));
   EXPECT_TRUE(result.table.ends_with("(frame 4)\n"));
-}
-
-// The gap is exact at every vertex, in every frame, so two neighbours in the stack are translates;
-// and far below one step of a depth buffer of 24 bits, whatever the axis of the view.
-TEST(MovingScenes, ShellsLieBelowADepthStepAndSomeCross) {
-  MovingScene moving("shells:8", kFrames);
-  for (long frame = 0; frame < kFrames; ++frame) {
-    const Scene& scene = moving.at(frame);
-    const std::size_t each = scene.vertices.size() / 8;
-    for (std::size_t s = 1; s < 6; ++s) {
-      for (std::size_t i = 0; i < each; ++i) {
-        const Vec3& upper = scene.vertices[s * each + i];
-        const Vec3& lower = scene.vertices[(s - 1) * each + i];
-        ASSERT_EQ(upper, Vec3(lower.x(), lower.y(), upper.z()));
-        ASSERT_EQ(upper.z() - lower.z(), kShellGap);
-      }
-    }
-    const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
-    for (const char* axis : {"x", "y", "z"}) {
-      const auto window = fit_window(parse_view(axis), boxes, 512);
-      ASSERT_TRUE(window);
-      const double step = (window->hi.z() - window->lo.z()) / (0x1p24 - 1);  // px
-      const double gap = kShellGap * window->map.row(2).norm();              // px, at most
-      EXPECT_LT(16 * gap, step) << axis;
-    }
-    for (const Object& object : scene.objects) {
-      EXPECT_EQ(edges_with(scene, object, 3), 24u);
-      EXPECT_GT(edges_with(scene, object, 1), 72u);
-    }
-    const std::vector<std::uint32_t> owner = owners(scene);
-    std::set<std::uint32_t> crossed;
-    for (const TrianglePair& pair : all_colliding_pairs(scene).pairs) {
-      EXPECT_GE(owner[pair.b], 6u) << "two sheets of the stack meet";
-      crossed.insert(owner[pair.b]);
-    }
-    EXPECT_FALSE(crossed.empty());
-  }
-}
-
-TEST(PackagedScenes, DragonBreaksIntoPiecesThatAreItsTriangles) {
-  const Scene dragon = make_builtin_scene("bunny-dragon:19994");
-  MovingScene moving("breaking-dragon:19994", kFrames);
-  std::size_t objects = 0, vertices = 0, open = 0;
-  for (long frame = 0; frame < kFrames; ++frame) {
-    const Scene& scene = moving.at(frame);
-    EXPECT_EQ(scene.triangles.size(), 19'994u);
-    std::vector<std::uint32_t> faces = scene.source_face;
-    std::ranges::sort(faces);
-    std::vector<std::uint32_t> all(faces.size());
-    std::iota(all.begin(), all.end(), 0u);
-    EXPECT_EQ(faces, all) << "each triangle once";
-    std::size_t now_open = 0;
-    for (const Object& object : scene.objects) now_open += edges_with(scene, object, 1);
-    if (frame == 0) {
-      EXPECT_EQ(scene.objects.size(), 1u);
-      for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
-        ASSERT_EQ(scene.corners(t), dragon.corners(t)) << "whole at the start";
-    } else if (frame < 6) {  // times up to 5/7, the last comes off at 0.8
-      EXPECT_GT(scene.objects.size(), objects);
-      EXPECT_GT(scene.vertices.size(), vertices);
-      EXPECT_GT(now_open, open);
-    }
-    objects = scene.objects.size();
-    vertices = scene.vertices.size();
-    open = now_open;
-  }
-  EXPECT_EQ(objects, 200u);
-}
-
-// Frame by frame with one memory. The twin: the candidates of the first frame miss in every later
-// one.
-TEST(MovingScenes, ChangedTopologyIsSeen) {
-  lab::Reconnected reconnected;
-  FrameMemory memory;
-  std::vector<TrianglePair> first;
-  for (long frame = 0; frame < 30; ++frame) {
-    const Scene& scene = reconnected.at(frame);
-    const std::vector<TrianglePair> truth = lab::truth_of(scene);
-    memory.moved.update(scene);
-    const std::vector<TrianglePair> found =
-        find_boxes(scene, plan_boxes(scene, {}, 2, &memory), &memory).candidates;
-    if (frame == 0) first = found;
-    EXPECT_EQ(lab::missed(truth, found), 0u) << frame;
-    EXPECT_EQ(lab::missed(truth, first) > 0, frame > 0) << frame;
-  }
 }
 
 }  // namespace
