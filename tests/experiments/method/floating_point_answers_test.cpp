@@ -2,8 +2,6 @@
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
 #include <nlohmann/json.hpp>
 
-#include "core/base/parallel.h"
-#include "experiments/generators/pair_generators.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
@@ -11,7 +9,6 @@
 #include "tests/lab/floating_point.h"
 #include "tests/lab/unwrapped.h"
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/integer_pair.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -186,28 +183,6 @@ TEST(FloatingPointAnswers, Collider) {
     for (const FloatingPoint& f : {after_making, after, after_throwing})
       EXPECT_EQ(f, environment.found);
   });
-}
-
-// The two exact oracles agree in every environment, on subnormal coordinates too.
-TEST(FloatingPointAnswers, OraclesAgree) {
-  for (const Environment& environment : environments()) {
-    for (const PairGenerator& generator : pair_generators()) {
-      RandomDraws random(7);
-      std::vector<DrawnPair> pairs;
-      for (int i = 0; i < 200; ++i) pairs.push_back(generator.make(random));
-      std::atomic<int> disagreements = 0;
-      {
-        const Disturbed disturbed(environment);
-        for_chunks(pairs.size(), 2, [&](std::size_t, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const auto& [a, b] = pairs[i];
-            disagreements += intersects(a, b) != integer_intersects(a, b);
-          }
-        });
-      }
-      EXPECT_EQ(disagreements, 0) << environment.name << ", " << generator.name;
-    }
-  }
 }
 
 }  // namespace

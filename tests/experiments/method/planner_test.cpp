@@ -150,20 +150,6 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
   EXPECT_EQ(stage_named(plan(apart, far), "draw").reason, Reason::no_box_pairs);
 }
 
-// An object that is tested against itself is cut into patches, which are no objects, also where
-// nothing else would be drawn.
-TEST(Planner, RefusesToAskObjectsAloneWhereOneIsCut) {
-  Scene scene = make_builtin_scene("two-spheres");
-  RunOptions far{.method = Method::far};
-  far.objects_alone = true;
-  EXPECT_NO_THROW(plan(scene, far));
-  for (Object& object : scene.objects) object.self = true;
-  for (const BroadPhase phase : {BroadPhase::objects, BroadPhase::triangles}) {
-    far.broad_phase = phase;
-    EXPECT_THROW(plan(scene, far), Error);
-  }
-}
-
 TEST(Planner, SaysWhatItLeavesOut) {
   const Scene scene = make_builtin_scene("two-spheres");
   RunOptions far{.method = Method::far};
@@ -201,18 +187,6 @@ TEST(Planner, IsTheSameTwiceAndNamesEveryStageInJson) {
     EXPECT_EQ(once["steps"].size(), planned.stages().size());
     for (const auto& s : once["steps"]) EXPECT_FALSE(s["reason"].get<std::string>().empty());
   }
-}
-
-TEST(Planner, CutsObjectsIntoPatchesForFar) {
-  Scene scene = make_builtin_scene("two-spheres");
-  RunOptions options;
-  options.method = Method::far;
-  EXPECT_FALSE(has(plan(scene, options), StageKind::patches));
-  scene.objects[0].self = true;  // of 5120 triangles, so its patches have 320
-  const Plan planned = plan(scene, options);
-  EXPECT_EQ(decision(planned, "patches"), "runs");
-  EXPECT_TRUE(reason_of(stage_named(planned, "patches")).starts_with("16 patches of at most 320"));
-  for (const Stage& stage : planned.stages()) EXPECT_NE(stage.level, kObjectLevel);
 }
 
 // An object of one patch has nothing to draw: the answer is that of a box join, without a device.

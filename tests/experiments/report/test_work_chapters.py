@@ -12,27 +12,7 @@ def run_counts(missed=0, promises=False, **more):
             "triangles": 100, "promises": promises, **more}
 
 
-# ---- what every chapter says of promises and gaps
-
-STUDIES = [("offsets", "s", {}), ("culling", "s", {}), ("efficiency", "cloth:450", {"frame": 3}),
-           ("scaling", "crowd:100", {})]
-
-
-@pytest.mark.parametrize("study, scene, axes", STUDIES)
-@pytest.mark.parametrize("missed, first", [
-    (1, " misses 1 of 20 colliding pairs, and promises to miss none."),
-    (0, " missed 0 of 20 colliding pairs in 1 run on 1 scene; how many pairs were at risk was not counted."),
-    (None, "One row of methods that promise does not say what they missed.")])
-def test_promises(study, scene, axes, missed, first):
-    rows = [row(scene, "exact", run_counts(), **axes),
-            row(scene, "far", run_counts(missed, True), resolution=64, **axes)]
-    chapter = chapter_of(study, rows)
-    broken, text = chapter.findings[0]
-    assert first in text and broken == (missed == 1)
-    assert findings(chapter).count("BROKEN") == (missed == 1), "a row is told once"
-    assert (" missed 0 of 20 colliding" in findings(chapter)) == (missed == 0)
-    assert "95 %" not in findings(chapter), "pairs of a scene are not independent"
-
+# ---- what every chapter says of gaps
 
 @pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
                                    "model"])
