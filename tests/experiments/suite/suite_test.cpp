@@ -161,8 +161,8 @@ TEST(SuiteAnswers, BoxesFindTheListsOfAllMeshes) {
   }
 }
 
-// ---- The kinds of contact: those of neighbours by example, all others beside contact_kind(), which
-// is written otherwise.
+// ---- The kinds of contact: those of neighbours by example, all others beside contact_kind(),
+// which is written otherwise.
 
 using Corners = std::array<Vec3, 3>;
 
