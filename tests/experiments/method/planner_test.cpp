@@ -150,6 +150,20 @@ TEST(Planner, SaysWhyBoxesOfTrianglesLeaveNothingToDraw) {
   EXPECT_EQ(stage_named(plan(apart, far), "draw").reason, Reason::no_box_pairs);
 }
 
+// An object that is tested against itself is cut into patches, which are no objects, also where
+// nothing else would be drawn.
+TEST(Planner, RefusesToAskObjectsAloneWhereOneIsCut) {
+  Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far{.method = Method::far};
+  far.objects_alone = true;
+  EXPECT_NO_THROW(plan(scene, far));
+  for (Object& object : scene.objects) object.self = true;
+  for (const BroadPhase phase : {BroadPhase::objects, BroadPhase::triangles}) {
+    far.broad_phase = phase;
+    EXPECT_THROW(plan(scene, far), Error);
+  }
+}
+
 TEST(Planner, SaysWhatItLeavesOut) {
   const Scene scene = make_builtin_scene("two-spheres");
   RunOptions far{.method = Method::far};
