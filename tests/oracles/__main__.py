@@ -16,7 +16,7 @@ import warnings
 from collections import Counter
 
 LINES = {"oriented": 20000, "contained": 20000, "welded": 20000, "distances": 20000, "frames": 20000, "kinds": 20000,
-         "certificates": 20000, "drawn": 10000, "options": 2000}
+         "certificates": 20000, "drawn": 10000, "options": 2000, "hostile": 20000}
 PLANTED = 10  # of each fault, where there are ENOUGH scenes for them
 ENOUGH = 100
 TRIES = 3000  # scenes at most in which a fault is planted

@@ -45,8 +45,8 @@ def array(name: str, given: Any) -> np.ndarray:
     if out.ndim != 2 or out.shape[1] != 3:
         raise InputError(name, "have no three columns", "give an array of shape (n, 3)")
     if indices:
-        if kind == "u" and size == 8 and out.size and out.max() > np.iinfo(np.int64).max:
-            row = int(np.argmax((out > np.iinfo(np.int64).max).any(axis=1)))
+        if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy compares in doubles
+            row = int(np.argmax((out >= np.uint64(2**63)).any(axis=1)))
             reason = f"triangle {row} names vertex {out[row].max()}"
             raise InputError(name, reason, "give indices from 0 to the number of vertices - 1")
         return np.require(out, np.uint32 if kind == "u" and size == 4 else np.int64, ["C", "A"])
@@ -200,7 +200,7 @@ def _starts(given: Any) -> np.ndarray:
             "must be a one-dimensional array of whole numbers",
             "give the number of the first triangle of each object",
         )
-    if out.dtype == np.uint64 and out.size and out.max() > np.iinfo(np.int64).max:
+    if out.dtype == np.uint64 and out.size and int(out.max()) >= 2**63:
         raise InputError("object_starts", f"hold {out.max()}", "give numbers of triangles")
     return np.ascontiguousarray(out, dtype=np.int64)
 
