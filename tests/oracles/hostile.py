@@ -91,7 +91,7 @@ def damaged(rng, data):
         elif what == 4:
             lines = data.split(b"\n")
             j = rng.randrange(len(lines))
-            lines[j : j + 1] = rng.choice([[], [lines[j]] * 2, [lines[j] * 300]])
+            lines[j : j + 1] = rng.choice([[], [lines[j]] * 2, [lines[j] * (300 if len(data) < 10000 else 2)]])
             data = b"\n".join(lines)
         elif what == 5:
             data = data[:k] + struct.pack("<I", rng.choice([0, 1 << 31, (1 << 32) - 1, 1 << 24])) + data[k + 4 :]
