@@ -102,8 +102,8 @@ void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, 
       {proxy_rectangle(patch.points(), radius, bounds), obb_of(patch.points(), radius)});
 }
 
-// The twelve triangles of the closed box. Corners are rounded to nearest: this path promises
-// nothing.
+// The twelve triangles of the closed box. Corners are rounded to nearest: this path gives no
+// guarantee.
 void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawables& out) {
   const Solid box = obb_of(patch.points(), radius);
   const auto corner = [&box](int bits) {

@@ -124,9 +124,9 @@ bool keep_first(std::uint64_t limit, Collisions& collisions);
 /// corners of its triangles, so if neither triangle moved, the answer of the last frame holds.
 class FrameDecider {
  public:
-  /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses the
-  /// answers of the last call if that call ended normally and was about the frame before, and the
-  /// question is the same (threads may differ). Precondition: moved.update(scene) began this frame.
+  /// As farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses the
+  /// answers of the last call if it ended normally, was for the previous frame and asked the same
+  /// question (threads may differ). Precondition: moved.update(scene) began this frame.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                     const MovedCorners& moved, const ExactQuestion& question = {});
   /// Pairs that the last call decided anew.

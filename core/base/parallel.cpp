@@ -162,7 +162,7 @@ class Pool {
 };
 
 // Never destroyed: its threads sleep until the process ends. A forked process has none of these
-// threads, so it begins with a pool of its own.
+// threads, so it makes a new pool.
 Pool& pool() {
   static std::atomic<Pool*> current = [] {
 #ifndef _WIN32

@@ -54,7 +54,7 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
 
 // ---- work of many items of unlike length, shared by all threads ----
 
-/// Calls work(k, memory) once for each k in 0 .. count - 1, the next one by whichever thread is
+/// Calls work(k, memory) once for each k in 0 .. count - 1; the next k goes to any thread that is
 /// free. Each thread makes a Memory, and uses it in all its calls. threads: 0 for as many as there
 /// are cores. An exception of work is thrown again here.
 template <class Memory, class Work>
@@ -76,7 +76,7 @@ void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
 
 // ---- a call in a thread of its own, which another thread can stop ----
 
-/// Thrown within a call that was stopped. It is no Error: nothing is wrong.
+/// Thrown inside a call that was stopped. It is not an Error, because nothing is wrong.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }

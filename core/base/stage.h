@@ -17,7 +17,7 @@ enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
   blocks,          // boxes of blocks of triangles
   setup,           // the device: context, shaders, threads
-  draw,            // all drawing; a stage of its own only where nothing is drawn
+  draw,            // all drawing; listed only if nothing is drawn
   patches,         // owners inside objects that are tested against themselves
   objects,         // whether objects are asked as a whole before their triangles
   clusters,        // whether there is a level between objects and triangles
@@ -60,7 +60,7 @@ enum class Reason : std::uint8_t {
   no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
-  shaders,              // the canvas, on GL with context and shaders, for the fattener
+  shaders,              // the canvas for the fattener is set up; on GL also context and shaders
   fattener,             // its name; n triangles are beyond its budget and kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
@@ -68,12 +68,12 @@ enum class Reason : std::uint8_t {
   passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
   few_left,             // n triangles are left, at most m are enough
   few_to_test,          // n triangles are left: m or fewer are cheaper to test
-  patches_cut,          // n patches of at most m triangles
+  patches_cut,          // n triangles are left; m or fewer need no further view
   patches_whole,        // n objects, none of more than m triangles: each is one patch
   few_objects,          // n objects take part, fewer than m: one seldom hides all of another
   rounds_given,         // n rounds were asked for
   all_views,            // a triangle is culled where every view clears it
-  little_culled,        // the round culled n of m triangles, a smaller part than a round is worth
+  little_culled,        // the round culled n of m triangles, too few for another round
   owners,               // every triangle is an owner by itself
   clusters_given,       // sizes of clusters are given
   clusters_large,       // occlusion queries on many triangles
@@ -144,7 +144,7 @@ inline Stage work_of(const std::vector<Stage>& stages) {
   return sum;
 }
 
-/// What a long computation does next: a stage, or `text`, by which its callers name other work.
+/// The next step of a long computation: a stage, or other work that `text` names.
 struct ProgressStep {
   ProgressStep(StageKind kind, std::string subject = {}, int round = 0)
       : kind(kind), subject(std::move(subject)), round(round) {}
@@ -154,7 +154,7 @@ struct ProgressStep {
   StageKind kind = StageKind::boxes;
   std::string subject = {};  // as in Stage
   int round = 0;             // as in Stage
-  std::string text = {};     // not empty: in place of the others
+  std::string text = {};     // not empty: names the step, and the other members are unused
 };
 
 /// Called before each step. May be empty.

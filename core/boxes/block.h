@@ -116,7 +116,7 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// The number of boxes in a WideBoxes, and the most children of a node and triangles of a block.
+/// Boxes in a WideBoxes. Also the most children of a node, and the most triangles of a block.
 constexpr std::uint32_t kWide = 16;
 
 /// Sixteen boxes as columns. A missing box meets nothing.

@@ -1,5 +1,5 @@
-// What boxes of blocks keep of a frame of a scene for the next one, so that triangles that did not
-// move cost little.
+// Results of boxes of blocks that are kept from one frame of a scene to the next, so that triangles
+// that did not move cost little.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +40,9 @@ struct FrameMemory {
   std::size_t usual = 0;                // their number when the blocks were made
 };
 
-/// decide_by_blocks() for the frame that comes after the one in `memory`. Preconditions:
-/// memory.moved says what moved since memory.frame; its clearance, neighbours and ignored objects
-/// are those of now; and if anything moved, it was not decided by oriented boxes.
+/// decide_by_blocks() for the frame after the one in `memory`. Preconditions: memory.moved says
+/// what moved since memory.frame; its clearance, neighbours and ignored objects are unchanged; and
+/// if anything moved, the last frame was not decided by oriented boxes.
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Boxes of objects are joined, then those of the blocks of objects that meet. How often these
-// overlap says what decides: blocks along the axes, oriented ones, or a tree of all boxes.
+// Joins the boxes of objects, then those of the blocks of objects that meet. The number of overlaps
+// decides how pairs are found: blocks along the axes, oriented blocks, or a tree of all boxes.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>
@@ -196,7 +196,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   return given_up ? Found::too_many_of_a_meeting : Found::all;
 }
 
-// Oriented boxes decide if, in a sample, they leave at most so many pairs for each triangle.
+// Oriented boxes are used if, in a sample, they leave at most this many pairs for each triangle.
 constexpr std::size_t kOrientedPerTriangle = 64;
 
 // Whether more than `often` pairs of boxes of triangles overlap for each triangle, by a sample of

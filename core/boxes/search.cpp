@@ -54,7 +54,7 @@ Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
           .unit = Unit::triangles};
 }
 
-// Keeps what blocks found for the next frame. What a tree found is not kept.
+// Stores the pairs that blocks found for the next frame. Pairs found by a tree are not stored.
 void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, FrameMemory& memory) {
   const BlockDecision& decision = plan.decision;
   memory.frame = plan.by_tree() ? std::nullopt : std::optional(memory.moved.frame());

@@ -25,7 +25,7 @@ struct CanvasWork {
   std::uint64_t state_changes = 0;     // of program, target or depth test: between steps
   std::uint64_t queries = 0;           // occlusion queries, and one a pass that counts primitives
   std::uint64_t readbacks = 0;         // answers that are read: reports, then each query
-  std::uint64_t waits = 0;             // for the device to finish what it was told
+  std::uint64_t waits = 0;             // for the device to finish its commands
   std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
   std::uint64_t downloaded_bytes = 0;  // of reports and queries
   std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
@@ -68,8 +68,8 @@ struct CanvasWork {
 /// depth interpolated by the rasterizer.
 enum class DepthMode { fragment, fixed };
 
-/// The parameters of a solid, read by its shader function: five vec4. The last three numbers belong
-/// to the canvas, for elements of its own at a fixed depth: a solid leaves them 0.
+/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are
+/// for elements of the canvas at a fixed depth; a solid leaves them 0.
 using Solid = std::array<std::array<float, 4>, 5>;
 
 /// A convex quadrilateral (px, in order around) and the solid seen through it.
@@ -132,10 +132,10 @@ struct Step {
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that starts empty. Draws of one slot inside a step stand
-/// together. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is seen
-/// where one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
-/// where nothing is stored nothing is seen. touching = false: only fragments behind it (GREATER),
+/// Steps in order, on a depth buffer that starts empty. Draws of one slot in a step are
+/// consecutive. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is
+/// seen if one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
+/// where nothing is stored, nothing is seen. touching = false: only fragments behind it (GREATER),
 /// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
 /// contacts at equal depth are then not seen, so no guarantee holds.
 struct Pass {
@@ -212,8 +212,8 @@ struct SolidCase {
   float cx, cy;
   Solid solid;
 };
-/// What solid_interval (core/canvas/canvas.h) gives for a SolidCase; without a hit, entry and exit
-/// mean nothing.
+/// The result of solid_interval (core/canvas/canvas.h) for a SolidCase. Without a hit, entry and
+/// exit have no meaning.
 struct SolidAnswer {
   bool hit;
   float entry, exit;

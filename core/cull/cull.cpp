@@ -101,7 +101,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .out = live,
          .unit = Unit::triangles});
   }
-  // The plan says it once, and only if something is drawn.
+  // This stage is reported once per plan, and only if something is drawn.
   const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
   if (few > 0) {
     stages.push_back({.kind = StageKind::objects,
@@ -183,7 +183,7 @@ class Culling {
   // Sets what all visits of the round agree on.
   void end_round() {
     if (settings_.clear == ClearRule::any || state_.live.empty()) return;
-    if (places_.empty()) return;  // where there is no view, none has cleared anything
+    if (places_.empty()) return;  // without a view, no view has cleared anything
     Stage stage = begin({.kind = StageKind::agreement,
                          .round = round_,
                          .depends = round_ > 1,
@@ -199,12 +199,12 @@ class Culling {
     end_at_few();
   }
 
-  // Whether the round that ends changed something, so that another one may. What follows an empty
-  // set is left out.
+  // True if the round that ends changed something, so that another one may too. If no triangle is
+  // left, the next round is left out.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
-    // That one round is the last no pixel decides.
+    // Whether round 1 is the last does not depend on pixels.
     if (last && (!ended || round_ == 1)) {
       leave_out({.kind = StageKind::further_rounds,
                  .reason = Reason::rounds_given,
@@ -402,7 +402,7 @@ class Culling {
                      .queries_saved = saved_.queries});
   }
 
-  // A stage of the visit that goes on.
+  // A stage of the current visit.
   Stage of_visit(StageKind kind, Reason reason) const {
     return {.kind = kind, .subject = view_, .round = round_, .depends = true, .reason = reason};
   }

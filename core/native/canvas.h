@@ -83,7 +83,7 @@ constexpr int kNativeSubpixelBits = 8;
 
 struct NativeCanvasOptions {
   int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
-  /// For raw triangles: every pixel that one touches has a fragment (draw_triangles_native).
+  /// For raw triangles: a fragment in every pixel that one touches (draw_triangles_native).
   bool conservative = false;
   unsigned threads = 0;  // 0: as many as there are cores
 };

@@ -298,7 +298,7 @@ Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double l
 /// left whose others can be among them.
 Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
                     SearchMemory& memory);
-/// Goes on until nothing is open, or `most` pairs of leaves were looked at.
+/// Continues until no pair of nodes is open, or until `most` pairs of leaves were examined.
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
 
 /// Pairs of leaves that a search looks at in one go. A search that is not done then is long, and is

@@ -103,8 +103,8 @@ class Searcher {
     }
   };
 
-  // Nodes with lower triangles come first among nodes as near: if the objects meet, the first pair
-  // is the answer.
+  // Among equally near nodes, those with lower triangles come first: if the objects meet, the
+  // answer is the first pair that meets.
   bool comes_first(const NodePair& x, const NodePair& y) const {
     TrianglePair p = least(x), q = least(y);
     if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // the other object decides
@@ -114,7 +114,7 @@ class Searcher {
   TrianglePair least(const NodePair& at) const {
     return {a_.least(at.a_height, at.a), b_.least(at.b_height, at.b)};
   }
-  // Whether all pairs of the nodes come behind one that meets for certain.
+  // True if every pair of the nodes comes after a pair that certainly meets.
   bool is_behind(const NodePair& at) const {
     if (others_) return b_.least(at.b_height, at.b) >= others_->end;
     if (search_.first.a == UINT32_MAX) return false;
@@ -126,7 +126,7 @@ class Searcher {
     // If the objects are one, either node may hold the lower triangle.
     return self_ ? TrianglePair{std::min(lowest.a, lowest.b), 0} : lowest;
   }
-  // Whether no pair of the nodes is the answer, since they are no nearer than the settled pair.
+  // True if no pair of the nodes is the answer, because none is nearer than the settled pair.
   bool is_no_nearer(const NodePair& at) const {
     if (!search_.planes) return false;
     const auto &a = search_.planes->a.nodes, &b = search_.planes->b.nodes;
@@ -365,7 +365,7 @@ class Searcher {
   }
   void add(const BlockCorners& a, std::size_t i, const BlockCorners& b, std::size_t j) {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
-    // The bounds of two triangles depend on their order in the last digits.
+    // The last digits of the bounds depend on the order of the two triangles.
     if (first > second) return add(b, j, a, i);
     if (search_.is_behind({first, second}) || !counts(first, second)) return;
     PairBatch& batch = memory_.batch;

@@ -23,8 +23,8 @@ std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
 
-/// Pairs that arrive some at a time, in no order, each once or more. They are kept in parts of one
-/// length, since a list that doubles would be copied each time.
+/// Collects pairs that arrive in groups, unsorted and perhaps repeated. They are kept in parts of
+/// one length, since a list that doubles would be copied each time.
 class GatheredPairs {
  public:
   void add(std::span<const TrianglePair> some);

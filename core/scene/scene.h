@@ -155,7 +155,7 @@ class IgnoredObjects {
 
 // ---- which corners moved from one frame to the next ----
 
-/// What is new in a frame of a scene.
+/// What changed from the previous frame of a scene to this one.
 struct FrameChange {
   bool same = false;  // as many vertices as in the frame before, the same triangles and objects
   std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
@@ -169,10 +169,10 @@ class MovedCorners {
   /// compared with that of the last frame, and a copy is kept. In a frame that waits() nothing is
   /// compared.
   void update(const Scene& scene, const FrameChange* change = nullptr);
-  /// True in some frames after those that were not worth while.
+  /// True for some frames after frames in which knowing what moved saved nothing.
   bool waits() const { return waits_ > 0; }
-  /// Says whether it was worth while to know what moved in this frame, if it is known. At most once
-  /// a frame.
+  /// Says whether knowing what moved saved work in this frame, if it was known. At most once a
+  /// frame.
   void notify(bool worth_while);
   /// Frames begun, the present one included.
   std::uint64_t frame() const { return frame_; }
@@ -182,7 +182,7 @@ class MovedCorners {
   /// Whether a triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }
   bool triangle(std::uint32_t t) const { return any() && triangle_moved_[t] != 0; }
-  /// All these triangles, each once.
+  /// All triangles with a corner that moved, each once.
   const std::vector<std::uint32_t>& triangles() const { return triangles_; }
   static constexpr int kMostWaits = 16;  // frames
 

@@ -251,8 +251,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep: the one along which boxes are shortest, compared with the extent
-/// of all. It changes only if another one is clearly better, since the order is lost with it.
+/// Chooses the axis of the sweep: the one along which boxes are shortest, relative to the extent of
+/// all. It changes only if another axis is clearly better, since changing loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();

@@ -108,7 +108,7 @@ class Reliable {
     }
   }
 
-  // How far an end of a segment that is the shortest of this object may be from the point.
+  // An end of the object's shortest segment is at most this far from the point.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
   // The triangles that may hold an end; none if all of these are of one object.

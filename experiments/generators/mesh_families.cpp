@@ -373,7 +373,7 @@ Objects cogs(RandomDraws&, double now, int) {
 
 // Loads.
 
-/// n long thin triangles along x that n along y cross, each each.
+/// n long thin triangles along x, and n along y. Each of the first crosses each of the others.
 Objects bars(RandomDraws&, double, int n) {
   Objects out(2);
   const double width = 0.25 / n;

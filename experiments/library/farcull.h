@@ -37,9 +37,9 @@ enum class Contacts {
   segments,  // the kind, and the points that the triangles have in common
 };
 
-/// Asked with the name of the step that a call is at: at once, and then about every 50 ms, in the
-/// thread of the caller. If it returns false, the call ends with the error Cancelled. What it
-/// throws ends the call too, and is thrown by it. With it the work is done in another thread.
+/// Called with the name of the current step: at once, and then about every 50 ms, in the caller's
+/// thread. If it returns false, the call ends with the error Cancelled. If it throws, the call ends
+/// and throws the same exception. The work then runs in another thread.
 using MayGoOn = std::function<bool(const std::string& step)>;
 
 /// The error of a call that MayGoOn ended.

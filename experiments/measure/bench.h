@@ -118,7 +118,7 @@ struct DistanceErrors {
   std::uint64_t answers = 0;
   std::uint64_t lacking = 0;       // distances that only our answer has
   std::uint64_t beyond = 0;        // distances that our answer leaves out: beyond `within`
-  std::uint64_t exact = 0;         // the same double
+  std::uint64_t exact = 0;         // answers that are the same double as ours
   std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
   std::uint64_t other_object = 0;  // with `nearest`: another object that is not as near
   double largest_relative = 0;     // of distances that neither calls 0

@@ -62,8 +62,8 @@ using FrameSink = std::function<void(const FrameReport&)>;
 class FrameRecord {
  public:
   explicit FrameRecord(std::string path) : output_(std::move(path)) {}
-  /// head: an object, which may be empty; the first frame's head counts. summary: of the frames up
-  /// to this one. Throws Error as GrowingOutput.
+  /// head: an object, may be empty; only that of the first frame is written. summary: of all frames
+  /// up to this one. Throws Error as GrowingOutput does.
   void add(const nlohmann::ordered_json& head, const nlohmann::ordered_json& frame,
            const nlohmann::ordered_json& summary);
   void add(const FrameReport& report) { add(report.head, report.frame, report.summary); }

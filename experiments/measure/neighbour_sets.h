@@ -83,7 +83,7 @@ bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
 
-/// Sizes of the sets, and what they lack.
+/// Sizes of the sets, and how many nearest neighbours they miss.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // of these, objects whose sets hold no nearest one

@@ -58,7 +58,7 @@ std::string utc_now();
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;              // which probe broke off, and why; then nothing is promised
+  std::string problem;              // the probe that failed to finish, and why; no guarantee then
   std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
   std::size_t probes = 0;           // how many ran
   double ms = 0;                    // time of the probes

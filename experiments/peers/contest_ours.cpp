@@ -120,7 +120,7 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
   return of_options({.method = method}, says, use);
 }
 
-/// The control of "far misses none": with less than the radius it has to miss some.
+/// Control for "far misses none": far with a smaller radius, which must miss some pairs.
 Contestant far_at(const std::string& radius) {
   Contestant out = of_options({.method = Method::far, .radius = parse_radius(radius)},
                               "a control, which has to miss pairs", "nothing");

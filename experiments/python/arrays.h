@@ -55,8 +55,8 @@ class Turn {
   std::atomic_flag& used_;
 };
 
-/// Stops all running calls and waits for their end; later calls are stopped as well. For the end of
-/// the interpreter. Precondition: the lock is held.
+/// Stops all running calls and waits for their end; later calls are stopped as well. To be called
+/// when the interpreter ends. Precondition: the lock is held.
 void end_calls();
 
 /// Lets a run stop between its stages.

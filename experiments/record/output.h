@@ -90,8 +90,8 @@ nlohmann::ordered_json threads_json(const GlInfo& gl);
 /// The floating-point environment of the caller and the one in force.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// Pairs that the scene leaves out (verify/certificate/certificate.h): objects, pairs, and which
-/// objects, as the first and the last of each run of them.
+/// Pairs inside objects that were not tested (verify/certificate/certificate.h): the number of
+/// objects, the number of pairs, and the objects as ranges (first and last).
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 /// Parts of records: the scene; the stages of a trace.

@@ -63,7 +63,7 @@ struct RunCounts : AnswerCounts {
   /// What culled: the triangles that boxes left to views or to a join, and the views that were
   /// drawn. Without a view the boxes of triangles decided.
   std::uint64_t left_by_boxes = 0, views_used = 0;
-  std::uint64_t colliding_triangles = 0;  // of the truth
+  std::uint64_t colliding_triangles = 0;  // that truly collide
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // the method guarantees to miss nothing, by its options
   /// True if it promises, but its device does not keep the assumptions; else empty.

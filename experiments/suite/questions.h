@@ -52,9 +52,9 @@ std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3,
 /// numbers (verify/inside.h), and in integers (verify/certificate/integer_distance.h).
 std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
                                 const std::string& where);
-/// Whether the insides of the closed objects 0 and 1 have a point in common. Yes rests on a point
-/// that both oracles of decide_inside() call inside both; no on a plane along an axis between them.
-/// Empty if neither is found.
+/// True if the insides of the closed objects 0 and 1 overlap: both oracles of decide_inside() say
+/// that some point is inside both. False if an axis-aligned plane lies between the objects. Empty
+/// if neither is found.
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
 
 }  // namespace farcull

@@ -33,7 +33,7 @@ class PeakMemory {
   std::optional<double> before_kib_;
 };
 
-/// What other programs took of the processors that this process may use.
+/// How much other programs used the processors that this process may use.
 struct Load {
   double share = 0;  // of their time, 0 to 1
   /// Two standard deviations of `share`, since the system counts by ticks of a clock.

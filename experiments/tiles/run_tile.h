@@ -110,7 +110,7 @@ TileScene gather_tile(const SceneSource& source, const Census& census, const Til
 WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part);
 
 struct TileQuestion {
-  RunOptions options;  // of boxes, without a limit; `ignored` is empty
+  RunOptions options;  // for the method boxes, no limit; `ignored` is empty
   TileNumber number = {};
   /// Returns the pairs of objects to ignore besides those that the scene ignores. Its argument is
   /// names_of() the census. Empty: no more pairs.

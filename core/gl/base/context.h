@@ -48,7 +48,7 @@ class GlContext {
   /// Every device, each tried with a context of its own; an empty list where there are none. Throws
   /// Error without EGL.
   static std::vector<GlDevice> list_devices();
-  /// True where EGL lists a hardware device; none is opened. Throws Error without EGL.
+  /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
   static bool hardware_listed();
 
  private:

@@ -1,7 +1,7 @@
 // The passes of the GL canvas. A pass is cut into batches, one for each element buffer that a step
-// reads in a row. It sends its list, draws it batch by batch, and believes the answers only after
-// the report, the count of primitives and the control items say that it ran. GlCanvas forgets the
-// state after any failure, so that nothing on the device is believed then.
+// reads in a row. It sends its list and draws it batch by batch. It uses the results only if the
+// report, the count of primitives and the control items show that everything ran. After any failure
+// GlCanvas forgets its state, since the contents of the device are then unknown.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -246,8 +246,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   clock.stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
-    // New names for every pass: a query that is never issued then has no object, and no stale
-    // answer to give.
+    // Every pass makes new queries. A query that is never issued then has no object, so it cannot
+    // return the result of an earlier pass.
     queries.clear();
     while (queries.size() < laid.slots) queries.push_back(gl_make<GlQuery>(glGenQueries));
   }

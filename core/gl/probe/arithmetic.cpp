@@ -53,7 +53,7 @@ double quotient_units(float got, double a, double b) {
     return std::abs(got) <= 2 * kSmallest ? 0 : std::numeric_limits<double>::infinity();
   if (std::signbit(got) != (std::signbit(a) != std::signbit(b)))
     return std::numeric_limits<double>::infinity();
-  // got * b is exact, and so is its difference from a where got is near.
+  // got * b is exact. Its difference from a is also exact, if got is near a / b.
   return std::abs(static_cast<double>(got) * b - a) / (std::abs(a) * kUnit);
 }
 

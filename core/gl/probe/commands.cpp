@@ -136,7 +136,7 @@ ProbeResult atomics(const ProbeOptions& options) {
                 "bits; one winner of two");
 }
 
-// Each invocation of a dispatch reads what another invocation of the dispatch before wrote.
+// Each invocation of a dispatch reads what another invocation of the previous dispatch wrote.
 ProbeResult dispatches(const ProbeOptions& options) {
   constexpr std::uint32_t kLinks = 48;
   const GlProgram program = step_program(1, false);

@@ -101,7 +101,7 @@ Scene transformed(Scene scene, double scale, const Vec3& translate);
 struct SceneSuffix {
   std::string suffix;       // with its @
   std::string description;  // one line
-  /// The change for this scene. All frames get the change of the scene without frames.
+  /// Returns the change, given the scene without frames. The same change applies to all frames.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();
