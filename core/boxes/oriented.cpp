@@ -339,7 +339,7 @@ std::uint32_t order_in(const Scene& scene, const Object& object, double clearanc
   return static_cast<std::uint32_t>(inside.size());
 }
 
-// The tree over the blocks of an object, and its nodes from nodes[at] on.
+// Builds the tree over the blocks of an object. Its nodes are stored from nodes[at] on.
 BoxTree<float> plant(std::span<const OrientedBox> leaves, std::span<const OrientedLanes> lanes,
                      std::vector<Moments> moments, std::span<WideOriented> nodes, std::size_t at) {
   BoxTree<float> out;

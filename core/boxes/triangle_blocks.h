@@ -1,6 +1,6 @@
 // Blocks of triangles. Triangles that follow one another in a file are mostly close, so one box can
-// rule out a whole block, and most triangles are never looked at one by one. Scattered triangles
-// are put in an order in which they are close.
+// rule out a whole block, and most triangles are never examined one by one. Scattered triangles
+// are sorted first, so that those of a block are close.
 #pragma once
 
 #include <cstddef>

@@ -64,10 +64,10 @@ struct PassCost {
 };
 
 /// Runs one pass on the canvas, owner by owner (ascending if F is asked, descending if L is): asks
-/// by the rule, then stores by the rule. Triangles that were not seen get the bit after the pass.
-/// Two kinds get it undrawn: triangles without elements in this view, and those asked before
-/// anything is stored. Undrawable ones get no bit and are stored everywhere. Stores before no later
-/// query are left out. items: those of `drawables`, triangles in the order of CullState::live.
+/// by the rule, then stores by the rule. Triangles not seen get the bit after the pass. Two kinds
+/// get it undrawn: triangles without elements in this view, and those asked before anything is
+/// stored. Undrawable ones get no bit and are stored everywhere. Stores that no later query reads
+/// are left out. items: those of `drawables`, triangles in the order of CullState::live.
 PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
                   const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
                   bool touching, Canvas& canvas);

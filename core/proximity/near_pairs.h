@@ -29,16 +29,16 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// The first of the nearest of some pairs of triangles, decided exactly. It shows of other pairs
-/// that they are no nearer: a triangle s of the first object and a triangle t of the second one are
-/// as far apart or farther if reach(s) <= start(t), and farther if reach(s) < start(t).
+/// The first of the nearest of some pairs of triangles, decided exactly. It proves that other pairs
+/// are no nearer: a triangle s of the first object and a triangle t of the second one are at least
+/// as far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
 struct SettledPair {
   TrianglePair pair;
   double distance = 0;  // world units, not below the exact one; 0 only if the triangles meet
   std::function<double(std::uint32_t)> reach, start;  // of a triangle; empty if the distance is 0
 };
-/// Exact arithmetic for a search in which more pairs are equally near than bounds in doubles can
-/// tell apart. Called by several threads at once, with pairs that are sorted.
+/// Exact arithmetic for a search in which bounds in doubles cannot tell which of many pairs is
+/// nearest. Called by several threads at once, with sorted pairs.
 using Settle = std::function<SettledPair(std::span<const TrianglePair>)>;
 
 /// The pairs of triangles of two objects that can be nearest. If the two are the same object, these
@@ -67,7 +67,7 @@ struct ProximityCounts {
 class ProximityTrees {
  public:
   /// threads: 0 for as many as there are cores; changes no answer. settle: if it is not empty,
-  /// searches call it where many pairs may be nearest, and keep the settled pair in place of them.
+  /// searches call it when many pairs may be nearest, and replace these by the settled pair.
   explicit ProximityTrees(const Scene& scene, unsigned threads = 0, Settle settle = {});
   ~ProximityTrees();
   ProximityTrees(ProximityTrees&&) noexcept;
@@ -104,10 +104,10 @@ class ProximityTrees {
   std::vector<ObjectPair> objects_within(double within, std::size_t most) const;
 
   /// All pairs of triangles at most `within` apart, of different objects, or of one `self` object
-  /// if they are no neighbours; and a few that are farther only by roundings. Sorted, each once.
-  /// Precondition: within is finite. Throws std::logic_error for an invalid limit, and Error where
-  /// there are more than `most` pairs. Memory: at most some tens of bytes for each pair, and for
-  /// some thousands of other pairs.
+  /// if they are no neighbours; and a few that are farther only by rounding errors. Sorted,
+  /// distinct. Precondition: within is finite. Throws std::logic_error for an invalid limit, and
+  /// Error if there are more than `most` pairs. Memory: at most some tens of bytes for each pair,
+  /// and for some thousands of other pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 

@@ -102,7 +102,7 @@ void join(Search& part, Search& search) {
 }  // namespace
 
 double scaled_limit(const SceneTrees& trees, double within) {
-  // A product that is subnormal is rounded; and the next number is not below the exact one.
+  // A subnormal product is rounded, but the next larger number is at least the exact product.
   return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
 }
 

@@ -136,7 +136,7 @@ class Searcher {
     return is(a[at.a_height][at.a], -b[at.b_height][at.b]) ||
            (self_ && is(a[at.b_height][at.b], -b[at.a_height][at.a]));
   }
-  // The same of triangle i of leaf a and triangle j of leaf b.
+  // The same for triangle i of leaf a and triangle j of leaf b.
   bool is_no_nearer(const NodePair& at, std::size_t i, std::size_t j,
                     const TrianglePair& pair) const {
     if (!search_.planes) return false;
@@ -263,10 +263,10 @@ class Searcher {
     return out;
   }
 
-  // Drops pairs that are farther apart along the normal of one of their triangles than the bound,
-  // or, in the plane of the triangle, across one of its edges. Boxes along the axes tell little of
-  // slivers and large triangles, and one direction is tried for all pairs of its triangle at once,
-  // which takes less time than to bound two of them.
+  // Drops pairs that are farther apart than the bound along the normal of one of their triangles,
+  // or, in the plane of the triangle, across one of its edges. Boxes along the axes separate
+  // slivers and large triangles poorly. One direction is tried for all pairs of its triangle at
+  // once, which takes less time than to bound two of them.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two

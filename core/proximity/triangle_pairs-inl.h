@@ -25,7 +25,7 @@ static_assert(kWide % kLanes == 0);
 
 HWY_INLINE Number number(double x) { return hn::Set(Numbers(), x); }
 HWY_INLINE Number clamped(Number x) { return hn::Max(number(0), hn::Min(x, number(1))); }
-/// numerator / denominator where the latter is positive, else 0.
+/// numerator / denominator if the denominator is positive, else 0.
 HWY_INLINE Number ratio(Number numerator, Number denominator) {
   return hn::IfThenElseZero(hn::Gt(denominator, number(0)), hn::Div(numerator, denominator));
 }
@@ -247,7 +247,7 @@ HWY_INLINE Sign sign_of_determinant(const Point& a, const Point& b, const Point&
   return {hn::Gt(value, doubt), hn::Lt(value, hn::Neg(doubt))};
 }
 
-/// Lanes in which an edge of one triangle passes through the other one for certain.
+/// Lanes in which an edge of one triangle certainly passes through the other one.
 HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   Point a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// From so many on, the partners of one triangle may be marked instead of sorted.
+// From this number on, the partners of one triangle may be marked instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
 // Sorts the pairs of one first triangle and leaves each there once, at the begin; returns how many

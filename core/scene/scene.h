@@ -216,10 +216,10 @@ class MovedCorners {
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
 /// False if the matrix (finite, row by row) maps space to a plane, a line or a point, as far as
-/// doubles tell: its determinant is 0, or no larger than its own rounding errors.
+/// doubles can show: its determinant is 0, or at most its own rounding errors.
 ///
 /// Each row is divided by its largest number, which changes neither answer nor signs. A term of the
-/// determinant then meets 8 roundings at most: the three quotients, two products, a difference and
+/// determinant then has at most 8 roundings: the three quotients, two products, a difference and
 /// two sums. So 9 u times the sum of the magnitudes covers them, as in verify/filter_scalars.h.
 bool is_invertible(std::array<double, 9> r);
 

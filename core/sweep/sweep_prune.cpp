@@ -18,13 +18,13 @@
 namespace farcull {
 namespace {
 
-// Moves of an insertion sort, per element of its list, after which sorting anew is cheaper than to
-// go on.
+// Limit on the moves of an insertion sort, per element of its list. Beyond it, a full sort is
+// cheaper.
 constexpr std::uint64_t kMoves = 8;
 
-// Sorts what is almost sorted. Calls exchanged(e, f) where e moves from behind f to before it:
-// once for each two elements that stand the wrong way round, and for no others. False, with the
-// list in some order, where it takes more than kMoves per element.
+// Sorts what is almost sorted. Calls exchanged(e, f) if e moves from behind f to before it: once
+// for each two elements in the wrong order, and for no others. Returns false, with the list in some
+// order, if it takes more than kMoves per element.
 template <class Element, class Less, class Exchanged>
 bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Less& less,
                     const Exchanged& exchanged) {
@@ -205,7 +205,7 @@ void SweepPrune::forget() {
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
-  constexpr int kTries = 32;  // cost about what the sweep of one triangle does
+  constexpr int kTries = 32;  // these tries cost about as much as sweeping one triangle
   survivors_.clear();
   marks_.assign(boxes.size(), kDropped);
   groups_.resize(boxes.size());

@@ -115,8 +115,8 @@ struct Patch {
   std::span<const Vec3> points() const { return {corners.data(), static_cast<std::size_t>(count)}; }
 };
 
-/// The image of the world triangle `corners` clipped to window.lo .. window.hi. Ask drawable()
-/// before count: where it is false, an empty polygon is no proof that the triangle stays outside.
+/// The image of the world triangle `corners` clipped to window.lo .. window.hi. Check drawable()
+/// before count: if it is false, an empty polygon does not prove that the triangle is outside.
 Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners);
 
 }  // namespace farcull

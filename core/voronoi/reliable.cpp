@@ -1,7 +1,7 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
 // middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all others. An end is about
-// as near to the cell as any triangle is. And it is no farther than half the distance looked for,
-// of which every point of space gives an upper bound.
+// as near to the cell as the nearest triangle. And its distance is at most half the distance that
+// is searched for, of which every point of space gives an upper bound.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -179,7 +179,7 @@ struct VoronoiCounts {
   std::uint64_t distances = 0;  // of a point and a triangle
 };
 
-/// What a form of the diagram leaves. Objects without triangles have no neighbours.
+/// The result of a form of the diagram. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
   /// Pairs of objects, sorted, each once. The published form: some cell has these two as its
   /// nearest objects; among equally near objects (as floats) the first counts. The reliable form:
@@ -187,9 +187,9 @@ struct VoronoiNeighbours {
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
 
-  // Of the reliable form; the published one leaves these empty.
-  /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
-  /// A and one of another object, that are d apart is among these. Sorted, each once.
+  // Only of the reliable form; the published one leaves these empty.
+  // Let d be the least distance of an object A from another one. Every pair of triangles, one of
+  // A and one of another object, that are d apart is among these. Sorted, each once.
   std::vector<TrianglePair> triangles;
   /// For each object an upper bound of d, in world units, rounded up; infinite where it has no
   /// triangle or no other object has one.

@@ -113,8 +113,8 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
       kExamples);
 }
 
-// The arguments, with the mesh files of a folder and of the folders in it in place of the folder. A
-// file in a format that is not read is an error, unless the same part is beside it as a mesh.
+// The arguments, with each folder replaced by the mesh files in it and in its subfolders. A file in
+// a format that is not read is an error, unless the same part is in the folder as a mesh.
 SceneArguments ClashCommand::parts() const {
   SceneArguments out = scene_;
   out.names.clear();

@@ -1,4 +1,4 @@
-// What the program tells its user besides an answer. Each function looks at the meshes anew.
+// Hints that the program prints besides an answer. Each function searches the meshes anew.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
 /// and where; at most three. Empty for objects of more than 4 million triangles together.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
 
-/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
-/// surfaces do not meet. Empty if there are none, or more than a million pairs of boxes to look at.
+/// Lines that say which objects may lie wholly inside closed ones: their boxes do, and the surfaces
+/// do not meet. Empty if there are none, or more than a million pairs of boxes to examine.
 std::string nested_line(const Scene& scene, const Record& record);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// `farcull bench` measures peers and our methods from the same triangles to the same pairs; with
-// --distances, to distances between objects and their errors. One process runs them all.
+// `farcull bench` times peers and our methods from the same triangles to the same pairs; with
+// --distances, to distances between objects, whose errors it counts. One process runs them all.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,

@@ -18,7 +18,7 @@ namespace farcull {
 
 /// The loop over frames of every command. Calls `one` with each frame of the range and a progress
 /// that puts `before` and "frame 3 of 10: " before its stages. SIGINT, SIGTERM and SIGHUP end the
-/// program at once, with a line on standard error that says how many frames were done, and `end`.
+/// program at once, with a line on standard error: the number of finished frames, and `end`.
 /// end: null for no line.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
@@ -41,7 +41,7 @@ struct FrameTimes {
   double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
   FARCULL_FIELDS(median, p95, max)
 };
-/// Frames per second at so many milliseconds each; empty where that is no positive number.
+/// Frames per second if each takes `ms` milliseconds; empty if that is not a positive number.
 std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 

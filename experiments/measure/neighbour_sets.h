@@ -53,7 +53,7 @@ struct NeighbourSets {
   std::vector<TrianglePair> pairs = {};
   /// boxes, voronoi: of each pair of objects, how many triangles of a and of b are left.
   std::vector<std::array<std::uint64_t, 2>> left = {};
-  /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Else empty.
+  /// Why there are no sets: the diagram would keep too many pairs, or memory ran out. Else empty.
   std::string left_out = {};
 };
 

@@ -1,5 +1,5 @@
-// FAR and the CULLIDE family: boxes say what is drawn, a canvas culls it view by view, with one
-// offset after the other, and the boxes of what is kept are joined.
+// FAR and the CULLIDE family. Boxes find what has to be drawn. A canvas culls it view by view, with
+// one offset after the other. Then the boxes of what is left are joined.
 #include <algorithm>
 #include <iterator>
 
@@ -16,13 +16,13 @@
 namespace farcull {
 namespace {
 
-// The order in which offsets are tried, each on what the one before has left.
+// The offsets in the order in which they are tried, each on what the previous one left.
 std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset == "obb") return {obb_fattener()};
   // A new offset goes here.
-  // Where nothing is promised, boxes before would be one more chance to miss.
+  // Without a guarantee, comparing boxes first would add one more way to miss pairs.
   if (options.full || !guaranteed(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
 }
@@ -36,7 +36,7 @@ Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
 
 CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
   const bool self = tests_self_alone(options.method);
-  // What a method that promises leaves out costs time alone, never a pair.
+  // If a method is guaranteed, leaving stages out can only cost time, never lose a pair.
   const bool thrifty = guaranteed(options) && !options.full;
   return {.views = parse_views(views_of(options)),
           .resolution = resolution_of(options),

@@ -368,7 +368,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // This comes first, so that no later failure leaves an older promise that these results refute.
+  // Comes first, so that a later failure leaves no older verdict that these results refute.
   if (!out.holds) forget(file);
   if (!out.holds && out.failed.empty()) return out;
   out.note = write(file, file_text(inputs, out));

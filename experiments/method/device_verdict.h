@@ -1,6 +1,6 @@
-// Decides whether a device keeps the assumptions A1 to A10 that the promise of far rests on
+// Decides whether a device keeps the assumptions A1 to A10, on which the guarantee of far depends
 // (docs/reliability.md), as far as probes can tell. The probes run once for a device, a driver and
-// a build of farcull; a file keeps their findings.
+// a build of farcull; a file keeps their results.
 #pragma once
 
 #include <cstdint>

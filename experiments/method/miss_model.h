@@ -23,12 +23,12 @@ struct MissPrediction {
   double high() const;
 };
 
-/// Why there is no prediction for a method with these options; empty if there is one. A method that
-/// promises misses nothing and needs none.
+/// Why there is no prediction for a method with these options; empty if there is one. A method with
+/// a guarantee misses nothing and needs none.
 std::string why_unpredicted(const RunOptions& options);
 
-/// The misses of a plan, or why they are not predicted. A method that promises to miss nothing has
-/// neither.
+/// The misses of a plan, or why they are not predicted. A method that guarantees to miss nothing
+/// has neither.
 struct MissesOfPlan {
   std::optional<MissPrediction> predicted;
   std::string why_not;

@@ -54,10 +54,10 @@ struct RunOptions {
   double clearance = 0;     // world units, finite, >= 0; boxes and exact only
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
-                           // candidates of far and boxes nor decided
+                           // candidates of far and boxes, nor decided
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
                                          // in_order() gives them
-  std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours included; 0: all
+  std::uint64_t limit = 0;  // only the first pairs that collide, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
   bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
   std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: it is not random

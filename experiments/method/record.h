@@ -68,7 +68,7 @@ struct Candidates {
     const auto* views = std::get_if<std::vector<ViewReport>>(&by);
     return views ? *views : none;
   }
-  /// Whether a method that draws drew. Else boxes left nothing, or pixels could resolve no view.
+  /// True if a drawing method drew. If not, boxes left nothing, or pixels could resolve no view.
   bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);

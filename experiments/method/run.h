@@ -23,8 +23,8 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
                 bool marks = true);
 
-/// The promise of the method on the device that it used, by the session's verdict about the device.
-/// After an exception the session has forgotten its device, as after find().
+/// The guarantee of the method on the device that it used, by the session's verdict about the
+/// device. After an exception the session has forgotten its device, as after find().
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);
 
 /// How a caller of run() uses it, besides the options of the user.
@@ -38,7 +38,7 @@ struct RunUse {
   /// candidates.
   bool answer_only = false;
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
-  /// compared. Of use only where the session remembers frames.
+  /// compared. Used only if the session remembers frames.
   const FrameChange* change = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
 };
@@ -48,7 +48,7 @@ struct RunUse {
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
-/// Decides candidates by exact predicates: all of them, or with limit > 0 until so many collide.
+/// Decides candidates by exact predicates: all of them, or until `limit` of them collide (if > 0).
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit);
 

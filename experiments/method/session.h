@@ -62,8 +62,8 @@ class Session {
   FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases and the context, since nothing on a device is trusted after a failure, and
-  /// the results of the last frame. Each is made again when it is next needed.
+  /// Drops the canvases and the context, since the contents of a device are unknown after a
+  /// failure. Also drops the results of the last frame. Each is made again when it is next needed.
   void forget_device();
 
  private:

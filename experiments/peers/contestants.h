@@ -20,7 +20,7 @@ struct KnownContestant {
 const std::vector<KnownContestant>& known_contestants();
 /// The contestant with this name. Throws Error if there is none.
 const KnownContestant& known_contestant(const std::string& name);
-/// The command line of the contestant's program, which is in the folder that the variable
+/// The command line of the contestant's program. The program is in the folder that the variable
 /// FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program. Empty: it was
 /// not built.
 std::string command_of(const KnownContestant& contestant);

@@ -70,7 +70,7 @@ struct TextStyle {
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room);
 
-/// What determines the pixels of a text: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
+/// The versions that determine the pixels of a text: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
 std::string lettering_version();
 
 struct LegendEntry {

@@ -322,7 +322,7 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
-// The pixels, what the panels say, and the page with the same answers if `page` asks for it.
+// The pixels, the texts of the panels, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom, int width,
                      int height, const std::string& device, unsigned threads, bool page) {

@@ -144,7 +144,7 @@ std::string plan_table(const Scene& scene, const Plan& plan);
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
                                  const std::optional<MissPrediction>& misses = {});
 
-/// What the plan says about a stage: "runs", "left out" or "depends".
+/// The plan's decision about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
 // Distances (docs/proximity.md).

@@ -96,7 +96,7 @@ std::string device_text(const Record& record) {
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
 
-// A line about the device's verdict; empty unless the promise of the method rests on a device.
+// A line about the device's verdict; empty unless the method's guarantee depends on a device.
 std::string promise_line(const Record& record) {
   if (!record.promise.verdict) return "";
   return fmt::format("promise    {}{}\n",

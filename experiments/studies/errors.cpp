@@ -47,7 +47,7 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   return out;
 }
 
-// Of forms of CULLIDE, and of FAR at other radii than the budget's: these promise nothing, so that
+// For forms of CULLIDE, and for FAR at other radii than the budget's. These have no guarantee, so
 // no view can be skipped, and a run takes up to five times as long.
 constexpr int kMostOfForms = 1024;  // px
 

@@ -124,7 +124,7 @@ struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 0;   // of a diagram, in cells; 0: the method has none
-  double widening = 1;  // of the reliable diagram; below 1 it promises nothing
+  double widening = 1;  // of the reliable diagram; below 1 there is no guarantee
   int repeat = 1;       // see runs_of()
 };
 

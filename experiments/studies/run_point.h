@@ -63,7 +63,7 @@ inline PointResult measure_run_point(const Point& point, MeasurementContext& lab
 /// RunCounts::at_risk and at_risk_bare. Runs it twice.
 std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
                                                       MeasurementContext& lab);
-/// measure_run(), for FAR at a radius that promises with the pairs at risk.
+/// measure_run(); for FAR at a radius with a guarantee, also the pairs at risk.
 PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab,
                               Record* record = nullptr);
 

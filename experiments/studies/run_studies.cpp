@@ -227,7 +227,7 @@ class Runner {
     const Point& point() const { return task->points[position]; }
     const PointKey& key() const { return task->keys[position]; }
   };
-  // What runs of a point in one round gave.
+  // The results of the runs of a point in one round.
   struct Runs {
     At at;
     std::optional<PointResult> first = {};  // empty: none has come to its end
@@ -247,7 +247,7 @@ class Runner {
     return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
   }
 
-  // What the store knows of points that other studies have too.
+  // Takes over results that the store has for the same points in other studies.
   void find_known() {
     std::set<std::int64_t> alike;
     for (const auto& [run, then] : store_.runs()) {
@@ -326,7 +326,7 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // The points of a scene in turn, as often as runs fall on a round; again if the machine was busy.
+  // Runs the points of a scene in turn, with all runs of the round; again if the machine was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;

@@ -110,7 +110,7 @@ struct StudiesSummary {
   /// Points that could not be measured, in words, with the error. They have no row, and the next
   /// run tries them again.
   std::vector<std::string> failed;
-  /// Rows of methods that broke their promise, in this run or an earlier one.
+  /// Rows of methods that broke their guarantee, in this run or an earlier one.
   std::vector<std::string> broken;
 };
 

@@ -63,7 +63,7 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
   return out;
 }
 
-/// Points where a test of a point is hard. The parameter: 0 anywhere in the box; 1 above or below a
+/// Points where deciding "inside" is hard. The parameter: 0 anywhere in the box; 1 above or below a
 /// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
 Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];

@@ -33,11 +33,11 @@ struct SuiteQuestions {
 /// The text of a file of questions.
 std::string questions_text(const SuiteQuestions& questions);
 
-/// Questions about the first pairs of a family, as many as in the small suite: how far are they
-/// apart?
+/// Questions about the first pairs of a family, as many as in the small suite: the distance of
+/// each pair.
 SuiteQuestions questions_of(const SuitePairs& pairs);
-/// Questions about the objects of a mesh: whether each meets itself, and of closed ones which
-/// points are inside, and which two clash. Where the oracles do not decide, there is no question.
+/// Questions about the objects of a mesh: whether each meets itself; for closed objects, which
+/// points are inside, and which two clash. If the oracles do not decide, there is no question.
 SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 
 // Each label is decided by two programs that share no code. Throws Error naming `where` if they

@@ -10,8 +10,8 @@ namespace farcull {
 /// How many cores this process may use.
 unsigned usable_cores();
 
-/// Confines the process, with all threads that it starts from now on, to that many cores, so that
-/// no library uses more cores than it should. Throws Error naming --threads if the machine has
+/// Confines the process, with all threads that it starts from now on, to this number of cores, so
+/// that no library uses more cores than it should. Throws Error naming --threads if the machine has
 /// fewer or the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 

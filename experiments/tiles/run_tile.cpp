@@ -365,7 +365,7 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
 }
 
-// ---- what a run on a tile, and a plan of tiles, tell people and programs ----
+// ---- what a run on a tile, and a plan of tiles, print and record ----
 
 namespace {
 

@@ -1,5 +1,5 @@
-// Tiles of a scene that is too large for the memory: where they are cut, a run on one of them, and
-// what `farcull merge` joins. docs/tiles.md has the proof that each pair belongs to one tile.
+// Tiles of a scene that is too large for the memory: where it is cut, a run on one tile, and the
+// work of `farcull merge`. docs/tiles.md has the proof that each pair belongs to one tile.
 #pragma once
 
 #include <array>
@@ -172,7 +172,7 @@ struct MergedTiles {
   std::uint64_t rows = 0;             // of the list
   std::uint64_t false_negatives = 0;  // of all accountings
   bool verified = false;              // every tile has an accounting
-  bool guaranteed = true;             // every tile promises to miss nothing (docs/record.md)
+  bool guaranteed = true;             // every tile is guaranteed to miss nothing (docs/record.md)
 };
 
 /// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists

@@ -31,8 +31,8 @@ struct GlInfo {
 };
 
 /// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent of it lives: any number of contexts can be used in turn in one thread, beside contexts
-/// of the caller's own, and one context by several threads, one at a time.
+/// GlCurrent of it lives. A thread can use any number of contexts one after the other, besides the
+/// caller's own, and several threads can use one context, one at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of

@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // A batch begins at a multiple of so many entries.
+      // A batch begins at a multiple of this many entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -123,10 +123,10 @@ class Layout {
 };
 
 // The draw list of `pass`. With `marks`, it begins with a store and ends with an ask; if the
-// caller's steps do not, a step of control items alone is added (state.h). The first store draws
-// this pass's mark, and the first ask looks for the mark of the pass before; canvas.odd says which
-// of pixels 1 and 2 has which. Without `marks`, no step is added, and no mark is drawn or asked
-// for.
+// caller's steps do not, a step with control items only is added (state.h). The first store draws
+// this pass's mark, and the first ask looks for the mark of the previous pass; canvas.odd says
+// which of the pixels 1 and 2 has which mark. Without `marks`, no step is added, and no mark is
+// drawn or asked for.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});

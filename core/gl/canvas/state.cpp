@@ -63,7 +63,7 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // Each piece begins where a range may begin, and its first 16 bytes stand for a tag.
+  // Each piece begins where a range may begin, and its first 16 bytes are reserved for a tag.
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {

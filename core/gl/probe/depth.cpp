@@ -21,9 +21,9 @@ std::vector<Proxy> pixel_proxies(int side) {
   return out;
 }
 
-// Random depths of a layer, one for each pixel: in the range of the canvas's depth map or at its
-// ends, of control items (core/gl/canvas/state.h), any others, and some equal or next to those of
-// the layer `beside`.
+// Random depths of a layer, one for each pixel: in the range of the canvas's depth map, at its
+// ends, at depths of control items (core/gl/canvas/state.h), any others, and some that equal those
+// of the layer `beside` or are next to them.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {

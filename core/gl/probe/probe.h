@@ -1,5 +1,5 @@
-// Probes of the device assumptions A1 to A10: each tries to catch this device breaking one, and
-// gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
+// Probes of the device assumptions A1 to A10. Each tries to catch this device breaking one, and
+// reports the worst measured value with the bound that the proofs rely on (docs/budget.md). A
 // probe can refute an assumption, never prove it.
 #pragma once
 
@@ -50,9 +50,9 @@ struct ProbeOptions {
   bool one_thread = false;          // A10: the driver draws in a thread of its own
 };
 
-/// Runs the probes in the order of the assumptions; `started`, where given, is called with the
+/// Runs the probes in the order of the assumptions. If `started` is given, it is called with the
 /// assumption before each group. The same device and options give the same results. A probe that
-/// breaks off by an Error fails; others go on. GL state is not kept.
+/// ends with an Error fails; the others go on. GL state is not kept.
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
