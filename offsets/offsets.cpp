@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = std::tuple_size_v<decltype(Patch::corners)>;
 
-// The points as fit.inl takes them.
+// The points in the form that fit.inl takes.
 struct Points {
   explicit Points(std::span<const Vec3> from) : count(static_cast<int>(from.size())) {
     if (from.empty() || from.size() > kMostPoints) throw std::logic_error("fit: too many points");

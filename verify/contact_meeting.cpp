@@ -87,9 +87,9 @@ class Signs {
   const Corners& b_;
 };
 
-/// The meeting of two triangles in one plane. Each corner of what they share is a corner of one of
-/// them, or lies inside an edge of each; in the second case they share a polygon. If they share a
-/// segment, it has only its two ends of such corners.
+/// The meeting of two triangles in one plane. Each corner of their common part is a corner of one
+/// triangle, or lies inside an edge of each; in the second case the common part is a polygon. If it
+/// is a segment, its two ends are the only such corners.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
   int turns[2][3][3];  // of edge i of one triangle and corner k of the other

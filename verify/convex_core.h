@@ -43,7 +43,7 @@ class ClosedObject {
   const std::vector<Vec3>& convex() const { return convex_; }
   bool has(const Vec3& point) const;      // strictly inside, exactly
   Vec3 nearest(const Vec3& point) const;  // point of the surface, in plain doubles
-  /// Outside for certain, of a point off the surface.
+  /// True if a point off the surface is certainly outside.
   bool has_not(const Vec3& point) const;
 
  private:

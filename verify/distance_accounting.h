@@ -47,7 +47,7 @@ struct DistanceQuestion {
   enum class Kind : std::uint8_t { objects, nearest, all };
   Kind kind = Kind::objects;
   std::size_t k = 1;
-  /// Nothing that is farther apart is asked for. World units, >= 0; finite with `all`.
+  /// Pairs that are farther apart are not asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
   bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
@@ -116,7 +116,7 @@ class DistanceClaims {
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
-  /// Whether objects a <= b are asked about.
+  /// Whether the question is about the objects a <= b.
   bool asked(std::uint32_t a, std::uint32_t b) const;
   /// How many answers are wrong, in themselves or because of other answers (not one of the k
   /// nearest).

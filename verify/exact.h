@@ -106,7 +106,7 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
 
 struct FirstCollisions {
   Collisions collisions;      // counts the candidates that were decided
-  std::uint64_t decided = 0;  // so many candidates, from the first one on, were decided
+  std::uint64_t decided = 0;  // how many candidates, from the first one on, were decided
   bool complete = true;       // all were decided, and not more than the limit collide
 };
 

@@ -83,10 +83,10 @@ struct Crossings {
   bool odd = false;          // whether their number is
 };
 
-/// The crossings of a ray. Empty if one was unclear. If the ray goes along the first
-/// axis, boxes show that it misses most triangles. A triangle that is a segment or a point is left
-/// out: no ray in general position crosses it, and if x is on its line, all signs are 0 whatever
-/// the direction.
+/// The crossings of a ray. Empty if one was unclear. If the ray is along the first axis, boxes show
+/// that it misses most triangles. Triangles that are segments or points are left out: no ray in
+/// general position crosses them, and if x is on the line of one, all signs are 0 for every
+/// direction.
 std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
                                    const Vec3& d, bool first_axis) {
   Crossings out;
@@ -204,8 +204,8 @@ bool may_be_folded(const Corners& a, const Corners& b) {
   return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
 
-/// Whether two triangles of one plane that pass an edge in both senses lie on the same side of it,
-/// as both sides of a face do however each is cut into triangles. True as well where more than 64
+/// True if two triangles of one plane that pass an edge in both senses lie on the same side of it,
+/// as the two sides of a face do, however each is cut into triangles. Also true if more than 64
 /// triangles have one edge.
 bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>& edges) {
   const auto corners_at = [&](const Edge& edge) {

@@ -143,7 +143,7 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
 /// Whether the places just below and just above a point of a plane, along an axis, are inside an
 /// object.
 struct Sides {
-  std::array<bool, 2> perhaps{};  // one of the two rules says so
+  std::array<bool, 2> perhaps{};  // one of the two rules shows it
   std::array<bool, 2> inside{};   // both do
 };
 
@@ -232,8 +232,8 @@ class PieceTest {
         triangles_(scene.objects[objects.a].triangle_count +
                    std::size_t{scene.objects[objects.b].triangle_count}) {}
 
-  /// Whether pieces of triangle t of object `own` show an overlap with the other object; `others`
-  /// are the triangles of the other object that meet t.
+  /// Whether pieces of triangle t of object `own` prove that it overlaps the other object.
+  /// `others`: the triangles of the other object that meet t.
   Overlap test(std::uint32_t own, std::uint32_t t, std::span<const std::uint32_t> others) {
     const Corners corners = scene_.corners(t);
     if (shape(corners) != Shape::triangle) return Overlap::unknown;

@@ -125,7 +125,7 @@ class Polytope {
   Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
 
   /// Adds points, always above the face that is nearest to the origin, until the nearest face is
-  /// final, or all are (whole), or for so many steps.
+  /// final, or all faces are (whole), or `steps` points were added.
   void expand(int steps, bool whole) {
     if (!begin()) faces_.clear();
     while (steps > 0 && !faces_.empty()) {
@@ -243,7 +243,7 @@ class Polytope {
   bool convex_ = true;
 };
 
-/// The translations that a polytope holds for certain.
+/// The translations that a polytope certainly holds.
 struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
@@ -297,8 +297,8 @@ double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   return out;
 }
 
-/// Three directions, perpendicular but for rounding: that of most of the area, and then of most of
-/// the rest.
+/// Three directions, perpendicular except for rounding. The first is that of most of the area, the
+/// second that of most of the rest.
 std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
   std::vector<std::pair<double, Vec3>> normals;
   for (const ClosedObject* solid : {&a, &b}) {
@@ -358,14 +358,14 @@ class Search {
   /// Divides the ball of translations below the upper bound until all of it that is nearer than
   /// the lower bound is settled.
   void search() {
-    constexpr double kWork = 2e6;  // sides of covers that are looked at
+    constexpr double kWork = 2e6;  // sides of covers that are examined
     constexpr double kClose = 0.98;
     std::priority_queue<Part, std::vector<Part>, std::greater<>> parts;
     parts.push({0, Vec3::Zero(), Vec3::Constant(out_.hi * (1 + 1e-9))});
     const double least = 1e-7 * out_.hi;
     while (!parts.empty()) {
       const Part part = parts.top();
-      // The axes are perpendicular but for rounding.
+      // The axes are perpendicular except for rounding.
       out_.lo = std::max(out_.lo, std::min(part.distance * (1 - 1e-12), out_.hi));
       if (out_.lo >= kClose * out_.hi || work_ > kWork) return;
       parts.pop();
@@ -404,7 +404,7 @@ class Search {
     });
   }
 
-  /// The axis along which the part reaches out of the cover that holds most of it; -1 if that
+  /// The axis along which the part extends beyond the cover that holds most of it; -1 if that cover
   /// holds all of it.
   int axis_to_divide(const Part& part) {
     const Vec3 middle = point_at(part.middle);

@@ -32,8 +32,8 @@ struct Penetration {
   Vec3 translation = Vec3::Zero();  // of object a
 };
 
-/// True only if the insides of a, moved by the translation, and of b have no point in common. By
-/// bounds of all roundings: where they are too near to tell, it is false.
+/// True only if the insides of a, moved by the translation, and of b have no point in common. Uses
+/// bounds of all roundings: false if the insides are too near to decide.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
 /// starts: points inside both or near such points, such as common points of their surfaces.

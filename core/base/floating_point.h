@@ -1,6 +1,6 @@
-// The floating-point environment of a thread. The proofs are about rounding to nearest, ties to
-// even, with subnormal numbers kept. A process may start otherwise: a library built with
-// -ffast-math sets flush-to-zero where it is loaded, and a caller may have chosen another rounding.
+// The floating-point environment of a thread. The proofs assume rounding to nearest, ties to even,
+// and that subnormal numbers are kept. A process may start otherwise: loading a library built with
+// -ffast-math sets flush-to-zero, and a caller may have chosen another rounding.
 #pragma once
 
 #include <cfenv>

@@ -45,7 +45,7 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   }
 }
 
-/// As many chunks as cores (or `threads`, where it is not 0), but none below `least` items.
+/// As many chunks as cores (or `threads` if it is not 0), but none with fewer than `least` items.
 inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
   const std::size_t cores =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
@@ -91,7 +91,7 @@ void stop_point();
 /// starts with the floating-point environment of the thread that constructs the object.
 class StoppableCall {
  public:
-  /// Throws std::system_error where no thread can be started; nothing has run then.
+  /// Throws std::system_error if no thread can be started; nothing has run then.
   explicit StoppableCall(std::function<void()> work);
   /// Waits until the work has ended.
   ~StoppableCall();

@@ -47,9 +47,9 @@ enum class Unit : std::uint8_t { none, triangles, pairs };
 /// Why a stage runs, was left out, or how it went. n, m, k, l and `fattener` are those of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,            // the option `full`: nothing is left out
+  full,            // n pairs of objects' boxes overlap
   regions,         // n pairs of objects' boxes overlap
-  meetings,        // n such pairs but for k ignored ones, m objects are tested against themselves
+  meetings,        // n such pairs without k ignored ones; m objects are tested against themselves
   crowded,         // too many such pairs to list; m and k as above
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // k were compared, since a corner moved; empty: all
@@ -80,7 +80,7 @@ enum class Reason : std::uint8_t {
   clusters_small,       // occlusion queries on n triangles or fewer
   clusters_flags,       // flags are read back at once
   sweep,                // boxes of n objects overlap, which have m triangles; k, l below
-  not_cleared,          // pairs that boxes found, but for those that drawing cleared
+  not_cleared,          // pairs that boxes found, without those that drawing cleared
   join_kept,            // boxes of what is kept
   join_patches,         // boxes of what is kept in different patches, and of all in one patch
   join_all,             // boxes of all triangles
@@ -102,8 +102,8 @@ enum class Reason : std::uint8_t {
   limited,        // the option `limit` ended the search, so not all pairs are known
 };
 
-/// Level of a stage that culls: none, objects, single triangles; else clusters of so many
-/// triangles.
+/// Level of a stage that culls: none, objects, single triangles; any other value is the size of
+/// a cluster in triangles.
 inline constexpr std::uint32_t kNoLevel = 0, kObjectLevel = UINT32_MAX,
                                kTriangleLevel = UINT32_MAX - 1;
 

@@ -174,7 +174,7 @@ struct BoxTree {
   BoxOf<Number> box = empty_box<Number>();       // of all leaves
 };
 
-/// The number of blocks of a tree over so many leaves.
+/// The number of blocks of a tree with this many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
 /// Makes the tree over the boxes, and writes its blocks_of_tree() blocks from blocks[at] on. boxes:

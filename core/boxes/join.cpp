@@ -574,7 +574,7 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
   };
   std::uint64_t given = give(some.between, {});
   if (neighbours) return given + give(some.inside, {});
-  // The vertices of one part at a time, to save memory. The blocks of a part are mostly its own.
+  // Keeps the vertices of one part at a time, to save memory. Few blocks occur in two parts.
   constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
   const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
   for (std::size_t from = 0; from < some.inside.size(); from += part) {

@@ -65,8 +65,8 @@ class OrderedPairs {
   double share() const {
     return items_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(items_.size());
   }
-  /// Blocks of sixteen boxes that the items asked about were compared with; the same whatever
-  /// the threads and `most`, but fewer for give() than for next().
+  /// Blocks of sixteen boxes that items were compared with. Does not depend on the threads or on
+  /// `most`, but is smaller for give() than for next().
   std::uint64_t compared() const { return compared_; }
 
  private:
@@ -114,8 +114,8 @@ class BlockTrees {
  public:
   /// Objects with an empty region have no tree.
   BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions);
-  /// Brings the trees up to date where these blocks (ascending, each once) have other boxes than
-  /// before. Precondition: blocks.origin is that of before, and every object has a tree.
+  /// Updates the trees if these blocks (ascending, each once) have other boxes than before.
+  /// Precondition: blocks.origin is unchanged, and every object has a tree.
   void update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed);
 
   /// Its leaves are the blocks of the object, counted from 0.

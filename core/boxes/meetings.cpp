@@ -157,10 +157,10 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
-// Looks for the pairs of blocks of each part, and gives a meeting with more than most_pairs() up,
-// or everything if there are more of the whole scene. ObjectOverlaps that are given up count as one
-// pair more than they may have, so that the answer does not depend on threads. find(meeting, part,
-// most): appends pairs to the part, as pair_blocks().
+// Finds the pairs of blocks of each part. Gives up a meeting with more than most_pairs(), or all
+// meetings if the whole scene has more. A meeting that is given up counts as one pair more than it
+// may have, so that the answer does not depend on threads. find(meeting, part, most): appends
+// pairs to the part, as pair_blocks().
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {

@@ -66,7 +66,7 @@ struct BlockDecision {
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
-/// As above, where the blocks and meetings are known. Null: the decision depends on the pairs of
+/// As above, if the blocks and meetings are known. Null: the decision depends on the pairs of
 /// blocks.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);

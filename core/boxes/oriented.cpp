@@ -195,8 +195,8 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
 
 namespace {
 
-// Margins in units of the distance of the farthest corner from the origin: what floats can be off
-// where two oriented boxes are compared, and two triangles (docs/reliability.md, "Oriented boxes").
+// Margins in units of the distance of the farthest corner from the origin: bounds of the rounding
+// when two oriented boxes, or two triangles, are compared (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
 // Sums over points: how many, their coordinates, and the products of two of these.
@@ -399,7 +399,7 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   for (const Box& box : blocks.objects) {
     if (!box.is_empty()) all.add(box);
   }
-  // The middle, rounded: where doubles are as wide as the scene, it may be a corner of the box.
+  // The middle, rounded. In a scene as small as the distance of doubles, it may be a corner.
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());

@@ -22,7 +22,7 @@ struct BoxesSettings {
   double clearance = 0;    // world units, finite, >= 0: pairs at this distance or less count too
   bool full = false;       // leave nothing out: the boxes of all triangles are compared
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
-  bool lists = false;      // pairs of blocks are listed even where find_boxes() has a `take`
+  bool lists = false;      // pairs of blocks are listed even if find_boxes() has a `take`
   /// Objects that are not tested against each other, as in_order() gives them. Boxes compare none
   /// of their triangles.
   std::vector<ObjectPair> ignored = {};

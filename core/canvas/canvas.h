@@ -156,9 +156,9 @@ class Canvas {
   /// (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
   /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
-  /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
-  /// Among fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas'
-  /// tests and for pictures.
+  /// give each pixel of the window, NaN if it has no fragment; height rows of width values. Among
+  /// fragments whose mapped depths are equal, any may be given. Proxies only. For the tests of the
+  /// lemmas and for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }

@@ -23,7 +23,7 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   return radius;
 }
 
-// The owner of each triangle: as given, its object, or itself where its object is tested against
+// The owner of each triangle: the given one, its object, or itself if its object is tested against
 // itself.
 std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settings) {
   if (!settings.owners.empty()) return settings.owners;
@@ -60,7 +60,7 @@ bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
 
-// Objects that take part, where they are too few to be asked as a whole; else 0.
+// The number of objects that take part, if they are too few to be asked as a whole; else 0.
 std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
                               const CullSettings& settings) {
   if (settings.least_objects == 0 || settings.objects_alone || !owned_by_objects(scene, settings))
@@ -353,7 +353,7 @@ class Culling {
 
   // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // Versions count where bits join from view to view and triangles are asked one by one.
+  // Versions are compared if bits join from view to view and triangles are asked one by one.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -441,7 +441,7 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  CullState start_;                   // where all views have to clear: as the round began,
+  CullState start_;                   // if all views have to clear: as the round began,
   std::vector<std::uint8_t> agreed_;  // and the bits that every visit since has set
   bool done_ = false;                 // few enough triangles are left
   bool visited_ = false;              // a view was visited

@@ -144,9 +144,9 @@ CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& 
 CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
                    const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
 
-/// The stages that cull() will go through, in order, before anything is drawn. Stages whose running
-/// depends on pixels are marked so, with the rule that will decide; rounds after the first are one
-/// stage. settings.bits are not looked at.
+/// The stages that cull() will go through, in order, before anything is drawn. Stages that run
+/// depending on pixels are marked so, with the rule that will decide; rounds after the first are
+/// one stage. settings.bits are ignored.
 std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings);
 

@@ -22,8 +22,8 @@ namespace farcull {
 /// the next row, which may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
-/// The pixels of the window where an element may have a fragment: [x0, x1) x [y0, y1) from the
-/// window's lower left corner; empty where x0 >= x1 or y0 >= y1.
+/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the
+/// window's lower left corner; empty if x0 >= x1 or y0 >= y1.
 struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };

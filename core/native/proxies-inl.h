@@ -140,8 +140,8 @@ inline bool take_everywhere(const NativeJob& job, Verb verb) {
   return seen;
 }
 
-/// Calls visit(element, verb) -> whether it is seen, for the draws of a job in order; a slot that
-/// was seen is asked no more.
+/// Calls visit(element, verb), which returns whether it is seen, for the draws of a job in order. A
+/// slot that was seen is not asked again.
 template <class Visit>
 HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
@@ -262,7 +262,7 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
   });
 }
 
-/// Asks the kernel about single lines.
+/// Calls the kernel for single lines.
 template <class Kernel>
 HWY_INLINE void follow_lines(const NativeLines& lines) {
   const Solid& s = *lines.solid;

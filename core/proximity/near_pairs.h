@@ -48,13 +48,13 @@ struct NearPairs {
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite if
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
-  /// All pairs of their triangles at the least distance are among these, where that distance is at
-  /// most the limit; the first of these pairs is enough where triangles meet, and where the trees
-  /// settle ties. Sorted, each once.
+  /// All pairs of their triangles at the least distance are among these, if that distance is at
+  /// most the limit. If triangles meet, or if the trees settle ties, the first of these pairs is
+  /// enough. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 
-/// How many boxes and pairs were looked at: how well culling works.
+/// The number of boxes and pairs that were examined; it shows how well culling works.
 struct ProximityCounts {
   std::uint64_t box_pairs = 0;       // bounds of boxes that were compared with the upper bound
   std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded
@@ -91,15 +91,15 @@ class ProximityTrees {
   /// `within` need not be found. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// As above, but of others that are equally far only those with the lowest numbers need be found.
-  /// hints: in any order; of hints for the same two objects the first one counts. Where hints name
+  /// As above, but of others at the same distance only those with the lowest numbers need be found.
+  /// hints: in any order; of hints for the same two objects the first one counts. If hints name
   /// k others of an object, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
   /// All pairs of objects at most `within` apart, each object marked `self` with itself, and
-  /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error where
+  /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error if
   /// there are more than `most` pairs.
   std::vector<ObjectPair> objects_within(double within, std::size_t most) const;
 

@@ -186,8 +186,8 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
   return out;
 }
 
-// The others that may be among the k nearest of an object. crowd: null where the object
-// searches with one other after the other.
+// The others that may be among the k nearest of an object. crowd: null if the object searches with
+// one other after the other.
 // hints: those that name the object, sorted. all: also others that are as near as the k-th and have
 // higher numbers.
 std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,

@@ -255,8 +255,8 @@ struct Others {
 /// A search that has begun.
 struct Search {
   ObjectPair objects;
-  Others* others = nullptr;  // of objects.a; then objects.b is the one of its trees
-  double limit = 0;          // scaled: pairs farther apart are not looked for
+  Others* others = nullptr;  // of objects.a; then objects.b is the object of these trees
+  double limit = 0;          // scaled: pairs farther apart are not searched for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
   /// The first pair so far that certainly meets. Pairs after it are not the answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
@@ -301,8 +301,8 @@ Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit,
 /// Continues until no pair of nodes is open, or until `most` pairs of leaves were examined.
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
 
-/// Pairs of leaves that a search looks at in one go. A search that is not done then is long, and is
-/// divided.
+/// Pairs of leaves that a search examines before it pauses. A search that is not finished by then
+/// is long, and is divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
 /// Keeps only the nearest of the kept pairs, if the trees have exact arithmetic. Pairs after it

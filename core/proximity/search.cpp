@@ -45,7 +45,7 @@ class Searcher {
   void begin(const TrianglePair* hint) {
     search_.open.push_back({0, 0, 0, static_cast<std::uint8_t>(a_.tree().levels),
                             static_cast<std::uint8_t>(b_.tree().levels)});
-    probing_ = true;  // the search looks at these pairs again later, so they are not kept now
+    probing_ = true;  // the search examines these pairs again later, so they are not kept now
     if (hint != nullptr && counts(hint->a, hint->b)) {
       add_hint(*hint);
       flush();
@@ -340,7 +340,7 @@ class Searcher {
     return out;
   }
 
-  // The places at which the triangles of a leaf end along the direction.
+  // The extents of the triangles of a leaf along the direction.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
     const Numbers n;
     const Vec3& d = search_.direction;

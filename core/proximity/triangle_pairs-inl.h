@@ -225,7 +225,7 @@ class Proof {
   Point most_;
 };
 
-/// The sign of a determinant where it is certain.
+/// The sign of a determinant if it is certain.
 struct Sign {
   Mask positive, negative;
 };

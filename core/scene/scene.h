@@ -161,8 +161,8 @@ struct FrameChange {
   std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
 };
 
-/// Which corners moved between two frames of the same triangles and objects. Whoever keeps
-/// something of a frame keeps its number too, and uses what it kept only in the frame that follows.
+/// Which corners moved between two frames of the same triangles and objects. A class that keeps
+/// results of a frame also keeps its number, and uses the results only in the next frame.
 class MovedCorners {
  public:
   /// Begins the next frame. change: what is new in it, if the caller knows; null: the scene is
@@ -176,8 +176,8 @@ class MovedCorners {
   void notify(bool worth_while);
   /// Frames begun, the present one included.
   std::uint64_t frame() const { return frame_; }
-  /// Whether this is the frame after the given one and has the same triangles and objects, so that
-  /// the others may be asked what moved since.
+  /// True if this is the frame after the given one and has the same triangles and objects, so that
+  /// the functions below say what moved since.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
   /// Whether a triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }

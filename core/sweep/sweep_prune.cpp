@@ -306,7 +306,7 @@ void SweepPrune::renew_order(std::size_t triangles) {
 void SweepPrune::fill_columns(std::span<const Box> boxes) {
   constexpr std::uint64_t kEntries = 4;
   const auto [sweep, u, v] = axes_;
-  // Never decreasing in x, so where two boxes overlap, the larger lower end is in a column of both.
+  // Never decreases in x, so if two boxes overlap, the larger lower end is in a column of both.
   const auto column = [this](double x, int k) {
     const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
     const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));

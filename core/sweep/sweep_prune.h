@@ -29,8 +29,8 @@ class BoxSweep {
  public:
   /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,
   /// each once; valid until the next call. Empty boxes overlap nothing. Takes O(n + exchanges of
-  /// ends + pairs), or where there are too many exchanges, or other boxes are empty than in the
-  /// last call, the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
+  /// ends + pairs). If there are too many exchanges, or other boxes are empty than in the last
+  /// call, takes the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
   const std::vector<TrianglePair>& update(std::span<const Box> boxes);
 
   /// In the last call: how often two neighbours in a list changed places.

@@ -17,8 +17,8 @@ struct Regions {
                                          // object: all that can take part
 };
 
-/// Further views and finer offsets are left out where no more triangles than this are kept: the
-/// exact tests of so few take less time than the upload and the readbacks of one view.
+/// Further views and finer offsets are left out if at most this many triangles are kept: the exact
+/// tests of these take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
 /// Below this many objects the level that asks each as a whole is left out: it draws everything
 /// twice, and of few objects that overlap one seldom hides all of another.

@@ -70,7 +70,7 @@ struct Window {
 /// A point in pixel space; each coordinate is within `error` px of the exact image under map and
 /// origin.
 struct PixelPoint {
-  Vec3 p;        // may be non-finite where the conversion overflowed; then error is infinite
+  Vec3 p;        // may be non-finite if the conversion overflowed; then error is infinite
   double error;  // px
 };
 PixelPoint to_pixel(const Window& window, const Vec3& x);

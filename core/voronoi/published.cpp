@@ -1,5 +1,5 @@
-// The published form: each cell names its two nearest objects. A block is left out where every two
-// objects that its cells may name have been named by others.
+// The published form: each cell names its two nearest objects. A block is left out if every two
+// objects that its cells may name have already been named by other cells.
 #include <algorithm>
 #include <cmath>
 

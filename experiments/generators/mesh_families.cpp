@@ -45,7 +45,7 @@ Objects cloth(RandomDraws& draws, double gap, int cells) {
   })};
 }
 
-/// A sheet folded flat: every layer is exactly in the plane z = 0, a little aside of the others.
+/// A sheet folded flat: every layer is exactly in the plane z = 0, slightly beside the others.
 Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,

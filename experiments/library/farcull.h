@@ -42,7 +42,7 @@ enum class Contacts {
 /// and throws the same exception. The work then runs in another thread.
 using MayGoOn = std::function<bool(const std::string& step)>;
 
-/// The error of a call that MayGoOn ended.
+/// The error of a call that MayGoOn cancelled.
 class Cancelled : public Error {
  public:
   Cancelled();

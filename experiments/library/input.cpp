@@ -153,8 +153,8 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-// Each object has a triangle at least. So a label for each triangle, as in 0, 0, 1, 1, can never be
-// taken for the first triangles of objects, most of which would have no triangles then.
+// Each object must have a triangle. So a label for each triangle, as in 0, 0, 1, 1, cannot be
+// mistaken for the first triangles of objects: most of these would have no triangles.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
   for (std::size_t o = 0; o < starts.size(); ++o) {
     const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];

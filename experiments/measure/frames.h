@@ -28,7 +28,7 @@ struct FramesQuestion {
   RunOptions options;
   FrameRange range;
   bool self = false;
-  bool strict = false;       // farcull verify: ask the guarantee of every method
+  bool strict = false;       // farcull verify: require the guarantee of every method
   bool pairs = false;        // write the CSV of pairs
   PairColumns columns = {};  // of the CSV, besides the usual ones
   bool certificates = false;
@@ -53,7 +53,7 @@ struct FrameReport {
   std::string rows;                       // for people; those of the first frame have a heading
   std::string pairs_csv;    // as pairs_rows(), after a column `frame`; the first with the header
   long number = 0;          // of the frame
-  std::string certificate;  // its text, where certificates are wanted
+  std::string certificate;  // its text, if certificates are wanted
 };
 using FrameSink = std::function<void(const FrameReport&)>;
 
@@ -80,7 +80,7 @@ struct FramesResult {
   std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
   Accounting sum;               // of all frames, without examples; 0 without an accounting
-  NothingToTest nothing;        // why no frame has a pair to test; empty where one has
+  NothingToTest nothing;        // why no frame has a pair to test; empty if one has
 };
 
 /// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and

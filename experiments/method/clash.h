@@ -38,7 +38,7 @@ struct ClashOptions {
   std::vector<ObjectPair> ignored = {};  // as in_order() gives them: they are examined, but are
                                          // listed apart
   bool depth = false;    // bounds of the depth of clashes; they take longer than all
-                         // else where parts have many triangles
+                         // else for parts with many triangles
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 

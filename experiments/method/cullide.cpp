@@ -158,7 +158,7 @@ Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool fu
   return stage;
 }
 
-// Triangles that drawing culled are kept all the same where a pair inside their patch is.
+// Keeps triangles that drawing culled, if a pair inside their patch needs them.
 void add_members(const Scene& scene, Candidates& out) {
   const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
   std::vector<std::uint32_t> all;
@@ -242,7 +242,7 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   work.self = tests_self_alone(options.method);
   const bool objects = options.broad_phase == BroadPhase::objects;
   if (objects || !compare_boxes(scene, threads, plan, work)) {
-    plan.options.broad_phase = BroadPhase::objects;  // also where those of triangles decide little
+    plan.options.broad_phase = BroadPhase::objects;  // also if boxes of triangles would cull little
     find_places(scene, plan, work);
   }
   if (options.objects_alone && work.patches.cut) {

@@ -171,8 +171,8 @@ constexpr std::array kDriverVariables = {
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
-// Mesa takes each option of driconf also from the variable of its name, in lower case. Other
-// variables in lower case are rare, but for those of proxies.
+// Mesa also reads each driconf option from the environment variable of its name, in lower case.
+// Other variables in lower case are rare, except those of proxies.
 bool may_be_driconf(const std::string& variable) {
   const std::string name = variable.substr(0, variable.find('='));
   return std::none_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) &&

@@ -35,7 +35,7 @@ struct KernelProbeOptions {
   std::uint64_t seed = 1;
   bool brief = false;        // about a third of the samples
   bool bare = false;         // kernels that widen nothing
-  bool late_stores = false;  // another solid is stored than is asked about
+  bool late_stores = false;  // another solid is stored than asked
 };
 
 /// Probes solid_interval of both offsets. All functions here make the context current while they
@@ -63,7 +63,7 @@ struct DeviceVerdict {
   std::size_t probes = 0;           // how many ran
   double ms = 0;                    // time of the probes
   bool remembered = false;          // read from the file; no probe ran now
-  std::string file;                 // where the verdict is kept; empty: nowhere
+  std::string file;                 // file of the verdict; empty: it is not stored
   std::string note;                 // why the file could not be written
 };
 

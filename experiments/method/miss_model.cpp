@@ -395,8 +395,8 @@ class Equations {
 
 }  // namespace
 
-// The model is off by a factor of 1.2 in what is missed; where nearly all is missed, by one of 1.5
-// in what is found.
+// The number of missed pairs is off by a factor of up to 1.2; if nearly all are missed, the number
+// of found ones by up to 1.5.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -482,7 +482,7 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
     out.missed += missed;
     variance += missed * (1 - missed);
   }
-  // Pairs of one triangle are mostly missed together.
+  // Pairs with a common triangle are mostly missed together.
   out.deviation = std::sqrt(2 * variance);
   return out;
 }

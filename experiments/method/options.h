@@ -138,8 +138,8 @@ int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
-/// Whether the method promises to miss nothing: boxes and i-collide, and far at the budget
-/// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
+/// True if the method guarantees to miss nothing: boxes and i-collide, and far at the budget radius
+/// or more with fragment depth. For a run, the device must keep its assumptions as well.
 bool guaranteed(const RunOptions& options);
 /// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
 /// command line: "--rounds 1 --clear all"; empty if there are none.

@@ -34,7 +34,7 @@ struct RunUse {
   std::function<void(std::vector<TrianglePair>&)> filter = {};
   std::string scene_hash = {};  // scene_hash() of the scene, if the caller knows it
   /// True: the record has only the pairs, their contacts, counts, times and stages. It has no hash
-  /// and no degenerate triangles of the scene, no accounting, no promise, and no triangles of
+  /// and no degenerate triangles of the scene, no accounting, no Promise, and no triangles of
   /// candidates.
   bool answer_only = false;
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
@@ -65,8 +65,8 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 /// pair has to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
-/// Whether the record breaks a guarantee: a pair was missed by a method that promises to miss none.
-/// strict: no method may miss a pair (`farcull verify`). Does not look at the verdict about the
+/// True if the record breaks a guarantee: a method that guarantees to miss no pair missed one.
+/// strict: no method may miss a pair (`farcull verify`). Ignores the verdict about the
 /// device.
 bool broken(const Record& record, bool strict);
 

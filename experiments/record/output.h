@@ -140,7 +140,7 @@ Certificate certificate_of(const Scene& scene, const Record& record,
 
 /// One line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
-/// The plan as JSON (docs/record.md, "Plans"). misses: what the method is predicted to miss.
+/// The plan as JSON (docs/record.md, "Plans"). misses: the predicted misses of the method.
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
                                  const std::optional<MissPrediction>& misses = {});
 

@@ -60,8 +60,8 @@ std::string run_heading(const Scene& scene, const Record& record);
 /// A row for each stage: its time, how many items entered and how many were left, and why.
 std::string stage_table(const std::vector<Stage>& stages);
 
-/// The answer of one run, in lines of at most 80 columns where the words allow it: the pairs, the
-/// accounting, and what was run on what. `verdict`, lines of the caller, stands before the
+/// The answer of one run, in lines of at most 80 columns if the words allow it: the pairs, the
+/// accounting, and what was run on which device. `verdict`: lines of the caller, placed before the
 /// accounting.
 std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict = "");
 /// The lines that run --verbose adds: the views, the radius, and a row for each stage, with what

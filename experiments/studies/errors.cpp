@@ -302,7 +302,7 @@ PointResult measure_stability(const Point& point, MeasurementContext& lab) {
   return out;
 }
 
-constexpr long kOfFar = 10;  // far looks at every tenth frame
+constexpr long kOfFar = 10;  // far tests every tenth frame
 
 std::vector<Point> cloth_grid(const GridChoice& choice) {
   const int triangles = choice.quick ? 200 : 20000;

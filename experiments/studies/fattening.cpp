@@ -202,7 +202,7 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel; those of the others are too small.
+// Generators of triangles whose depth varies inside a pixel; other triangles are too small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};

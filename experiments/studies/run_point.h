@@ -36,7 +36,7 @@ RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
 /// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
 /// and z at kCellsResolution. In half of the cells the triangles meet at a corner of a pixel, so
-/// that sampling loses them where the ball is too small; in the other half they are 3 px apart, so
+/// that sampling loses them if the ball is too small; in the other half they are 3 px apart, so
 /// that there is something to cull. Throws std::logic_error for an unknown family.
 constexpr int kCellsResolution = 512;
 Scene contact_cells(const ContactCells& scene);

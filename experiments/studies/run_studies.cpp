@@ -230,7 +230,7 @@ class Runner {
   // The results of the runs of a point in one round.
   struct Runs {
     At at;
-    std::optional<PointResult> first = {};  // empty: none has come to its end
+    std::optional<PointResult> first = {};  // empty: no run has finished
     std::vector<double> ms = {};
     bool failed = false;
   };
@@ -326,7 +326,7 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // Runs the points of a scene in turn, with all runs of the round; again if the machine was busy.
+  // Runs the points of a scene in turn, all runs of the round, and again if the machine was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -369,7 +369,7 @@ class Runner {
     if (!runs.first) runs.first = std::move(result);
   }
 
-  // A point without times.
+  // Measures a point without times.
   void count_point(Task& task, std::size_t position) {
     const At at{&task, position};
     const Stopwatch watch;

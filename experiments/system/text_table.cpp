@@ -1,5 +1,5 @@
-// Lays out tables, where the width of a column is that of its widest cell. Colours are ANSI escape
-// sequences, which every terminal that is not dumb understands.
+// Lays out tables: the width of a column is that of its widest cell. Colours are ANSI escape
+// sequences, which every terminal except a dumb one understands.
 #include "experiments/system/text_table.h"
 
 #include <unistd.h>

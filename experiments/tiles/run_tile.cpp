@@ -75,7 +75,7 @@ class Loads {
     ++step_[tile_at(cuts_, box.lo[cuts_.axis])];
     --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
-  // Of the fullest tile, and of all tiles together.
+  // The triangles of the fullest tile, and the sum over all tiles.
   std::pair<std::uint64_t, std::uint64_t> most_and_all() const {
     std::pair<std::uint64_t, std::uint64_t> out;
     std::uint64_t now = 0;

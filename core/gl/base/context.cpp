@@ -109,8 +109,8 @@ void require_memory() {
   ::munmap(reserved, bytes);
 }
 
-// Throws Error unless libEGL is there and its client extensions can list and open devices.
-// libepoxy aborts the process where libEGL is missing, so epoxy_has_egl() is asked first.
+// Throws Error unless libEGL exists and its client extensions can list and open devices.
+// libepoxy aborts the process if libEGL is missing, so epoxy_has_egl() is asked first.
 void require_egl() {
   asked_threads();
   require_memory();

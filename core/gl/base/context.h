@@ -12,7 +12,7 @@ struct GlDevice {
   int index = 0;
   std::string kind;        // "software" or "hardware"
   std::string extensions;  // EGL device extensions
-  std::string drm;         // device file, where it has one
+  std::string drm;         // device file, if it has one
   bool usable = false;     // a context of the version that farcull needs could be made
   std::string vendor, renderer, version;  // of that context
   std::string problem;                    // why it is not usable
@@ -36,8 +36,8 @@ struct GlInfo {
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of
-  /// list_devices(). Throws Error where there is no EGL, no such device, or its OpenGL is too old.
-  /// The context that was current in the calling thread is current again afterwards.
+  /// list_devices(). Throws Error if there is no EGL or no such device, or if its OpenGL is too
+  /// old. The context that was current in the calling thread is current again afterwards.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -45,7 +45,7 @@ class GlContext {
 
   const GlInfo& info() const;
 
-  /// Every device, each tried with a context of its own; an empty list where there are none. Throws
+  /// Every device, each tried with a context of its own; an empty list if there are none. Throws
   /// Error without EGL.
   static std::vector<GlDevice> list_devices();
   /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
@@ -62,7 +62,7 @@ class GlContext {
 /// own with its surfaces and its rendering API. Nests. Whatever calls GL holds one.
 class GlCurrent {
  public:
-  /// Throws Error where the context cannot be made current: another thread is using it, or a
+  /// Throws Error if the context cannot be made current: another thread is using it, or a
   /// context of another window-system interface (GLX) is current in this thread.
   explicit GlCurrent(const GlContext& context);
   ~GlCurrent();
@@ -85,9 +85,9 @@ int driver_threads(const std::string& renderer);
 /// The risk of those threads and the remedy, without a full stop; empty if there are none.
 std::string risk_of_threads(const std::string& renderer);
 
-/// Reads GL's error flags and the reset status; throws Error naming `stage` unless both are clean
-/// (assumption A7), or where the driver has left this thread with another floating-point
-/// environment than the proofs are about.
+/// Reads GL's error flags and the reset status. Throws Error naming `stage` unless both are clean
+/// (assumption A7), or if the driver has left this thread with a floating-point environment other
+/// than the one that the proofs assume.
 void check_gl(const std::string& stage);
 
 }  // namespace farcull

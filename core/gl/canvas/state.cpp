@@ -1,4 +1,4 @@
-// Sets the state that a pass draws with. Each value that GL can return is asked for after it was
+// Sets the state that a pass draws with. Each value that GL can return is read back after it was
 // set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
 // flags. Each dispatch and each batch of draws leaves an echo in the report, which is compared with
 // the echo computed here.

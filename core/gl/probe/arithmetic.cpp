@@ -32,7 +32,7 @@ double units(float got, double head, double tail) {
     const bool right = std::signbit(got) == std::signbit(head) && std::abs(got) >= kLargest;
     return right ? 0 : std::numeric_limits<double>::infinity();
   }
-  // The subtraction is exact where got is anywhere near.
+  // The subtraction is exact if got is anywhere near.
   const double error = std::abs((static_cast<double>(got) - head) - tail);
   if (exact < kSmallest) return error <= kSmallest ? 0 : std::numeric_limits<double>::infinity();
   return error / (exact * kUnit);

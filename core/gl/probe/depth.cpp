@@ -295,7 +295,7 @@ ProbeResult area_queries(const std::string& name, const GlContext& context,
     drawables.proxies.push_back(q);
     drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
   };
-  // Stored: a far background, on it pixels so near that what is asked lies behind them.
+  // Stores a far background, and on it pixels so near that the asked solids lie behind them.
   std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
   constexpr double kHalf = 0.5 * kWindow;
   add(box(-kHalf, -kHalf, kHalf, kHalf), 50);

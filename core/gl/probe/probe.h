@@ -76,9 +76,9 @@ inline SolidCase solid_case_at(std::size_t i) {
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
-/// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
-/// programs of the method, in a window this deep (px): 1 if it is seen with flags, with queries and
-/// with queries on 24 bits. Where the two are the same solid and the line hits it, it must be seen.
+/// For each of kSolidCases solids, whether it is seen behind the stored one in its pixel, by the
+/// programs of the method, in a window this deep (px). 1: it is seen with flags, with queries and
+/// with queries on 24 bits. If both are the same solid and the line hits it, it must be seen.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

@@ -262,7 +262,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1), where that is an ulp, so every number is
+// All coordinates are multiples of 2^-53 in [1/2, 1), where the ulp is 2^-53, so every number is
 // exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;

@@ -1,4 +1,4 @@
-// Points that nearly coincide, and the hint that a mesh would be closed if such corners were one.
+// Points that nearly coincide, and the hint that merging such corners would close a mesh.
 #pragma once
 
 #include <array>
