@@ -66,7 +66,7 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
 
 // ---- the predicates ----
 
-/// What the convex hull of three corners is. segment: the corners are collinear, not all equal.
+/// The shape of the hull of three corners. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
 /// The exact shape, by CGAL's collinearity predicate.

@@ -1,4 +1,4 @@
-// Whether two objects of which no triangles cross overlap, or merely touch.
+// Decides whether two objects without crossing triangles overlap, or merely touch.
 //
 // The kinds of contact (verify/contact.h) do not tell. Two boxes side by side with three pairs of
 // faces in common planes overlap, and no two of their triangles cross; and a surface may pass

@@ -475,7 +475,7 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   std::vector<Deep> found;
   for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
     for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5}) {
-      // Along the translation alone a common point of the surfaces may stay on one of them.
+      // Along the translation alone, a common point of the surfaces may stay on one surface.
       const Vec3 p = starts[k] + part * translation + std::abs(part) * (middle - starts[k]);
       if (a.has(p) && b.has(p)) found.push_back(deep(p));
     }

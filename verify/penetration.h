@@ -2,7 +2,7 @@
 // one of them after which their insides have no point in common (Cameron and Culley, Determining
 // the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
 //
-// From above: a translation after which the insides are apart for certain (separates()).
+// From above: a translation after which the insides are certainly apart (separates()).
 //
 // From below: by cores, convex sets inside the objects (verify/convex_core.h). If A is a core of
 // object a and B one of object b, then a and b overlap after each translation inside the polytope

@@ -72,7 +72,7 @@ enum class Reason : std::uint8_t {
   patches_whole,        // n objects, none of more than m triangles: each is one patch
   few_objects,          // n objects take part, fewer than m: one seldom hides all of another
   rounds_given,         // n rounds were asked for
-  all_views,            // a triangle is culled where every view clears it
+  all_views,            // a triangle is culled if every view clears it
   little_culled,        // the round culled n of m triangles, too few for another round
   owners,               // every triangle is an owner by itself
   clusters_given,       // sizes of clusters are given

@@ -357,7 +357,7 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
 }
 
 std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kLeaves = 64;  // that a thread asks about at a time
+  constexpr std::uint32_t kLeaves = 64;  // leaves that a thread takes at a time
   std::atomic<std::uint64_t> compared = 0;
   const std::uint64_t given = give_portions<Part>(
       items_.size(), kLeaves, chunks_for(items_.size(), kLeaves, threads_), take,
@@ -517,7 +517,7 @@ Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPair
   return out;
 }
 
-// By the places of lanes; filled only for the blocks of these pairs.
+// The vertices by the places of lanes, filled only for the blocks of these pairs.
 UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
                                              const Lanes& lanes, std::span<const BlockPair> pairs,
                                              unsigned threads) {

@@ -98,8 +98,8 @@ struct CullSettings {
   /// A further round follows if the last one culled at least one live triangle in this many; 0: if
   /// it changed anything.
   std::uint32_t worth_a_round = 0;
-  /// To start from, per triangle of the scene as CullResult::bits; empty: none. Plain CULLIDE takes
-  /// from them only what is culled.
+  /// The bits at the start, per triangle of the scene as CullResult::bits; empty: none. Plain
+  /// CULLIDE uses only which triangles they cull.
   std::vector<std::uint8_t> bits = {};
   std::function<void(const CullStep&)> watch = {};
 };

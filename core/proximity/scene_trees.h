@@ -228,7 +228,7 @@ struct Others {
   const SceneTrees* all;
   const Scene& scene;
   std::span<const std::uint32_t> owner;  // per triangle
-  std::uint32_t object;                  // the one that asks
+  std::uint32_t object;                  // the one whose nearest others are searched for
   std::size_t k;                         // how many others are asked for
   bool ties;  // also others that are as near as the k-th and have higher numbers
   /// Triangles from here on need no search: k others with lower numbers certainly meet the
@@ -294,8 +294,8 @@ class SearchMemory {
 /// Begins a search. hint: null, or a pair of triangles that may be near.
 Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
                     const TrianglePair* hint, SearchMemory& memory);
-/// Begins a search for the nearest others of an object that has triangles, to which all pairs are
-/// left whose others can be among them.
+/// Begins a search for the nearest others of an object that has triangles. The search keeps all
+/// pairs whose other object can be among these.
 Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
                     SearchMemory& memory);
 /// Continues until no pair of nodes is open, or until `most` pairs of leaves were examined.

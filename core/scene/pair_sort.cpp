@@ -60,8 +60,8 @@ struct Range {
   }
   std::size_t size() const { return first.back(); }
 
-  // Sorts them into `out`, which has room for all, so that only the few partners of each triangle
-  // are left to sort; returns how many differ.
+  // Groups the pairs by their first triangle in `out`, which has room for all, and then sorts the
+  // few partners of each; returns how many pairs differ.
   std::size_t sort(Parts parts, std::span<TrianglePair> out) {
     // From the back: first[a + 1], the end of the partners of a, becomes their start.
     for (const auto& part : parts) {

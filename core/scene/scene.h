@@ -29,7 +29,7 @@ struct Box {
 
 /// True iff the closed boxes share a point (touching counts). Exact: it only compares doubles.
 bool overlap(const Box& a, const Box& b);
-/// The common part of two boxes; empty where they do not overlap.
+/// The common part of two boxes; empty if they do not overlap.
 Box intersection(const Box& a, const Box& b);
 
 /// Two objects as indices, a < b; or one object twice.

@@ -15,8 +15,8 @@
 namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// question: decides candidates as they are found where boxes alone find them, so that memory does
-/// not grow with their number; null: lists them all, but for a method that culls nothing. marks:
+/// question: if boxes alone find candidates, decides them as they are found, so that memory does
+/// not grow with their number; null: lists them all, except for a method that culls nothing. marks:
 /// false leaves out the triangles of candidates that are not listed. Throws Error for any fault of
 /// the device. After any exception the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,

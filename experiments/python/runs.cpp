@@ -117,7 +117,7 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   return out;
 }
 
-// The triangles of a mesh after vertices that are at most so far apart were merged.
+// The triangles of a mesh after vertices that are at most the tolerance apart were merged.
 py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
                                   const py::array_t<std::int64_t>& triangles,
                                   const std::string& tolerance) {

@@ -116,7 +116,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step is judged by the device's result of the step before: no rounding mode is assumed.
+    // Each step is judged by the device's result of the previous step: no rounding mode is assumed.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)

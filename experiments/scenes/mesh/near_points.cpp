@@ -10,7 +10,7 @@
 namespace farcull {
 
 std::uint32_t NearPoints::number(const Vec3& p, std::uint32_t own) {
-  // A tolerance of 0 has no cells: each position is one.
+  // With a tolerance of 0 each position is a cell of its own.
   const Cell centre = cell_of(p);
   const int reach = tolerance_ > 0 ? 1 : 0;
   double best = tolerance_;
