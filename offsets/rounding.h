@@ -1,4 +1,4 @@
-// Rounding of what the offsets fit: from double to float, and the errors of the doubles.
+// Rounds the numbers that offsets fit from double to float, and bounds the errors of the doubles.
 #pragma once
 
 namespace farcull {

@@ -306,8 +306,8 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
     if (node.count == 0) stack.push_back(at + 1), stack.push_back(node.second);
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
-  // Tries points close to the middle of the region's part of a triangle, on either side, at a small
-  // part of its height. In a thin wall the second one is inside.
+  // Tries points close to the middle of the region's part of a triangle, on both sides of it, at
+  // two small heights. The smaller height is for thin walls.
   const Vec3 middle = 0.5 * (region.lo + region.hi);
   const std::vector<HalfSpace> sides = sides_of(region, middle, 0);
   const std::size_t stride = near.size() / 96 + 1;

@@ -138,7 +138,7 @@ class FrameDecider {
                                             const MovedCorners& moved,
                                             const ExactQuestion& question);
 
-  std::optional<std::uint64_t> frame_;  // that the answers are about
+  std::optional<std::uint64_t> frame_;  // frame of the answers
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;

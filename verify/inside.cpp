@@ -241,7 +241,7 @@ Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
   if (out == Surface::open) return out;
   const FloatingPointGuard guard;
   const bool folded = out == Surface::oriented && has_flat_fold(triangles, edges);
-  // Each with its corners in ascending order, and whether that is the other way round.
+  // Each triangle with its corners in ascending order, and whether this reverses its orientation.
   std::vector<std::pair<Places, bool>> sorted;
   sorted.reserve(triangles.size());
   for (Places& p : triangles) {

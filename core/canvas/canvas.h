@@ -90,7 +90,7 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false where some
+  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false if some
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;

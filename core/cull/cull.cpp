@@ -229,7 +229,7 @@ class Culling {
     return false;
   }
 
-  // Whether the visit that comes is left out; records why.
+  // True if the next visit is left out; records why.
   bool leaves_out(std::size_t view) {
     ViewState& place = places_[view];
     view_ = settings_.views[view].name;

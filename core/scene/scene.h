@@ -134,7 +134,7 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: what answers about all objects.
+/// Throws Error if objects of the scene are ignored. who: the caller, which needs all objects.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Tells whether the objects of a pair of triangles are ignored.

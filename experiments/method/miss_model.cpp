@@ -178,7 +178,7 @@ struct Part {
 
 struct ViewOfParts {
   std::vector<Image> images;         // per triangle; without polygons
-  std::vector<std::uint32_t> first;  // per triangle, into parts, and one more
+  std::vector<std::uint32_t> first;  // per triangle its first index into parts; and the end
   std::vector<Part> parts;           // sorted
   double radius = 0;                 // px, of the ball
 };

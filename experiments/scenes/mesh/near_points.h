@@ -28,7 +28,7 @@ struct PositionHash {
   }
 };
 
-/// Numbers for points, of which near ones share one.
+/// Numbers points so that near points share a number.
 class NearPoints {
  public:
   /// tolerance: finite, >= 0.
