@@ -196,7 +196,7 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
     if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
     return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
   };
-  // One of two places that are the same point, as a corner if it is one.
+  // Two places are the same point: returns the one that is a corner, if any.
   const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
   const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {

@@ -60,7 +60,7 @@ class ClosedObject {
   double largest_ = 0;
 };
 
-/// How much smaller a core is than it could be, relative to the size of its region.
+/// A core is made smaller by this much, relative to the size of its region.
 inline constexpr double kCoreInward = 1e-10;
 
 /// Cores of the part of the object in the region; at most `most`. seeds: points near which cores

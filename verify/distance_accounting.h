@@ -66,7 +66,7 @@ struct DistanceAccounting {
                                    // kth neighbour is at distance 0: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;   // by the gaps between their boxes
   std::uint64_t farther_by_planes = 0;  // by two parallel planes between them, far enough apart
-  std::uint64_t neighbours = 0;         // in one object (verify/exact.h); no answers
+  std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); no answers
   std::uint64_t farther_by_exact = 0;   // by the squares of distances, in integers
   std::uint64_t nearer = 0;             // missed
   std::uint64_t earlier = 0;            // the answer is not the first of the nearest pairs
@@ -93,7 +93,7 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
 // ---- what account_distances() has to prove about the pairs of triangles of two objects: derived
 // from question and answers, for distance_accounting.cpp and its tests
 
-/// Which distances: those below a length, or at most the length.
+/// The distances in question: those below a length, or at most the length.
 enum class Bound : std::uint8_t { below, at_most };
 
 /// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,

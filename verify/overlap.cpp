@@ -25,7 +25,7 @@ using rational::Q;
 using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::size_t kMostPlanes = 64;    // that are tried as dividing planes
+constexpr std::size_t kMostPlanes = 64;    // at most this many are tried as dividing planes
 constexpr std::size_t kMostPieces = 2048;  // of a triangle
 // Tests of a piece with a triangle of the objects, about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
@@ -279,7 +279,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // what hangs together with it may be inside as well
+        out = Overlap::unknown;  // the part connected with it may be inside as well
       return out;
     }
     return Overlap::unknown;

@@ -218,7 +218,7 @@ class Polytope {
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    // An edge remains as often as it is passed more in one direction than in the other.
+    // An edge stays as many times as it is passed more often in one direction than in the other.
     std::ranges::sort(edges);
     for (auto at = edges.begin(); at != edges.end();) {
       const auto [from, to] = *at;
@@ -285,7 +285,7 @@ std::array<double, 2> along_ray(const Cover& cover, const Vec3& direction) {
   return {from, to};
 }
 
-/// How far the ray is held from the origin on.
+/// The distance from the origin along the ray up to which the covers hold it.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   std::vector<std::array<double, 2>> parts;
   for (const Cover& cover : covers) parts.push_back(along_ray(cover, direction));
@@ -436,8 +436,8 @@ class Search {
   std::vector<Cover> covers_;
   std::array<Vec3, 3> axes_;
   Penetration& out_;
-  int failures_;     // that are left
-  double room_ = 0;  // by which cores, which are a little too small, and rounding may be off
+  int failures_;     // failures that are still allowed
+  double room_ = 0;  // bound of the error by rounding, and by cores that are a little too small
   double work_ = 0;
 };
 

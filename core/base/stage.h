@@ -24,8 +24,8 @@ enum class StageKind : std::uint8_t {
   view,            // a view as a whole
   fatten,          // the primitives of one view
   cull,            // the passes of one level in one view
-  agreement,       // what every view of a round has cleared
-  further_views,   // those that are left out because few triangles are left
+  agreement,       // the triangles that every view of a round has cleared
+  further_views,   // further views, left out because few triangles are left
   further_rounds,  // rounds after the first
   offset,          // a further fattener
   sweep,           // sweep and prune
@@ -94,10 +94,10 @@ enum class Reason : std::uint8_t {
   not_asked,            // the option `no_verify`
   near_boxes,           // of n pairs of objects; m bounds of boxes were compared
   inside_not_asked,     // the option `inside` is no
-  // In a plan: conditions that pixels will decide.
+  // Only in a plan: conditions that depend on pixels.
   if_more_left,   // if more than n triangles are left (n = 0: any)
-  if_changed,     // if the round before changed something
-  if_culled,      // if the round before culled at least one triangle in n
+  if_changed,     // if the previous round changed something
+  if_culled,      // if the previous round culled at least one triangle in n
   if_candidates,  // if there are candidates
   limited,        // the option `limit` ended the search, so not all pairs are known
 };
@@ -121,7 +121,7 @@ struct Stage {
   std::optional<std::uint64_t> k = {};
   std::uint64_t l = 0;
   double ms = 0;
-  std::uint64_t in = 0, out = 0;  // what enters and what is left
+  std::uint64_t in = 0, out = 0;  // what enters the stage, and what is left after it
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
   std::uint64_t queries = 0;      // slots asked

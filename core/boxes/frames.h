@@ -22,12 +22,12 @@ namespace farcull {
 /// while.
 struct FrameMemory {
   MovedCorners moved;
-  std::optional<std::uint64_t> frame;  // that was planned and found, and blocks decided it
+  std::optional<std::uint64_t> frame;  // the last one that was planned, found and decided by blocks
   double clearance = 0;
   bool neighbours = true;
   std::vector<ObjectPair> ignored;
-  std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
-  bool oriented = false;  // by oriented boxes, so they are of use only while nothing moves
+  std::vector<TrianglePair> pairs;  // candidates from the blocks of the last frame
+  bool oriented = false;  // pairs are from oriented boxes: usable only while nothing moves
   /// Counts of that frame: of BlockMeetings and ObjectOverlaps.
   std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
 

@@ -81,7 +81,7 @@ class OrderedPairs {
     std::vector<std::uint64_t> marks;
   };
   void append(std::uint32_t a, Part& part) const;             // pairs of item a, in order
-  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // those with the leaves behind it
+  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // pairs with later leaves
   void find(std::uint32_t leaf, std::uint32_t least, Part& part) const;
   std::uint32_t first_of_later_owners(std::uint32_t item) const;
   bool is_asked(const TrianglePair& pair) const;  // not ignored, and no neighbours left out
@@ -89,7 +89,7 @@ class OrderedPairs {
   void plant(std::vector<Box> boxes);  // the tree over the boxes of the items
   void drop_apart(std::vector<Box>& boxes);
 
-  const Scene* scene_ = nullptr;        // if neighbours are left out
+  const Scene* scene_ = nullptr;        // not null if neighbours are left out
   std::vector<std::uint32_t> objects_;  // per triangle; likewise
   std::optional<IgnoredObjects> ignored_;
   unsigned threads_;

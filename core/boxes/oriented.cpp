@@ -54,7 +54,7 @@ HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const Oriented
     const auto outside = [&](Vector distance, Vector reach) {
       return hn::Gt(hn::Abs(distance), hn::Add(reach, all(margin)));
     };
-    auto separated = hn::Gt(dx, dx);  // in no lane
+    auto separated = hn::Gt(dx, dx);  // no lane yet
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         turned[i][k] = dot(one.frame[i], at(block.frame[k], 0, from), at(block.frame[k], 1, from),
@@ -199,7 +199,7 @@ namespace {
 // when two oriented boxes, or two triangles, are compared (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
-// Sums over points: how many, their coordinates, and the products of two of these.
+// Sums over points: their number, their coordinates, and the products of two coordinates.
 struct Moments {
   double count = 0;
   Vec3 sum = Vec3::Zero();

@@ -73,7 +73,7 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
 std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                    const BlockPairs& some, double clearance, bool neighbours,
                                    unsigned threads, const TakePairs& take);
-/// Those of all their pairs of blocks, and those that were kept; sorted.
+/// The pairs of triangles in all their pairs of blocks, and the pairs that were kept; sorted.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads);
 

@@ -31,7 +31,7 @@ bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   return false;
 }
 
-// How many pairs of objects a stage of boxes leaves out.
+// The number of pairs of objects that a stage of boxes leaves out.
 std::optional<std::uint64_t> ignored_pairs(const BoxesSettings& settings) {
   if (settings.ignored.empty()) return std::nullopt;
   return settings.ignored.size();

@@ -230,7 +230,7 @@ struct Others {
   std::span<const std::uint32_t> owner;  // per triangle
   std::uint32_t object;                  // the one whose nearest others are searched for
   std::size_t k;                         // how many others are asked for
-  bool ties;  // also others that are as near as the k-th and have higher numbers
+  bool ties;  // whether to keep others as near as the k-th with higher numbers
   /// Triangles from here on need no search: k others with lower numbers certainly meet the
   /// object.
   std::uint32_t end = UINT32_MAX;

@@ -185,7 +185,7 @@ class Searcher {
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
     if (at.a_height != at.b_height) {
-      const bool a = at.a_height > at.b_height;  // the one that is divided
+      const bool a = at.a_height > at.b_height;  // the one to divide
       const WideBoxes<double>& own =
           a ? a_.children(at.a_height, at.a) : b_.children(at.b_height, at.b);
       const OneBox box = a ? b_.box_of(at.b_height, at.b) : a_.box_of(at.a_height, at.a);
@@ -418,7 +418,7 @@ class Searcher {
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};
-        // It leads away from the object that asks.
+        // The direction leads away from the object whose nearest others are searched for.
         if (others_ && !others_->is_own(batch.pairs[best].a)) search_.direction *= -1;
         new_direction();
       }

@@ -51,7 +51,7 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-/// A point of a triangle, by the weights of its corners 1 and 2; corner 0 has the rest.
+/// A point of a triangle, by the weights of corners 1 and 2; corner 0 has the remaining weight.
 struct Weights {
   Number one, two;
 };
@@ -259,7 +259,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // In which sense edge k of a passes edge j of b, and so edge j of b edge k of a.
+      // The sense in which edge k of a passes edge j of b; edge j of b passes edge k of a likewise.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }

@@ -44,7 +44,7 @@ struct View {
   Eigen::Matrix3d rows;
 };
 
-/// The parts of a text between separators, one more than there are of these.
+/// The parts of a text between separators. There is one part more than there are separators.
 std::vector<std::string> split_list(const std::string& text, char separator = ',');
 
 /// "x", "-y", ... or a direction "1:1:0.5" (finite, not zero; scaled to unit length). Throws Error

@@ -51,7 +51,7 @@ constexpr const char* kExamples =
 
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
 
-// Reads the parts. A mesh without triangles becomes a part without triangles, behind the others.
+// Reads the parts. A mesh without triangles becomes a part without triangles, after the others.
 Scene read_parts(SceneArguments files) {
   std::vector<std::string> empty;
   for (;;) {

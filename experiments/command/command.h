@@ -215,7 +215,7 @@ class TerminalProgress {
   bool shown_ = false;
 };
 
-/// Where results go besides the table.
+/// The outputs of a command besides the table.
 struct Outputs {
   Text json = {};
   Text pairs = {};

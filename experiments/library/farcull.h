@@ -129,7 +129,7 @@ struct Report {
     bool ran = false;
     std::string reason;  // why the stage ran or was left out
     double ms = 0;
-    std::uint64_t in = 0, out = 0;  // how many items entered, and how many were left
+    std::uint64_t in = 0, out = 0;  // numbers of items before and after
     std::string unit;               // what the items are: triangles or pairs
   };
 

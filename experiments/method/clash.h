@@ -52,7 +52,7 @@ struct ClashRow {
   std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
   std::optional<SquaredDistance> squared = {};  // of the surfaces, if they are at most the
                                                 // clearance apart and do not meet
-  double distance = 0;                          // its root, rounded once
+  double distance = 0;                          // root of `squared`, rounded once
   Box box = Box::empty();  // of the common points; of the inner object; of two nearest points
   std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};  // a common point, twice; a corner of
                                                                // the inner object, twice; or two

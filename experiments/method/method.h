@@ -47,7 +47,7 @@ struct Traits {
   Method method;
   const char* name;  // the value of --method
   Promises promises = Promises::never;
-  bool draws = false;             // on a canvas, in views at a resolution
+  bool draws = false;             // it draws on a canvas, in views at a resolution
   bool fattens = false;           // fattens what it draws, by an offset and a radius
   bool quick = false;             // keeps visibility bits between passes
   bool culls = true;              // false: tests every pair whose boxes overlap

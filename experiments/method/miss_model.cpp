@@ -100,8 +100,8 @@ struct Image {
   double area = 0;
   Range x, y, depth;
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
-  double slant = 0;    // how many px of depth a ball of 1 px adds to the plane
-  double snapped = 1;  // by how much snapping changes the expected area of a thin image
+  double slant = 0;    // px of depth that a ball of 1 px adds to the plane
+  double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
 // E|w + s N| / w for a standard normal N.
@@ -112,7 +112,7 @@ double snapped_share(double width) {
          std::erf(z / std::numbers::sqrt2);
 }
 
-// The rectangle around a flat polygon along its longest edge: what an oriented box shows of it.
+// The rectangle around a flat polygon along its longest edge. It is the image of an oriented box.
 std::vector<Vec3> rectangle(std::span<const Vec3> points, const Vec3& normal) {
   Vec3 along = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -173,7 +173,7 @@ struct Part {
   std::uint32_t of, by;
   double share;  // of the area of the image
   Range x, y;
-  double strip = 0, width = 0, height = 0;  // where both hide each other: area and sides
+  double strip = 0, width = 0, height = 0;  // region where both hide each other: area and sides
 };
 
 struct ViewOfParts {
@@ -183,7 +183,7 @@ struct ViewOfParts {
   double radius = 0;                 // px, of the ball
 };
 
-// What `back` loses to `front`, if they hide each other also where their depths differ by `near`.
+// Adds the part of `back` that `front` hides, also where their depths differ by up to `near`.
 void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
               double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
   if (back.depth.hi + near < front.depth.lo) return;
@@ -390,7 +390,7 @@ class Equations {
   const CullSettings& settings_;
   const double sharpness_;
   State now_;
-  std::vector<State> before_;  // per view: the state in which it decides
+  std::vector<State> before_;  // per view: the state when it begins to decide
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ class Session {
   /// Whether the context's device keeps the assumptions; probes the device if no verdict is kept.
   /// Does not restore the GL state.
   const DeviceVerdict& verdict();
-  /// Where canvases draw: on the cores of the CPU, or on the GL device of context().
+  /// The device on which canvases draw: the cores of the CPU, or the GL device of context().
   const CanvasDevice& canvas_device();
   /// The canvas for the drawables of this fattener. There is one for each name of a fattener. Only
   /// GL has query modes.

@@ -16,7 +16,7 @@ namespace farcull {
 void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
                    const std::string& where, const std::string& otherwise);
 
-/// The same of a scene: the pairs that it ignores itself count as well.
+/// The same for a scene; the pairs that the scene itself ignores count as well.
 void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
                    const std::string& otherwise);
 

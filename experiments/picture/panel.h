@@ -149,7 +149,7 @@ struct PanelResult {
   std::uint64_t rings = 0;                       // around misses that are too small to see
   bool drew = false;                             // it drew in views at a resolution
   bool broken = false;                           // the method is guaranteed, but missed a pair
-  std::string device;                            // what answered: a renderer, "cpu", or "none"
+  std::string device;                            // device used: a renderer, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px
 };
 

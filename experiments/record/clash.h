@@ -10,7 +10,7 @@
 namespace farcull {
 
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};  // with touch, pairs that touch are listed, too
+  std::vector<ClashVerdict> failing = {};  // also lists pairs that touch if touch is here
   std::string unit = {};                   // of the lengths, such as "mm"; empty: not said
 };
 

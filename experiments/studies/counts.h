@@ -44,7 +44,7 @@ struct FragmentCounts {
 /// The resolution that the size of triangles chose for a RunPoint.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
-  double mean_pixels = 0;        // that a triangle covers at it
+  double mean_pixels = 0;        // mean number of pixels that a triangle covers at it
   FARCULL_FIELDS(resolution, mean_pixels)
 };
 

@@ -24,7 +24,7 @@ using enum Method;
 struct AccuracyScene {
   std::string name;
   bool self = false;   // one object against itself, by S-CULLIDE and boxes
-  bool again = false;  // the same scene as another one, drawn with another seed
+  bool again = false;  // another row has the same scene with another seed
 };
 
 // Scenes of three kinds: smooth surfaces, scans, and randomly drawn scenes, these with several

@@ -86,7 +86,7 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
 
 using Json = nlohmann::ordered_json;
 
-// So that they are measured again.
+// Drops the void rounds, so that they are measured again.
 void drop_void_rounds(JsonObject& times) {
   Json kept = Json::array();
   for (const Json& round : times["rounds"]) {

@@ -212,7 +212,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // which() holds for points off the mesh alone.
+    // The result of which() holds only for points off the mesh.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

@@ -163,7 +163,7 @@ std::string to_string(Verdict verdict);
 struct CheckResult {
   Verdict verdict = Verdict::not_proved;
   std::string reason;                   // empty where proved
-  std::optional<TrianglePair> pair;     // the one that refutes, or whose evidence fails
+  std::optional<TrianglePair> pair;     // the pair that refutes, or whose evidence fails
   Certificate::Claims found;            // counted by the checker, whatever was claimed
   std::vector<TrianglePair> meeting;    // the pairs that meet, sorted; decided by the checker
   std::string list_sha256;              // pair_list_hash() of `meeting`; empty if none was decided

@@ -242,7 +242,7 @@ struct GlCurrent::Before {
     if (context != EGL_NO_CONTEXT) {
       eglBindAPI(api);
       if (eglMakeCurrent(display, draw, read, context)) return;
-      // It was destroyed meanwhile: then nothing is current.
+      // The previous context was destroyed meanwhile, so no context is current.
     }
     if (ours != EGL_NO_DISPLAY || now != EGL_NO_DISPLAY) {
       eglBindAPI(EGL_OPENGL_API);

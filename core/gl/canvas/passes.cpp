@@ -171,7 +171,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
 // Selects the stored elements with these bytes; false: the caller must write them. A scene that
 // does not change has one set of elements for each view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // so three in all
+  constexpr std::size_t kEarlier = 2;                       // so there are three in all
   constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);

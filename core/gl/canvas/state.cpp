@@ -138,7 +138,7 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   gl_wait(stage);
   const std::size_t bits = kHead + echoes_.size();
-  // With this filling, no echo is found if nothing is read.
+  // This filling contains no echo, so if nothing is read, no echo is found.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);

@@ -118,7 +118,7 @@ struct CanvasProgram {
 /// Elements that were sent, so that the same ones are not sent twice.
 struct CanvasElements {
   std::vector<GlStore> chunks;
-  std::vector<std::byte> bytes;  // what was sent to them
+  std::vector<std::byte> bytes;  // the bytes that were sent to them
 };
 
 /// The canvas on the device: its programs, render targets and stores, and the state that a pass
@@ -135,14 +135,14 @@ struct CanvasState {
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
   int target_width = 0, target_height = 0;
-  bool odd = false;                     // which of two pixels the next pass marks
+  bool odd = false;                     // which of pixels 1 and 2 the next pass marks
   CanvasElements current;               // of the last begin()
   std::vector<CanvasElements> earlier;  // of calls before, which may come again
   std::size_t per_chunk = 0;            // elements
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
   std::size_t alignment = 256;  // of a storage buffer range, in bytes
-  GLenum conservative = 0;      // what turns conservative rasterization on; 0: not wanted
+  GLenum conservative = 0;      // GL's name of conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;

@@ -205,7 +205,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_CLAMP);  // what is lifted may leave the range of the scene
+  glEnable(GL_DEPTH_CLAMP);  // lifted triangles may leave the depth range of the scene
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthRange(0, 1);

@@ -22,7 +22,7 @@ struct ProbeResult {
   std::string unit;
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
-  std::string note;  // what was tried and seen besides; the error's text where the probe broke off
+  std::string note;  // details of the probe; or the text of the Error that ended it
   bool broke_off = false;  // an Error ended it: nothing was found out
 };
 

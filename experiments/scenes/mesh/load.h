@@ -31,7 +31,7 @@ struct Mesh {
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded = {};  // faces of the file that are folded (below), ascending
-  std::vector<std::string> notes = {};     // what the reader passed over, a sentence each
+  std::vector<std::string> notes = {};     // things that the reader passed over, a sentence each
 };
 
 /// Triangles with vertices of their own.

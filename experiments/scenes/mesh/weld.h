@@ -9,7 +9,7 @@ namespace farcull {
 
 struct Mesh;
 
-/// How far apart vertices may be that become one.
+/// The largest distance of vertices that are merged.
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // to the diagonal of the mesh's box
