@@ -125,8 +125,8 @@ struct Stage {
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
   std::uint64_t queries = 0;      // slots asked
-  // How many fewer than plain CULLIDE's passes take on the same live triangles. Quick-CULLIDE and
-  // FAR save some.
+  // How many more draws and queries plain CULLIDE's passes would take on the same live triangles.
+  // Only Quick-CULLIDE and FAR save some.
   std::uint64_t draws_saved = 0;
   std::uint64_t queries_saved = 0;
 };

@@ -1,5 +1,5 @@
 // A block's frame comes from the second moments of its corners. Blocks are the leaves of a tree of
-// oriented boxes, which is asked about one block after the other. Only sums, products and
+// oriented boxes, which is searched for one block after the other. Only sums, products and
 // comparisons of floats decide, without fused operations, so every instruction set gives the same
 // pairs.
 #undef HWY_TARGET_INCLUDE

@@ -173,7 +173,7 @@ class Canvas {
   virtual CanvasWork work() const { return {}; }
 };
 
-/// The depth map of a window, the same float expression wherever it stands:
+/// The depth map of a window, everywhere the same float expression:
 ///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
 /// The rest of [0, 1] is for the items at fixed depths: 0 for kEverywhere, (0.75, 1) for a canvas's
 /// control items.

@@ -20,7 +20,7 @@ struct Clusters {
   std::uint64_t n = 0, m = 0;        // numbers of the reason
 };
 
-/// The fixed rule: clusters of 32 triangles where a question costs (occlusion queries) and more
+/// The fixed rule: clusters of 32 triangles if questions are costly (occlusion queries) and more
 /// than 32,768 triangles may take part; none otherwise.
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
 

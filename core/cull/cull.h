@@ -77,8 +77,8 @@ struct CullSettings {
   Fattener fattener;
   RadiusRule radius;
   bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
-  /// Every triangle of an object with Object::self is an owner; find_regions(scene, {.self = true})
-  /// goes with it.
+  /// Every triangle of an object with Object::self is an owner. Use it with regions of
+  /// find_regions(scene, {.self = true}).
   bool self = false;
   /// The owner of each triangle of the scene, if owners are neither objects nor single triangles
   /// (core/cull/patches.h). All triangles of an owner are of one object. There is no object level

@@ -18,8 +18,8 @@
 namespace farcull {
 
 /// Columns and rows of the buffer beyond the window's last: a block begins inside the window, and
-/// reads and writes back all its pixels. The columns keep what a thread writes back in a row out of
-/// the next row, which may be another thread's.
+/// reads and writes back all its pixels. Without the columns it would write to the next row, which
+/// may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
 /// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the

@@ -1,5 +1,5 @@
-// Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all find
-// the same in the same order.
+// Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all give
+// the same results in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
 #include <hwy/foreach_target.h>

@@ -12,8 +12,8 @@ namespace farcull {
 /// The objects of which two triangles collide with each other, ascending.
 std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
 
-/// Lines about these objects that are not closed, and that --weld would close: at which tolerance,
-/// and where; at most three. Empty for objects of more than 4 million triangles together.
+/// Lines about those of these objects that --weld would close: at which tolerance, and where; at
+/// most three. Empty for objects of more than 4 million triangles together.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
 
 /// Lines that say which objects may lie wholly inside closed ones: their boxes do, and the surfaces
