@@ -1,5 +1,5 @@
-// The filters (verify/filter.h) on scalars, with bounds as a type, and the derivations of the
-// bounds.
+// The filters (verify/filter.h) on scalars, with a type for their bounds; and the derivations of
+// these bounds.
 #pragma once
 
 #include <algorithm>

@@ -80,7 +80,7 @@ bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
 
 struct Crossings {
   std::int64_t winding = 0;  // the sum by direction
-  bool odd = false;          // whether their number is
+  bool odd = false;          // true if the number of crossings is odd
 };
 
 /// The crossings of a ray. Empty if one was unclear. If the ray is along the first axis, boxes show

@@ -102,7 +102,7 @@ class StoppableCall {
   void stop();
   /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Throws what it threw: Stopped where it was stopped.
+  /// Waits until the work has ended. Throws its exception; Stopped if it was stopped.
   void finish();
 
  private:

@@ -47,14 +47,14 @@ enum class Unit : std::uint8_t { none, triangles, pairs };
 /// Why a stage runs, was left out, or how it went. n, m, k, l and `fattener` are those of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,            // n pairs of objects' boxes overlap
+  full,            // the option `full`: nothing is left out
   regions,         // n pairs of objects' boxes overlap
   meetings,        // n such pairs without k ignored ones; m objects are tested against themselves
   crowded,         // too many such pairs to list; m and k as above
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // k were compared, since a corner moved; empty: all
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
-  boxes_meet,      // n pairs of triangles are asked about; triangles in none take no part
+  boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (k as above, none tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap
@@ -66,9 +66,9 @@ enum class Reason : std::uint8_t {
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
   passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
-  few_left,             // n triangles are left, at most m are enough
+  few_left,             // n triangles are left, at most m, so no further view is drawn
   few_to_test,          // n triangles are left: m or fewer are cheaper to test
-  patches_cut,          // n triangles are left; m or fewer need no further view
+  patches_cut,          // n patches of at most m triangles
   patches_whole,        // n objects, none of more than m triangles: each is one patch
   few_objects,          // n objects take part, fewer than m: one seldom hides all of another
   rounds_given,         // n rounds were asked for

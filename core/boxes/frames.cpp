@@ -86,7 +86,7 @@ BlockDecision unmoved_decision(const FrameMemory& memory) {
 std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
                                                FrameMemory& memory) {
   constexpr std::size_t kMostGrowth = 2;
-  if (memory.blocks.use_count() > 1)  // somebody has the last frame's plan
+  if (memory.blocks.use_count() > 1)  // another plan still uses these blocks
     memory.blocks = std::make_shared<TriangleBlocks>(*memory.blocks);
   TriangleBlocks& blocks = *memory.blocks;
   std::vector<std::uint8_t> moved(blocks.ranges.size(), 0);

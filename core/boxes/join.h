@@ -102,7 +102,7 @@ class OrderedPairs {
   BoxTree<double> tree_;
   std::uint64_t compared_ = 0;
   std::uint32_t next_ = 0;      // the first item whose pairs have not been given
-  std::uint32_t asked_ = 1024;  // to ask about at a time
+  std::uint32_t asked_ = 1024;  // items to search for at a time
   std::vector<Part> parts_;
 };
 
@@ -161,7 +161,7 @@ struct BlockMeetings {
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
   std::uint64_t overlaps = 0;   // pairs of blocks whose boxes overlap, including pairs in
                                 // which nothing moved; those are not listed
-  std::uint64_t meetings = 0;   // of two objects, or of one with itself, that these decide
+  std::uint64_t meetings = 0;   // that these decide: of two objects, or of one with itself
   std::uint64_t triangles = 0;  // in all blocks of a pair
   bool empty() const { return meetings == 0; }
 };

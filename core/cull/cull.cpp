@@ -336,7 +336,7 @@ class Culling {
     return report;
   }
 
-  // The clusters of a run are fixed, so that fewer open triangles never ask in larger company.
+  // The clusters of a run are fixed, so later clusters never have more open triangles.
   void arrange_clusters() {
     if (own_owners_ || settings_.clusters.sizes.empty()) return;
     state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);

@@ -107,7 +107,7 @@ HWY_INLINE bool already_seen(std::uint8_t* seen, std::uint32_t slot) {
   return std::atomic_ref<std::uint8_t>(seen[slot]).load(std::memory_order_relaxed) != 0;
 }
 
-/// Takes fragments of depth z (px) where `covered`. True: asked, and seen.
+/// Draws the covered fragments of depth z (px). True: they are asked, and one is seen.
 HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, Lane z, float* at,
                                int rows) {
   const Lane old = Lane(load_rows<kLanes>(at, job.stride, rows));
@@ -199,7 +199,7 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws an element in the rows of the job. True: asked, and seen.
+/// Draws an element in the rows of the job. True: it is asked, and seen.
 template <class Kernel>
 HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
@@ -219,7 +219,7 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
   const Plain half_height = 0.5f * static_cast<Plain>(job.height);
   const Lane last_x(static_cast<Plain>(range.x1) - 0.5f - half_width);
   const Lane last_y(static_cast<Plain>(y1) - 0.5f - half_height);
-  // One block; true: asked, and seen.
+  // Draws one block. True: it is asked, and seen.
   const auto draw_block = [&](int x, int y) HWY_ATTR {
     float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
     const Lane cx = Lane(static_cast<Plain>(x) + 0.5f - half_width) + lane_columns();

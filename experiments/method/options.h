@@ -90,7 +90,7 @@ struct Option {
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
   /// The value for records; null: the record has it elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
-  /// Says how to draw: null in the record of a method that draws and found nothing to draw.
+  /// True: the option says how to draw, so it is null in the record of a run that drew nothing.
   bool of_drawing = false;
   std::vector<std::string> words = {};  // words that a shell completes, if not listed by `type`
 };

@@ -40,7 +40,7 @@ class Session {
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
-  /// The number of threads, the number of cores in place of 0.
+  /// The number of threads; if it was given as 0, the number of cores.
   unsigned cpu_threads() const {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }

@@ -41,7 +41,7 @@ struct FragmentCounts {
   FARCULL_FIELDS(elements, covered, fragments)
 };
 
-/// The resolution that the size of triangles chose for a RunPoint.
+/// The resolution that was chosen for a RunPoint by the size of its triangles.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
   double mean_pixels = 0;        // mean number of pixels that a triangle covers at it

@@ -74,7 +74,7 @@ constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {
   std::vector<Study> studies;
-  std::string folder;  // created if it does not exist
+  std::string folder;  // how many differ in device, driver, CPU or CPU features
   GridChoice choice;
   bool resume = false;  // continue if the store already has rows of a study
   Shard shard;

@@ -62,7 +62,7 @@ bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
       if (open != 0) glEndQuery(target);
     }
     drop();
-    // Errors of the deleted objects concern nobody. A lost context may report errors without end.
+    // Ignores errors about the deleted objects. A lost context may report errors without end.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
     return true;

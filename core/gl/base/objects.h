@@ -129,7 +129,7 @@ constexpr int kLongestWait = 600;  // s
 /// waits, and no answer depends on it. A context must be current in every call.
 class GlClock {
  public:
-  /// For `stamps` places.
+  /// A clock with `stamps` places.
   explicit GlClock(std::size_t stamps);
   /// Forgets all places.
   void forget();
