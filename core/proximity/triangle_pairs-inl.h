@@ -259,7 +259,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // The sense in which edge k of a passes edge j of b. Edge j of b passes edge k in the same.
+      // The sense in which edge k of a passes edge j of b; also that in which j passes k.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }

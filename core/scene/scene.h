@@ -134,7 +134,7 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: the work that needs all, for its text.
+/// Throws Error if objects of the scene are ignored. who: name of the work that needs them all.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Tells whether the objects of a pair of triangles are ignored.
@@ -207,7 +207,7 @@ class MovedCorners {
   // Per vertex v the triangles that have it: of_vertex_[first_of_[v]] to of_vertex_[first_of_[v +
   // 1]]. Empty: not made yet.
   std::vector<std::uint32_t> first_of_, of_vertex_;
-  std::vector<std::uint8_t> triangle_moved_;  // empty if no corner moved
+  std::vector<std::uint8_t> triangle_moved_;  // valid only if a corner moved
   std::vector<std::uint32_t> triangles_;      // that moved
 };
 

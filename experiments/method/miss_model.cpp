@@ -390,7 +390,7 @@ class Equations {
   const CullSettings& settings_;
   const double sharpness_;
   State now_;
-  std::vector<State> before_;  // per view: the state when it begins to decide
+  std::vector<State> before_;  // per view: the state in which the view decides
 };
 
 }  // namespace

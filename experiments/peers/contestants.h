@@ -13,7 +13,7 @@ struct KnownContestant {
   std::string name = {};     // as its card says
   std::string program = {};  // farcull_contestant_PROGRAM
   std::string package = {};  // the package that it needs; empty: none
-  std::string answers = {};  // the questions that it can answer, such as "pair mesh"
+  std::string answers = {};  // the questions that the study asks it, such as "pair mesh"
 };
 
 /// The contestants in the order of tables, the same in every build.

@@ -44,7 +44,7 @@ std::vector<std::string> shard_files(const std::string& folder);
 
 struct MergeSummary {
   std::size_t files = 0, studies = 0, rows = 0;
-  std::size_t machines = 0;  // number that differ in device, driver, CPU or its features
+  std::size_t machines = 0;  // how many differ in device, driver, CPU or CPU features
 };
 
 /// Writes the store `out` with the rows of all files; it appears whole or not at all. Throws Error
@@ -74,7 +74,7 @@ constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {
   std::vector<Study> studies;
-  std::string folder;  // how many differ in device, driver, CPU or CPU features
+  std::string folder;  // created if it does not exist
   GridChoice choice;
   bool resume = false;  // continue if the store already has rows of a study
   Shard shard;

@@ -142,7 +142,7 @@ struct CanvasState {
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
   std::size_t alignment = 256;  // of a storage buffer range, in bytes
-  GLenum conservative = 0;      // GL's name of conservative rasterization; 0: not wanted
+  GLenum conservative = 0;      // GL capability for conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
