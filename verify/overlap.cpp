@@ -144,7 +144,7 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
 /// object.
 struct Sides {
   std::array<bool, 2> perhaps{};  // one of the two rules shows it
-  std::array<bool, 2> inside{};   // both do
+  std::array<bool, 2> inside{};   // both rules show it
 };
 
 /// Empty if the ray meets an edge, or if a triangle that is not in the plane has the point.

@@ -13,7 +13,7 @@
 //   it is inside the other object, outside, or on its surface; so one point of it decides. Were
 //   there an overlap, its boundary would have a point on a face, with the overlap on one side of
 //   it. If the face has a contact, one of its pieces shows that. If not, the face is inside the
-//   other object, and so is all that hangs together with it up to the next contact, where a piece
+//   other object, and so is all that is connected with it up to the next contact, where a piece
 //   of a triangle is inside; without any contact one vertex of the part of the object shows it.
 //   Such a piece shows nothing if its own object is on neither side of it, as in a fold; then the
 //   answer is unknown.

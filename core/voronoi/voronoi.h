@@ -188,8 +188,8 @@ struct VoronoiNeighbours {
   VoronoiCounts counts;
 
   // Only of the reliable form; the published one leaves these empty.
-  // Let d be the least distance of an object A from another one. Every pair of triangles, one of
-  // A and one of another object, that are d apart is among these. Sorted, each once.
+  /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
+  /// A and one of another object, that are d apart is among these. Sorted, each once.
   std::vector<TrianglePair> triangles;
   /// For each object an upper bound of d, in world units, rounded up; infinite if it has no
   /// triangle or no other object has one.

@@ -21,7 +21,7 @@ namespace farcull {
 
 /// The relation of two objects, the most serious first.
 /// clash: their surfaces pass through each other, or their insides overlap; also if they touch and
-/// it is not proved that they only touch (ClashRow::proved).
+///   it is not proved that they only touch (ClashRow::proved).
 /// contained: the surfaces do not meet, and all or a part of one object is inside the other.
 /// unknown: as `contained`, if the outer object were closed. It is not, so it has no inside.
 /// touch: they meet, and it is proved that their insides do not.
