@@ -56,8 +56,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The number of cuts at or before the place, or at most `reach` after it, as meets() rounds. With
-// no reach this is the tile in which the place lies.
+// The number of cuts that are at most `reach` after the place, rounded as in meets(). With reach 0
+// this is the tile in which the place lies.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });

@@ -57,9 +57,9 @@ class GlContext {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Makes a context current in this thread for as long as the object lives; then the
-/// context from before is current again: nothing, another GlContext, or a context of the caller's
-/// own with its surfaces and its rendering API. Nests. Whatever calls GL holds one.
+/// Makes a context current in this thread for as long as the object lives. Then the previous
+/// context is current again: none, another GlContext, or a context of the caller with its surfaces
+/// and its rendering API. Objects may be nested. All code that calls GL holds such an object.
 class GlCurrent {
  public:
   /// Throws Error if the context cannot be made current: another thread is using it, or a
