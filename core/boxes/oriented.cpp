@@ -404,7 +404,7 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
   // The corners are at most `reach` from the origin. Below the least of these numbers floats lose
-  // what the margins assume, above the largest they overflow.
+  // more than the margins allow; above the largest they overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;
   if (!(reach >= 0x1p-60 && reach + gap <= 0x1p60)) return nullptr;
   out->margin = static_cast<float>(kBoxMargin * reach + gap);

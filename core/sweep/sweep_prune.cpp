@@ -272,8 +272,8 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   const auto best = static_cast<int>(std::min_element(ratio.begin(), ratio.end()) - ratio.begin());
   const int sweep = ratio[best] * kBetter < ratio[before] ? best : before;
   axes_ = {sweep, (sweep + 1) % 3, (sweep + 2) % 3};
-  // Columns about as wide as four boxes are long, so that most boxes lie in one or two along an
-  // axis; no more of them than twice the boxes.
+  // A column is about as wide as four boxes are long, so that most boxes are in one or two columns
+  // along an axis. There are at most twice as many columns as boxes.
   for (int k = 0; k < 2; ++k) {
     const int axis = axes_[k + 1];
     const double columns = std::clamp(0.25 / ratio[axis], 1.0, std::exp2(kMostBits));

@@ -24,7 +24,7 @@ std::string clean_lines(const std::string& text);
 using TakeWord = std::function<void(std::uint64_t)>;
 
 /// Asks the proved checker as well. Throws Error unless it proves just what this one has proved.
-/// status: of this one. words: gives those of the scene.
+/// status: that of this checker. words: gives the words of the scene.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 

@@ -68,8 +68,8 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// If other programs take more of the processors than this, times are measured again, and in the
-/// end void.
+/// If other programs take more of the processors than this, times are measured again, and at last
+/// marked void.
 constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {

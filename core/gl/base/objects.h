@@ -25,7 +25,7 @@ namespace farcull {
                              const std::string& cause = "a command was lost");
 
 /// Ends open queries, makes the context current while drop() deletes objects, and forgets GL's
-/// errors. False where the context cannot be had: then drop() was not called.
+/// errors. False if the context cannot be made current: then drop() was not called.
 bool gl_forget(const GlContext& context, const std::function<void()>& drop);
 
 template <void (*Delete)(GLuint)>

@@ -50,7 +50,7 @@ struct CanvasPass {
                               // batch begins with {serial, word of the report}
   std::vector<float> own;     // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  std::uint32_t slots = 0;  // the caller's; with marks, one that must not be seen; controls'
+  std::uint32_t slots = 0;  // caller's; then one that must stay unseen (with marks); then controls'
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
   }
