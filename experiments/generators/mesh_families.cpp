@@ -371,7 +371,7 @@ Objects cogs(RandomDraws&, double now, int) {
   return {std::move(cog), std::move(other)};
 }
 
-// Loads.
+// Families with very many pairs that meet.
 
 /// n long thin triangles along x, and n along y. Each of the first crosses each of the others.
 Objects bars(RandomDraws&, double, int n) {

@@ -51,7 +51,7 @@ class Insides {
   std::unique_ptr<OfObject[]> objects_;
 };
 
-/// For each *part* of the object, its triangles that hang together by vertex positions, the first
+/// For each *part* of the object (its triangles connected by common vertex positions), the first
 /// corner of its first triangle.
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object);
 
