@@ -60,10 +60,10 @@ struct DistanceQuestion {
 /// because of this pair, or if the pair should be an answer itself. A pair is *earlier* if it is as
 /// near as the answer about its objects but comes before that answer, so it should be the answer.
 struct DistanceAccounting {
-  std::uint64_t pairs_total = 0;   // by combinatorics
-  std::uint64_t answers = 0;       // pairs that the answers name
-  std::uint64_t objects_meet = 0;  // pairs after an answer of distance 0, or of objects whose
-                                   // kth neighbour is at distance 0: nothing is nearer than 0
+  std::uint64_t pairs_total = 0;        // by combinatorics
+  std::uint64_t answers = 0;            // pairs that the answers name
+  std::uint64_t objects_meet = 0;       // pairs after an answer of distance 0, or of objects whose
+                                        // kth neighbour is at distance 0: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;   // by the gaps between their boxes
   std::uint64_t farther_by_planes = 0;  // by two parallel planes between them, far enough apart
   std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); no answers

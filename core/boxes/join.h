@@ -159,10 +159,10 @@ struct BlockMeetings {
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
   BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
-  std::uint64_t overlaps = 0;   // pairs of blocks whose boxes overlap, including pairs in
-                                // which nothing moved; those are not listed
-  std::uint64_t meetings = 0;   // that these decide: of two objects, or of one with itself
-  std::uint64_t triangles = 0;  // in all blocks of a pair
+  std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap, including pairs in
+                                   // which nothing moved; those are not listed
+  std::uint64_t meetings = 0;      // that these decide: of two objects, or of one with itself
+  std::uint64_t triangles = 0;     // in all blocks of a pair
   bool empty() const { return meetings == 0; }
 };
 

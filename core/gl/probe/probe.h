@@ -22,8 +22,8 @@ struct ProbeResult {
   std::string unit;
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
-  std::string note;  // details of the probe; or the text of the Error that ended it
-  bool broke_off = false;  // an Error ended it: nothing was found out
+  std::string note;           // details of the probe; or the text of the Error that ended it
+  bool broke_off = false;     // an Error ended it: nothing was found out
 };
 
 /// All but the first four are deliberate defects, one for each probe, so that tests can see
