@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = std::tuple_size_v<decltype(Patch::corners)>;
 
-// The points as fit.inl takes them.
+// The points in the form that fit.inl takes.
 struct Points {
   explicit Points(std::span<const Vec3> from) : count(static_cast<int>(from.size())) {
     if (from.empty() || from.size() > kMostPoints) throw std::logic_error("fit: too many points");
@@ -102,8 +102,8 @@ void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, 
       {proxy_rectangle(patch.points(), radius, bounds), obb_of(patch.points(), radius)});
 }
 
-// The twelve triangles of the closed box. Corners are rounded to nearest: this path promises
-// nothing.
+// The twelve triangles of the closed box. Corners are rounded to nearest: this path gives no
+// guarantee.
 void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawables& out) {
   const Solid box = obb_of(patch.points(), radius);
   const auto corner = [&box](int bits) {

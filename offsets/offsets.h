@@ -31,7 +31,7 @@ Fattener minkowski_fattener();
 // corners.
 
 /// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
-/// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off at
+/// `bounds`: along the longest edge if that fits, else aligned with the axes and cut off at
 /// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
 /// the budget's term "input" covers.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,

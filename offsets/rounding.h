@@ -1,18 +1,18 @@
-// Rounding of what the offsets fit: from double to float, and the errors of the doubles.
+// Rounds the numbers that offsets fit from double to float, and bounds the errors of the doubles.
 #pragma once
 
 namespace farcull {
 
-/// The nearest float. Through memory: where GCC 12 packs two conversions double -> float -> double
-/// into a vector it drops them, rounding included, and what is measured against the float then is
-/// not what was stored.
+/// The nearest float. Goes through memory: if GCC 12 packs two conversions double -> float ->
+/// double into a vector, it drops them with their rounding, and a value measured against the float
+/// would not be the stored one.
 inline float nearest(double x) {
   const volatile float f = static_cast<float>(x);
   return f;
 }
 
-// How far doubles err where solids are fitted (offsets/fit.inl). docs/budget.md, "offset", derives
-// the constants; tests/proofs proves them.
+// Bounds of the errors of doubles when solids are fitted (offsets/fit.inl). docs/budget.md,
+// "offset", derives the constants; tests/proofs proves them.
 
 /// Half a unit in the last place of a float, relative to it, and a little more for the doubles that
 /// multiply and add it.
@@ -28,7 +28,7 @@ constexpr double kFitBox = 0x1p-48;
 constexpr double kFitCorner = 0x1p-50;
 /// Error of that difference if squares underflow (px).
 constexpr double kFitUnderflow = 0x1p-500;
-/// Error of the radius that grows by the largest displacement of a corner.
+/// Error of the radius after it grows by the largest displacement of a corner.
 constexpr double kFitRadius = 0x1p-48;
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// A tree of boxes is joined with itself, which meets every pair of triangles that counts exactly
-// once, alone or in a product. The upper levels of the tree divide objects, the lower ones the
+// Joins a tree of boxes with itself. This visits every pair of triangles that counts exactly once,
+// alone or in a product. The upper levels of the tree divide objects, the lower ones the
 // triangles of one object. So two disjoint subtrees hold different objects, or triangles of one
 // object; the latter are joined iff the object is `self`. Two nodes whose boxes are far enough
 // apart settle |a| * |b| pairs at once. Boxes are minima and maxima of the coordinates. One

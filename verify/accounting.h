@@ -43,7 +43,7 @@ struct Accounting {
                                          // differences in double; for D = 0 by comparisons
   std::uint64_t neighbours = 0;          // neighbours whose intersection is only the shared part
   std::uint64_t certified_by_predicates = 0;  // farther than D apart by exact predicates
-  std::uint64_t false_negatives = 0;          // in no other class: missed
+  std::uint64_t false_negatives = 0;          // pairs in no other class: missed
   std::vector<TrianglePair> examples;         // the first missed pairs in sorted order
   double ms = 0;                              // wall clock of the whole accounting
   FARCULL_FIELDS(pairs_total, ignored, pairs_kept, certified_by_boxes, certified_by_predicates,

@@ -1,6 +1,6 @@
-// The method `exact`: pairs of overlapping boxes by a tree, each decided in the thread that finds
-// it. Of the verification only this file takes the join of core; accounting and certificates, which
-// check the answers, find such pairs by trees of their own.
+// The method `exact`: a tree finds pairs of overlapping boxes; the thread that finds a pair decides
+// it. In verify/ only this file uses the join of core. Accounting and certificates, which check the
+// answers, find such pairs by trees of their own.
 #include <algorithm>
 #include <functional>
 #include <mutex>

@@ -85,13 +85,13 @@ struct NearestPair {
 /// pair names a triangle that the scene does not have.
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
-// ---- the two parallel planes that keep two triangles apart, exactly. They show of many other
+// ---- the two parallel planes that keep two triangles apart, exactly. They prove of many other
 // pairs of triangles at once that they are no nearer.
 
 /// Let p and q be closest points of the triangles a and b, and w = q - p. One plane goes through p,
-/// the other one through q, both perpendicular to w. The reach of a triangle is how far it extends
-/// beyond the first plane in the direction of w; the start of a triangle is how far behind the
-/// second plane it begins. Both are in one unit, and negative on the other side of the plane.
+/// the other one through q; both are perpendicular to w. The reach of a triangle is how far it
+/// extends beyond the first plane in the direction of w. The start of a triangle is how far behind
+/// the second plane it begins. Both have the same unit, and are negative on the plane's other side.
 /// If the reach of s is at most the start of t, then w.(y - x) >= w.w for all points x of s and y
 /// of t, so |y - x| >= |w|: s and t are no nearer than a and b. If it is below the start, they are
 /// farther apart.

@@ -77,14 +77,14 @@ constexpr std::array<Feature, 7> kFeatures = {{{FeatureKind::vertex, 0},
                                                {FeatureKind::edge, 2},
                                                {FeatureKind::face, 0}}};
 
-/// An answer not yet rounded.
+/// An answer before it is rounded.
 struct Answer {
   Feature of_a, of_b;
   Found<Integer> found;
 };
 
 /// Bit i is set if d.(x - p) is 0, where x is corner i of t and p a corner of the feature of t.
-/// Returns 8 if the product is above 0 for some corner. back: with -d in place of d.
+/// Returns 8 if the product is above 0 for some corner. back: uses -d instead of d.
 unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
   constexpr unsigned kBeyond = 8;
   const unsigned own = corners_of(feature);
@@ -104,7 +104,7 @@ bool as_near(const Found<Integer>& f, const Found<Integer>& g) {
   return f.num * g.den == g.num * f.den;
 }
 
-/// Finds the first pair of features that has points as near as `least`. The features may have only
+/// Finds the first pair of features that has points as near as `least`. The features may use only
 /// the corners in_a of a and in_b of b. False: there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
                    Answer& answer) {

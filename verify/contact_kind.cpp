@@ -113,9 +113,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to where sign * value >= 0; false if nothing is left. The value is linear, and
-/// each value is scaled by its point's w, so the sum of both points, each times the size of the
-/// other's value, has the value 0.
+/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. The value is
+/// linear, and each value is scaled by its point's w. So the sum of both points, each times the
+/// size of the other's value, has the value 0.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;

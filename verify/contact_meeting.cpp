@@ -87,9 +87,9 @@ class Signs {
   const Corners& b_;
 };
 
-/// The meeting of two triangles in one plane. Each corner of what they share is a corner of one of
-/// them, or lies inside an edge of each; in the second case they share a polygon. If they share a
-/// segment, it has only its two ends of such corners.
+/// The meeting of two triangles in one plane. Each corner of their common part is a corner of one
+/// triangle, or lies inside an edge of each; in the second case the common part is a polygon. If it
+/// is a segment, its two ends are the only such corners.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
   int turns[2][3][3];  // of edge i of one triangle and corner k of the other
@@ -196,7 +196,7 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
     if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
     return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
   };
-  // One of two places that are the same point, as a corner if it is one.
+  // Two places are the same point: returns the one that is a corner, if any.
   const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
   const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {

@@ -285,7 +285,7 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
                                         std::span<const Vec3> seeds, std::size_t most) {
   if (!solid.convex().empty()) return {solid.convex()};
   constexpr std::array kPulls = {0.0, 0.05, 0.15, 0.3};
-  constexpr double kWork = 1e6;  // triangles that are looked at
+  constexpr double kWork = 1e6;  // triangles that are examined
   std::vector<Corners> near;
   std::vector<std::uint32_t> stack = {0};
   const auto meets_region = [&](const separation::Bounds& box) {
@@ -306,8 +306,8 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
     if (node.count == 0) stack.push_back(at + 1), stack.push_back(node.second);
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
-  // Close to the middle of what the region has of a triangle, on either side, by a small part of
-  // its height. That of a thin wall is the second one.
+  // Tries points close to the middle of the region's part of a triangle, on both sides of it, at
+  // two small heights. The smaller height is for thin walls.
   const Vec3 middle = 0.5 * (region.lo + region.hi);
   const std::vector<HalfSpace> sides = sides_of(region, middle, 0);
   const std::size_t stride = near.size() / 96 + 1;

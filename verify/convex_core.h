@@ -43,7 +43,7 @@ class ClosedObject {
   const std::vector<Vec3>& convex() const { return convex_; }
   bool has(const Vec3& point) const;      // strictly inside, exactly
   Vec3 nearest(const Vec3& point) const;  // point of the surface, in plain doubles
-  /// Outside for certain, of a point off the surface.
+  /// True if a point off the surface is certainly outside.
   bool has_not(const Vec3& point) const;
 
  private:
@@ -60,7 +60,7 @@ class ClosedObject {
   double largest_ = 0;
 };
 
-/// How much smaller a core is than it could be, relative to the size of its region.
+/// A core is made smaller by this much, relative to the size of its region.
 inline constexpr double kCoreInward = 1e-10;
 
 /// Cores of the part of the object in the region; at most `most`. seeds: points near which cores

@@ -148,7 +148,7 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// The corners of pair.b are prefetched so many pairs ahead. Those of pair.a are mostly in the
+// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
 // cache, since successive pairs mostly have the same a.
 constexpr std::size_t kAhead = 8;
 // Pairs of a block: enough work to pay for the shared counter, little enough to balance threads.

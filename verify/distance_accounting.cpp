@@ -27,10 +27,10 @@
 
 namespace farcull {
 
-// What answers claim. `objects`: an answer claims that no pair of these objects is nearer; a
+// The claims of answers. `objects`: an answer claims that no pair of these objects is nearer; a
 // missing answer claims that no pair is within the distance asked for. `nearest`: if an answer is
 // missing, neither object is among the k nearest of the other. So no pair of their triangles is
-// nearer than the kth neighbour of either object, nor as near if the other object comes before that
+// nearer than the kth neighbour of either object, or as near if the other object comes before that
 // neighbour. `all`: every pair within the distance is an answer.
 
 namespace {
@@ -414,7 +414,7 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
   DistanceAccounting out;
   out.wrong = claims.wrong(question.threads);
   BoundsTree trees(scene);
-  std::vector<std::uint32_t> roots;  // by object; of an object without triangles none is asked for
+  std::vector<std::uint32_t> roots;  // by object; objects without triangles have none
   for (const Object& object : scene.objects) {
     roots.push_back(static_cast<std::uint32_t>(trees.nodes.size()));
     if (object.triangle_count > 0) trees.add(object.first_triangle, object.triangle_count);

@@ -47,7 +47,7 @@ struct DistanceQuestion {
   enum class Kind : std::uint8_t { objects, nearest, all };
   Kind kind = Kind::objects;
   std::size_t k = 1;
-  /// Nothing that is farther apart is asked for. World units, >= 0; finite with `all`.
+  /// Pairs that are farther apart are not asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
   bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
@@ -60,13 +60,13 @@ struct DistanceQuestion {
 /// because of this pair, or if the pair should be an answer itself. A pair is *earlier* if it is as
 /// near as the answer about its objects but comes before that answer, so it should be the answer.
 struct DistanceAccounting {
-  std::uint64_t pairs_total = 0;   // by combinatorics
-  std::uint64_t answers = 0;       // pairs that the answers name
-  std::uint64_t objects_meet = 0;  // come after an answer of distance 0, or are of objects whose
-                                   // kth neighbour is at distance 0: nothing is nearer than 0
+  std::uint64_t pairs_total = 0;        // by combinatorics
+  std::uint64_t answers = 0;            // pairs that the answers name
+  std::uint64_t objects_meet = 0;       // pairs after an answer of distance 0, or of objects whose
+                                        // kth neighbour is at distance 0: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;   // by the gaps between their boxes
   std::uint64_t farther_by_planes = 0;  // by two parallel planes between them, far enough apart
-  std::uint64_t neighbours = 0;         // in one object (verify/exact.h); no answers
+  std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); no answers
   std::uint64_t farther_by_exact = 0;   // by the squares of distances, in integers
   std::uint64_t nearer = 0;             // missed
   std::uint64_t earlier = 0;            // the answer is not the first of the nearest pairs
@@ -93,7 +93,7 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
 // ---- what account_distances() has to prove about the pairs of triangles of two objects: derived
 // from question and answers, for distance_accounting.cpp and its tests
 
-/// Which distances: those below a length, or at most the length.
+/// The distances in question: those below a length, or at most the length.
 enum class Bound : std::uint8_t { below, at_most };
 
 /// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,
@@ -116,7 +116,7 @@ class DistanceClaims {
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
-  /// Whether objects a <= b are asked about.
+  /// Whether the question is about the objects a <= b.
   bool asked(std::uint32_t a, std::uint32_t b) const;
   /// How many answers are wrong, in themselves or because of other answers (not one of the k
   /// nearest).

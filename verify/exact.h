@@ -66,7 +66,7 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
 
 // ---- the predicates ----
 
-/// What the convex hull of three corners is. segment: the corners are collinear, not all equal.
+/// The shape of the hull of three corners. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
 /// The exact shape, by CGAL's collinearity predicate.
@@ -106,7 +106,7 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
 
 struct FirstCollisions {
   Collisions collisions;      // counts the candidates that were decided
-  std::uint64_t decided = 0;  // so many candidates, from the first one on, were decided
+  std::uint64_t decided = 0;  // how many candidates, from the first one on, were decided
   bool complete = true;       // all were decided, and not more than the limit collide
 };
 
@@ -124,9 +124,9 @@ bool keep_first(std::uint64_t limit, Collisions& collisions);
 /// corners of its triangles, so if neither triangle moved, the answer of the last frame holds.
 class FrameDecider {
  public:
-  /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses the
-  /// answers of the last call if that call ended normally and was about the frame before, and the
-  /// question is the same (threads may differ). Precondition: moved.update(scene) began this frame.
+  /// As farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses the
+  /// answers of the last call if it ended normally, was for the previous frame and asked the same
+  /// question (threads may differ). Precondition: moved.update(scene) began this frame.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                     const MovedCorners& moved, const ExactQuestion& question = {});
   /// Pairs that the last call decided anew.
@@ -138,7 +138,7 @@ class FrameDecider {
                                             const MovedCorners& moved,
                                             const ExactQuestion& question);
 
-  std::optional<std::uint64_t> frame_;  // that the answers are about
+  std::optional<std::uint64_t> frame_;  // frame of the answers
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;

@@ -27,7 +27,7 @@ struct Pixel {
 /// the image of the point: none to four.
 std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height);
 
-/// entry <= z(point) <= exit, exactly; false where a sample is NaN.
+/// entry <= z(point) <= exit, exactly; false if a sample is NaN.
 bool bounded(const ExactPoint& point, float entry, float exit);
 
 /// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly

@@ -92,7 +92,7 @@ using Point = PointOf<kBatch>;
 #include "verify/filter_planes.inl"
 #undef FAR_FILTER
 
-// The corners of pair.b are prefetched so many pairs ahead. Those of pair.a are mostly in the
+// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
 // cache, since successive pairs mostly have the same a.
 constexpr std::size_t kAhead = 8;
 

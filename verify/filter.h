@@ -33,8 +33,8 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
 /// Is the distance of the triangles at most `clearance` (> 0)? Decides by two points close to each
-/// other and the direction between them. Of triangles that cross it looks only at the boundaries.
-/// `unknown` if the distance is within about 1e-14 of the pair's extent of the clearance.
+/// other and the direction between them. If the triangles cross, it uses only their boundaries.
+/// `unknown` if distance and clearance differ by less than about 1e-14 of the pair's extent.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// Sets answers[i] to the answer of filter_planes() about the triangles a and b of pairs[i] and the

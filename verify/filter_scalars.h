@@ -1,5 +1,5 @@
-// The filters (verify/filter.h) on scalars, with bounds as a type, and the derivations of the
-// bounds.
+// The filters (verify/filter.h) on scalars, with a type for their bounds; and the derivations of
+// these bounds.
 #pragma once
 
 #include <algorithm>
@@ -240,8 +240,8 @@ struct Closest {
 
 inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // 0 for NaN
 
-/// Offers the difference from p + s u to q + t v, two points of the segments that are closest but
-/// for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
+/// Offers the difference from p + s u to q + t v, two points of the segments that are closest
+/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
 inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
                            Closest& closest) {
   const Vec3 u = p_end - p;

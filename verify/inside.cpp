@@ -80,13 +80,13 @@ bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
 
 struct Crossings {
   std::int64_t winding = 0;  // the sum by direction
-  bool odd = false;          // whether their number is
+  bool odd = false;          // true if the number of crossings is odd
 };
 
-/// The crossings of a ray. Empty if one was unclear. If the ray goes along the first
-/// axis, boxes show that it misses most triangles. A triangle that is a segment or a point is left
-/// out: no ray in general position crosses it, and if x is on its line, all signs are 0 whatever
-/// the direction.
+/// The crossings of a ray. Empty if one was unclear. If the ray is along the first axis, boxes show
+/// that it misses most triangles. Triangles that are segments or points are left out: no ray in
+/// general position crosses them, and if x is on the line of one, all signs are 0 for every
+/// direction.
 std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
                                    const Vec3& d, bool first_axis) {
   Crossings out;
@@ -204,8 +204,8 @@ bool may_be_folded(const Corners& a, const Corners& b) {
   return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
 
-/// Whether two triangles of one plane that pass an edge in both senses lie on the same side of it,
-/// as both sides of a face do however each is cut into triangles. True as well where more than 64
+/// True if two triangles of one plane that pass an edge in both senses lie on the same side of it,
+/// as the two sides of a face do, however each is cut into triangles. Also true if more than 64
 /// triangles have one edge.
 bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>& edges) {
   const auto corners_at = [&](const Edge& edge) {
@@ -241,7 +241,7 @@ Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
   if (out == Surface::open) return out;
   const FloatingPointGuard guard;
   const bool folded = out == Surface::oriented && has_flat_fold(triangles, edges);
-  // Each with its corners in ascending order, and whether that is the other way round.
+  // Each triangle with its corners in ascending order, and whether this reverses its orientation.
   std::vector<std::pair<Places, bool>> sorted;
   sorted.reserve(triangles.size());
   for (Places& p : triangles) {

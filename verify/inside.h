@@ -20,19 +20,19 @@ namespace farcull {
 enum class Inside : std::uint8_t { no, yes, on, not_closed };
 
 enum class Surface : std::uint8_t { open, closed, doubled, oriented };
-/// What the surface of the object is; `closed` if it is not oriented as well; never `doubled`. An
-/// object without triangles is oriented.
+/// The kind of surface of the object. `closed`: not oriented as well. Never `doubled`. An object
+/// without triangles is oriented.
 Surface surface_of(const Scene& scene, std::uint32_t object);
-/// The same for who doubts that a triangle is there twice. `doubled`: oriented, and two triangles
-/// of one plane with a common edge lie on each other, as where a file has both sides of each face.
-/// The winding number does not count these, so it may be 0 in a place that they enclose. An object
-/// with triangles that are there twice and the same way round is `open`.
+/// As above, but for callers that expect doubled triangles. `doubled`: oriented, and two triangles
+/// of one plane with a common edge lie on each other, as in a file that has both sides of each
+/// face. The winding number does not count these, so it may be 0 in a place that they enclose. An
+/// object with triangles that occur twice in the same orientation is `open`.
 Surface doubted_surface_of(const Scene& scene, std::uint32_t object);
 /// True iff the object is closed.
 bool is_closed(const Scene& scene, std::uint32_t object);
 
 /// Says where the point (finite) lies; `on` is also the answer for an object that is not closed.
-/// Rays that meet an edge or run in a triangle's plane are cast again in another direction.
+/// If a ray meets an edge or runs in a triangle's plane, another direction is tried.
 /// Preconditions of verify/exact.h. Throws std::logic_error for an object that the scene does not
 /// have.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);

@@ -37,8 +37,8 @@ struct KernelTriangle {
   double radius;  // px
   bool ordinary;
 };
-/// These draw a case for each seed and index, the same on every machine. The floats of adversarial
-/// solids are drawn directly, not computed from a triangle.
+/// Each function draws a case for a seed and an index, the same on every machine. The floats of
+/// adversarial solids are drawn directly, not computed from a triangle.
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);

@@ -75,7 +75,7 @@ class SamePoints {
         continue;
       }
       const Vec3 from = x - side.corners[0];
-      // Where a product overflows, so may the sum with it, while the bound does not.
+      // If a product overflows, so may the sum with it, while the bound does not.
       if (!(w_.cwiseAbs().dot(from.cwiseAbs()) < HUGE_VAL)) return false;
       if (!(sense * w_.dot(from) < -(off_.dot(from.cwiseAbs()) + kTieAbsolute))) return false;
     }

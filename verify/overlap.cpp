@@ -25,7 +25,7 @@ using rational::Q;
 using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::size_t kMostPlanes = 64;    // that are tried as dividing planes
+constexpr std::size_t kMostPlanes = 64;    // at most this many are tried as dividing planes
 constexpr std::size_t kMostPieces = 2048;  // of a triangle
 // Tests of a piece with a triangle of the objects, about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
@@ -143,8 +143,8 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
 /// Whether the places just below and just above a point of a plane, along an axis, are inside an
 /// object.
 struct Sides {
-  std::array<bool, 2> perhaps{};  // one of the two rules says so
-  std::array<bool, 2> inside{};   // both do
+  std::array<bool, 2> perhaps{};  // one of the two rules shows it
+  std::array<bool, 2> inside{};   // both rules show it
 };
 
 /// Empty if the ray meets an edge, or if a triangle that is not in the plane has the point.
@@ -232,8 +232,8 @@ class PieceTest {
         triangles_(scene.objects[objects.a].triangle_count +
                    std::size_t{scene.objects[objects.b].triangle_count}) {}
 
-  /// Whether pieces of triangle t of object `own` show an overlap with the other object; `others`
-  /// are the triangles of the other object that meet t.
+  /// Whether pieces of triangle t of object `own` prove that it overlaps the other object.
+  /// `others`: the triangles of the other object that meet t.
   Overlap test(std::uint32_t own, std::uint32_t t, std::span<const std::uint32_t> others) {
     const Corners corners = scene_.corners(t);
     if (shape(corners) != Shape::triangle) return Overlap::unknown;
@@ -279,7 +279,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // what hangs together with it may be inside as well
+        out = Overlap::unknown;  // the part connected with it may be inside as well
       return out;
     }
     return Overlap::unknown;

@@ -1,4 +1,4 @@
-// Whether two objects of which no triangles cross overlap, or merely touch.
+// Decides whether two objects without crossing triangles overlap, or merely touch.
 //
 // The kinds of contact (verify/contact.h) do not tell. Two boxes side by side with three pairs of
 // faces in common planes overlap, and no two of their triangles cross; and a surface may pass
@@ -13,7 +13,7 @@
 //   it is inside the other object, outside, or on its surface; so one point of it decides. Were
 //   there an overlap, its boundary would have a point on a face, with the overlap on one side of
 //   it. If the face has a contact, one of its pieces shows that. If not, the face is inside the
-//   other object, and so is all that hangs together with it up to the next contact, where a piece
+//   other object, and so is all that is connected with it up to the next contact, where a piece
 //   of a triangle is inside; without any contact one vertex of the part of the object shows it.
 //   Such a piece shows nothing if its own object is on neither side of it, as in a fold; then the
 //   answer is unknown.
@@ -39,17 +39,17 @@ namespace farcull {
 enum class Overlap : std::uint8_t { no, yes, unknown };
 
 /// Preconditions: `contacts` are all pairs of a triangle of object a and a triangle of object b
-/// that share a point, and none of them is of ContactKind::crossing. parts_a: a vertex of each part
-/// of a that hangs together, and likewise parts_b. surfaces: of a and b, by
+/// that share a point, and none of them is of ContactKind::crossing. parts_a: a vertex of each
+/// connected part of a; parts_b likewise. surfaces: of a and b, by
 /// doubted_surface_of().
 Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
                             std::span<const TrianglePair> contacts, std::span<const Vec3> parts_a,
                             std::span<const Vec3> parts_b, std::array<Surface, 2> surfaces);
 
-/// Whether a point off the surface of a closed object is inside it (verify/inside.h). Where the
-/// object is closed alone or doubled, an even number of crossings, or a winding number of 0, does
-/// not tell a place outside from one inside two shells: no is the answer only if a ray along an
-/// axis meets nothing, and else unknown. surface: that of doubted_surface_of().
+/// Whether a point off the surface of a closed object is inside it (verify/inside.h). If the object
+/// is only closed, or doubled, an even number of crossings or a winding number of 0 may also be a
+/// place inside two shells. Then the answer is "no" only if a ray along an axis meets nothing, and
+/// else unknown. surface: that of doubted_surface_of().
 Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 /// Whether a plane along the axes, or the plane of a triangle in one of the contacts, has one

@@ -125,7 +125,7 @@ class Polytope {
   Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
 
   /// Adds points, always above the face that is nearest to the origin, until the nearest face is
-  /// final, or all are (whole), or for so many steps.
+  /// final, or all faces are (whole), or `steps` points were added.
   void expand(int steps, bool whole) {
     if (!begin()) faces_.clear();
     while (steps > 0 && !faces_.empty()) {
@@ -218,7 +218,7 @@ class Polytope {
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    // An edge remains as often as it is passed more in one direction than in the other.
+    // An edge stays as many times as it is passed more often in one direction than in the other.
     std::ranges::sort(edges);
     for (auto at = edges.begin(); at != edges.end();) {
       const auto [from, to] = *at;
@@ -243,7 +243,7 @@ class Polytope {
   bool convex_ = true;
 };
 
-/// The translations that a polytope holds for certain.
+/// The translations that a polytope certainly holds.
 struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
@@ -285,7 +285,7 @@ std::array<double, 2> along_ray(const Cover& cover, const Vec3& direction) {
   return {from, to};
 }
 
-/// How far the ray is held from the origin on.
+/// The distance from the origin along the ray up to which the covers hold it.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   std::vector<std::array<double, 2>> parts;
   for (const Cover& cover : covers) parts.push_back(along_ray(cover, direction));
@@ -297,8 +297,8 @@ double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   return out;
 }
 
-/// Three directions, perpendicular but for rounding: that of most of the area, and then of most of
-/// the rest.
+/// Three directions, perpendicular except for rounding. The first is that of most of the area, the
+/// second that of most of the rest.
 std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
   std::vector<std::pair<double, Vec3>> normals;
   for (const ClosedObject* solid : {&a, &b}) {
@@ -358,14 +358,14 @@ class Search {
   /// Divides the ball of translations below the upper bound until all of it that is nearer than
   /// the lower bound is settled.
   void search() {
-    constexpr double kWork = 2e6;  // sides of covers that are looked at
+    constexpr double kWork = 2e6;  // sides of covers that are examined
     constexpr double kClose = 0.98;
     std::priority_queue<Part, std::vector<Part>, std::greater<>> parts;
     parts.push({0, Vec3::Zero(), Vec3::Constant(out_.hi * (1 + 1e-9))});
     const double least = 1e-7 * out_.hi;
     while (!parts.empty()) {
       const Part part = parts.top();
-      // The axes are perpendicular but for rounding.
+      // The axes are perpendicular except for rounding.
       out_.lo = std::max(out_.lo, std::min(part.distance * (1 - 1e-12), out_.hi));
       if (out_.lo >= kClose * out_.hi || work_ > kWork) return;
       parts.pop();
@@ -404,7 +404,7 @@ class Search {
     });
   }
 
-  /// The axis along which the part reaches out of the cover that holds most of it; -1 if that
+  /// The axis along which the part extends beyond the cover that holds most of it; -1 if that cover
   /// holds all of it.
   int axis_to_divide(const Part& part) {
     const Vec3 middle = point_at(part.middle);
@@ -436,8 +436,8 @@ class Search {
   std::vector<Cover> covers_;
   std::array<Vec3, 3> axes_;
   Penetration& out_;
-  int failures_;     // that are left
-  double room_ = 0;  // by which cores, which are a little too small, and rounding may be off
+  int failures_;     // failures that are still allowed
+  double room_ = 0;  // bound of the error by rounding, and by cores that are a little too small
   double work_ = 0;
 };
 
@@ -475,7 +475,7 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   std::vector<Deep> found;
   for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
     for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5}) {
-      // Along the translation alone a common point of the surfaces may stay on one of them.
+      // Along the translation alone, a common point of the surfaces may stay on one surface.
       const Vec3 p = starts[k] + part * translation + std::abs(part) * (middle - starts[k]);
       if (a.has(p) && b.has(p)) found.push_back(deep(p));
     }

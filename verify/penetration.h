@@ -2,7 +2,7 @@
 // one of them after which their insides have no point in common (Cameron and Culley, Determining
 // the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
 //
-// From above: a translation after which the insides are apart for certain (separates()).
+// From above: a translation after which the insides are certainly apart (separates()).
 //
 // From below: by cores, convex sets inside the objects (verify/convex_core.h). If A is a core of
 // object a and B one of object b, then a and b overlap after each translation inside the polytope
@@ -32,8 +32,8 @@ struct Penetration {
   Vec3 translation = Vec3::Zero();  // of object a
 };
 
-/// True only if the insides of a, moved by the translation, and of b have no point in common. By
-/// bounds of all roundings: where they are too near to tell, it is false.
+/// True only if the insides of a, moved by the translation, and of b have no point in common. Uses
+/// bounds of all roundings: false if the insides are too near to decide.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
 /// starts: points inside both or near such points, such as common points of their surfaces.

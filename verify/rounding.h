@@ -28,7 +28,7 @@ constexpr double kNormalLength = 0x1p-50;
 constexpr double kNormalRounding = 0x1p-49;
 /// The least square of a length whose root is accurate; smaller squares are replaced by it.
 constexpr double kLeastSquare = 0x1p-900;
-/// Rounding of a clearance times a length.
+/// Rounding error of a clearance times a length.
 constexpr double kNeededRounding = 0x1p-50;
 
 // ---- bounds for SamePoints (verify/nearest_pair.cpp derives them) ----

@@ -69,7 +69,7 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 template <class Points, class Others>
 bool farther_by_planes(const Points& a, const Others& b, double limit) {
   constexpr int kSteps = 24;
-  // The corners, relative to one of them. Each coordinate y is one rounded difference.
+  // The corners relative to one of them. Each coordinate of y is one rounded difference.
   const auto y = [&](const Vec3& p) -> Vec3 { return p - a[0]; };
   Vec3 near = Vec3::Zero();
   for (const Vec3& p : b) near += y(p) / static_cast<double>(std::size(b));

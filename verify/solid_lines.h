@@ -43,7 +43,7 @@ inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid
   return z;
 }
 
-/// The interval in doubles, a little too large; none if the line misses for certain. Products of
+/// The interval in doubles, a little too large; none if the line certainly misses. Products of
 /// floats are exact in double. Differences and sums are off by 2^-53 of the terms' sizes each, and
 /// 2^-49 is more than all of these errors together.
 inline std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& s) {
@@ -170,7 +170,7 @@ struct Chord {
   Real square;    // of its half-length; negative: the line misses the ball
   Real lo, hi;    // depths of its ends if square >= 0
   Real doubt;     // bounds the error of lo and hi
-  Real no_chord;  // if square is below -no_chord, the line misses the ball for certain
+  Real no_chord;  // below -no_chord, `square` proves that the line misses the ball
 };
 
 class Line {
@@ -303,7 +303,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
   }
   const Q x = Q(cx) - p[0], y = Q(cy) - p[1], square = r * r - x * x - y * y;
   if (square < 0) return false;
-  // Depths of the solid: the chord's middle, and the cuts where they are in the chord.
+  // Depths of the solid: the chord's middle, and those cuts that are in the chord.
   const Q* const depths[] = {&p[2], &zlo, &zhi};
   for (const Q* z : depths) {
     const Q off = *z - p[2];

@@ -21,7 +21,7 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-/// The clearance that is asked about, in units of 2^exponent.
+/// The clearance of the question, in units of 2^exponent.
 class Asked {
  public:
   Asked(double clearance, int exponent) : squared_(clearance) {

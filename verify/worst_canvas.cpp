@@ -23,8 +23,8 @@ struct Range {
 
 // How far a window coordinate can be from the exact one. A coordinate is multiplied by 2/viewport,
 // divided by w = 1, multiplied by viewport/2, added to the centre, then snapped. A1 bounds the
-// error over the whole viewport, so every corner may be as far off as a corner at the rim, where
-// all intermediate results are largest.
+// error over the whole viewport, so every corner may be as far off as a corner at the rim, which
+// has the largest intermediate results.
 double displacement(int viewport, int subpixel_bits) {
   const double half = 0.5 * viewport;
   double x = half;

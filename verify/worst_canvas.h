@@ -15,9 +15,9 @@ struct WorstCanvasOptions {
   int depth_bits =
       32;  // 32: depths are stored as computed floats; 24: rounded to multiples of 2^-24
   int max_resolution = 16370;
-  /// True: the canvas keeps what core/native/canvas.h promises, and no more. Corners are not moved,
-  /// but the floats that compare a pixel centre with an edge are rounded as badly as IEEE 754
-  /// allows.
+  /// True: the canvas keeps the guarantees of core/native/canvas.h, and no more. Corners are not
+  /// moved, but the floats that compare a pixel centre with an edge are rounded as badly as IEEE
+  /// 754 allows.
   bool exact_samples = false;
   /// The asked depth lies this far behind D(exit), as on a GL device. Tests set less, to show that
   /// culling then fails.

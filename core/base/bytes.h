@@ -60,7 +60,7 @@ class Sha256 {
                                          0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   std::array<std::uint8_t, 64> block_{};
   std::size_t filled_ = 0;   // bytes of block_
-  std::uint64_t bytes_ = 0;  // in all
+  std::uint64_t bytes_ = 0;  // bytes of all calls so far
 };
 
 /// The SHA-256 of a text.

@@ -1,6 +1,6 @@
 // Errors of the outside world (files, EGL, GL, disk, options): one exception type that says where,
-// why and what to do. Mistakes of the programmer are assertions, uncertainty is a value ("keep the
-// pair"); neither is an Error.
+// why and what to do. Mistakes of the programmer are assertions, not Errors. Uncertainty is a value
+// ("keep the pair"), not an Error.
 #pragma once
 
 #include <stdexcept>

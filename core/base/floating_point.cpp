@@ -38,7 +38,7 @@ Rounding rounding() {
 }
 
 // Two products show flushing. The first has normal operands and a subnormal result, the second a
-// subnormal operand and a normal result. The first result is looked at bit by bit, since a
+// subnormal operand and a normal result. The bits of the first result are examined, since a
 // comparison would take it as an operand, which may be flushed itself.
 template <class Real>
 void find_flushing(FloatingPoint& found) {

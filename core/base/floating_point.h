@@ -1,6 +1,6 @@
-// The floating-point environment of a thread. The proofs are about rounding to nearest, ties to
-// even, with subnormal numbers kept. A process may start otherwise: a library built with
-// -ffast-math sets flush-to-zero where it is loaded, and a caller may have chosen another rounding.
+// The floating-point environment of a thread. The proofs assume rounding to nearest, ties to even,
+// and that subnormal numbers are kept. A process may start otherwise: loading a library built with
+// -ffast-math sets flush-to-zero, and a caller may have chosen another rounding.
 #pragma once
 
 #include <cfenv>
@@ -21,7 +21,7 @@ struct FloatingPoint {
   bool operator==(const FloatingPoint&) const = default;
 };
 
-/// The environment that all proofs are about.
+/// The floating-point environment that all proofs assume.
 inline constexpr FloatingPoint kProved;
 
 /// As in "rounds to nearest, keeps subnormals".
@@ -32,12 +32,12 @@ std::string to_string(const FloatingPoint& floating_point);
 FloatingPoint floating_point();
 
 /// Throws Error naming `where` unless the calling thread computes as kProved says. Call it after
-/// code of others, which may have changed the environment, and before its results are used.
+/// foreign code, which may have changed the environment, and before its results are used.
 void require_proved(const std::string& where);
 
-/// Sets kProved for the calling thread, with no exception trapping, and restores what was there
-/// (rounding, flushing, traps and raised exceptions) at the end of its scope. Guards may be nested:
-/// an inner one ends before the outer one. Takes less than a microsecond.
+/// Sets kProved for the calling thread, with no exception trapping. Restores the previous
+/// environment (rounding, flushing, traps, raised exceptions) at the end of its scope. Guards may
+/// be nested: an inner one ends before the outer one. Takes less than a microsecond.
 ///
 /// A compiler that knows nothing of the environment may move arithmetic on local variables across
 /// the guard. So the guarded function leaves arithmetic that matters to functions that it calls and

@@ -1,7 +1,7 @@
 // Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
-// A kernel says FAR_OUT(t) and FAR_INOUT(t) for its parameters and FAR_PRECISE before a float that
-// no compiler may reassociate, FAR_KERNEL before a function that several files may compile;
-// contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
+// A kernel writes FAR_OUT(t) and FAR_INOUT(t) for its parameters, FAR_PRECISE before a float that
+// no compiler may reassociate, and FAR_KERNEL before a function that several files may compile.
+// Contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
 // operation once.
 #pragma once
 
@@ -29,9 +29,9 @@ inline float fixed(float a) { return a; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
-// Kernels write these for bool, ?: and global constants, since pixels may be lanes of a vector
-// (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c): as a condition of `if`, where c is the same for
-// all lanes.
+// Kernels use these instead of bool, ?: and global constants, because a value may be a vector with
+// one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c): the condition c of an `if`; it
+// must be the same for all lanes.
 #define FAR_CONSTANT const float
 #define FAR_BOOL bool
 #define FAR_SELECT(c, a, b) ((c) ? (a) : (b))

@@ -156,13 +156,13 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
-  std::deque<Batch*> batches_;            // that have a part which nobody has begun
+  std::deque<Batch*> batches_;            // those with a part that no thread has begun
   std::atomic<std::size_t> waiting_ = 0;  // parts that nobody has begun; changed under the mutex
   std::size_t threads_ = 0;
 };
 
 // Never destroyed: its threads sleep until the process ends. A forked process has none of these
-// threads, so it begins with a pool of its own.
+// threads, so it makes a new pool.
 Pool& pool() {
   static std::atomic<Pool*> current = [] {
 #ifndef _WIN32

@@ -45,7 +45,7 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   }
 }
 
-/// As many chunks as cores (or `threads`, where it is not 0), but none below `least` items.
+/// As many chunks as cores (or `threads` if it is not 0), but none with fewer than `least` items.
 inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
   const std::size_t cores =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
@@ -54,7 +54,7 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
 
 // ---- work of many items of unlike length, shared by all threads ----
 
-/// Calls work(k, memory) once for each k in 0 .. count - 1, the next one by whichever thread is
+/// Calls work(k, memory) once for each k in 0 .. count - 1; the next k goes to any thread that is
 /// free. Each thread makes a Memory, and uses it in all its calls. threads: 0 for as many as there
 /// are cores. An exception of work is thrown again here.
 template <class Memory, class Work>
@@ -76,7 +76,7 @@ void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
 
 // ---- a call in a thread of its own, which another thread can stop ----
 
-/// Thrown within a call that was stopped. It is no Error: nothing is wrong.
+/// Thrown inside a call that was stopped. It is not an Error, because nothing is wrong.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }
@@ -91,7 +91,7 @@ void stop_point();
 /// starts with the floating-point environment of the thread that constructs the object.
 class StoppableCall {
  public:
-  /// Throws std::system_error where no thread can be started; nothing has run then.
+  /// Throws std::system_error if no thread can be started; nothing has run then.
   explicit StoppableCall(std::function<void()> work);
   /// Waits until the work has ended.
   ~StoppableCall();
@@ -102,7 +102,7 @@ class StoppableCall {
   void stop();
   /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Throws what it threw: Stopped where it was stopped.
+  /// Waits until the work has ended. Throws its exception; Stopped if it was stopped.
   void finish();
 
  private:

@@ -17,15 +17,15 @@ enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
   blocks,          // boxes of blocks of triangles
   setup,           // the device: context, shaders, threads
-  draw,            // all drawing; a stage of its own only where nothing is drawn
+  draw,            // all drawing; listed only if nothing is drawn
   patches,         // owners inside objects that are tested against themselves
   objects,         // whether objects are asked as a whole before their triangles
   clusters,        // whether there is a level between objects and triangles
   view,            // a view as a whole
   fatten,          // the primitives of one view
   cull,            // the passes of one level in one view
-  agreement,       // what every view of a round has cleared
-  further_views,   // those that are left out because few triangles are left
+  agreement,       // the triangles that every view of a round has cleared
+  further_views,   // further views, left out because few triangles are left
   further_rounds,  // rounds after the first
   offset,          // a further fattener
   sweep,           // sweep and prune
@@ -49,38 +49,38 @@ enum class Reason : std::uint8_t {
   none,
   full,            // the option `full`: nothing is left out
   regions,         // n pairs of objects' boxes overlap
-  meetings,        // n such pairs but for k ignored ones, m objects are tested against themselves
+  meetings,        // n such pairs without k ignored ones; m objects are tested against themselves
   crowded,         // too many such pairs to list; m and k as above
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // k were compared, since a corner moved; empty: all
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
-  boxes_meet,      // n pairs of triangles are asked about; triangles in none take no part
+  boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (k as above, none tested against itself)
   no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
-  shaders,              // the canvas, on GL with context and shaders, for the fattener
+  shaders,              // the canvas for the fattener is set up; on GL also context and shaders
   fattener,             // its name; n triangles are beyond its budget and kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
   passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
-  few_left,             // n triangles are left, at most m are enough
+  few_left,             // n triangles are left, at most m, so no further view is drawn
   few_to_test,          // n triangles are left: m or fewer are cheaper to test
   patches_cut,          // n patches of at most m triangles
   patches_whole,        // n objects, none of more than m triangles: each is one patch
   few_objects,          // n objects take part, fewer than m: one seldom hides all of another
   rounds_given,         // n rounds were asked for
-  all_views,            // a triangle is culled where every view clears it
-  little_culled,        // the round culled n of m triangles, a smaller part than a round is worth
+  all_views,            // a triangle is culled if every view clears it
+  little_culled,        // the round culled n of m triangles, too few for another round
   owners,               // every triangle is an owner by itself
   clusters_given,       // sizes of clusters are given
   clusters_large,       // occlusion queries on many triangles
   clusters_small,       // occlusion queries on n triangles or fewer
   clusters_flags,       // flags are read back at once
   sweep,                // boxes of n objects overlap, which have m triangles; k, l below
-  not_cleared,          // pairs that boxes found, but for those that drawing cleared
+  not_cleared,          // pairs that boxes found, without those that drawing cleared
   join_kept,            // boxes of what is kept
   join_patches,         // boxes of what is kept in different patches, and of all in one patch
   join_all,             // boxes of all triangles
@@ -94,16 +94,16 @@ enum class Reason : std::uint8_t {
   not_asked,            // the option `no_verify`
   near_boxes,           // of n pairs of objects; m bounds of boxes were compared
   inside_not_asked,     // the option `inside` is no
-  // In a plan: conditions that pixels will decide.
+  // Only in a plan: conditions that depend on pixels.
   if_more_left,   // if more than n triangles are left (n = 0: any)
-  if_changed,     // if the round before changed something
-  if_culled,      // if the round before culled at least one triangle in n
+  if_changed,     // if the previous round changed something
+  if_culled,      // if the previous round culled at least one triangle in n
   if_candidates,  // if there are candidates
   limited,        // the option `limit` ended the search, so not all pairs are known
 };
 
-/// Level of a stage that culls: none, objects, single triangles; else clusters of so many
-/// triangles.
+/// Level of a stage that culls: none, objects, single triangles; any other value is the size of
+/// a cluster in triangles.
 inline constexpr std::uint32_t kNoLevel = 0, kObjectLevel = UINT32_MAX,
                                kTriangleLevel = UINT32_MAX - 1;
 
@@ -121,12 +121,12 @@ struct Stage {
   std::optional<std::uint64_t> k = {};
   std::uint64_t l = 0;
   double ms = 0;
-  std::uint64_t in = 0, out = 0;  // what enters and what is left
+  std::uint64_t in = 0, out = 0;  // what enters the stage, and what is left after it
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
   std::uint64_t queries = 0;      // slots asked
-  // How many fewer than plain CULLIDE's passes take on the same live triangles. Quick-CULLIDE and
-  // FAR save some.
+  // How many more draws and queries plain CULLIDE's passes would take on the same live triangles.
+  // Only Quick-CULLIDE and FAR save some.
   std::uint64_t draws_saved = 0;
   std::uint64_t queries_saved = 0;
 };
@@ -144,7 +144,7 @@ inline Stage work_of(const std::vector<Stage>& stages) {
   return sum;
 }
 
-/// What a long computation does next: a stage, or `text`, by which its callers name other work.
+/// The next step of a long computation: a stage, or other work that `text` names.
 struct ProgressStep {
   ProgressStep(StageKind kind, std::string subject = {}, int round = 0)
       : kind(kind), subject(std::move(subject)), round(round) {}
@@ -154,7 +154,7 @@ struct ProgressStep {
   StageKind kind = StageKind::boxes;
   std::string subject = {};  // as in Stage
   int round = 0;             // as in Stage
-  std::string text = {};     // not empty: in place of the others
+  std::string text = {};     // not empty: names the step, and the other members are unused
 };
 
 /// Called before each step. May be empty.

@@ -136,7 +136,7 @@ FloatBox relative(const Box& box, const Vec3& origin) {
 }
 
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  // Each of the three corners has bounds of its own, so that no corner waits for another.
+  // Separate bounds for each of the three corners, so that no update waits for another.
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {

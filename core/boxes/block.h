@@ -116,7 +116,7 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// The number of boxes in a WideBoxes, and the most children of a node and triangles of a block.
+/// Boxes in a WideBoxes. Also the most children of a node, and the most triangles of a block.
 constexpr std::uint32_t kWide = 16;
 
 /// Sixteen boxes as columns. A missing box meets nothing.
@@ -174,7 +174,7 @@ struct BoxTree {
   BoxOf<Number> box = empty_box<Number>();       // of all leaves
 };
 
-/// The number of blocks of a tree over so many leaves.
+/// The number of blocks of a tree with this many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
 /// Makes the tree over the boxes, and writes its blocks_of_tree() blocks from blocks[at] on. boxes:

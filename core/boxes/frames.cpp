@@ -1,4 +1,4 @@
-// What a frame of a scene leaves for the next one.
+// Keeps results of a frame of a scene for the next frame.
 #include "core/boxes/frames.h"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
       own.clear();
       pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
       for (const auto& [a, b] : own) {
-        // Of two that moved, each finds the other.
+        // If both moved, each finds the other.
         if (of == with) {
           if (!moved[b] || a <= b) {
             found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
@@ -80,13 +80,13 @@ BlockDecision unmoved_decision(const FrameMemory& memory) {
   return out;
 }
 
-// The decision of a frame in which some blocks moved: the boxes, trees and pairs of these are made
-// anew. Null if many more pairs of blocks overlap than when the blocks were made, or if the
+// The decision for a frame in which some blocks moved. Recomputes the boxes, trees and pairs of
+// these. Null if many more pairs of blocks overlap than when the blocks were made, or if the
 // meetings say that a tree decides.
 std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
                                                FrameMemory& memory) {
   constexpr std::size_t kMostGrowth = 2;
-  if (memory.blocks.use_count() > 1)  // somebody has the last frame's plan
+  if (memory.blocks.use_count() > 1)  // another plan still uses these blocks
     memory.blocks = std::make_shared<TriangleBlocks>(*memory.blocks);
   TriangleBlocks& blocks = *memory.blocks;
   std::vector<std::uint8_t> moved(blocks.ranges.size(), 0);

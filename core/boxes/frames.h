@@ -1,5 +1,5 @@
-// What boxes of blocks keep of a frame of a scene for the next one, so that triangles that did not
-// move cost little.
+// Results of boxes of blocks that are kept from one frame of a scene to the next, so that triangles
+// that did not move cost little.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ namespace farcull {
 /// while.
 struct FrameMemory {
   MovedCorners moved;
-  std::optional<std::uint64_t> frame;  // that was planned and found, and blocks decided it
+  std::optional<std::uint64_t> frame;  // the last one that was planned, found and decided by blocks
   double clearance = 0;
   bool neighbours = true;
   std::vector<ObjectPair> ignored;
-  std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
-  bool oriented = false;  // by oriented boxes, so they are of use only while nothing moves
+  std::vector<TrianglePair> pairs;  // candidates from the blocks of the last frame
+  bool oriented = false;  // pairs are from oriented boxes: usable only while nothing moves
   /// Counts of that frame: of BlockMeetings and ObjectOverlaps.
   std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
 
@@ -40,9 +40,9 @@ struct FrameMemory {
   std::size_t usual = 0;                // their number when the blocks were made
 };
 
-/// decide_by_blocks() for the frame that comes after the one in `memory`. Preconditions:
-/// memory.moved says what moved since memory.frame; its clearance, neighbours and ignored objects
-/// are those of now; and if anything moved, it was not decided by oriented boxes.
+/// decide_by_blocks() for the frame after the one in `memory`. Preconditions: memory.moved says
+/// what moved since memory.frame; its clearance, neighbours and ignored objects are unchanged; and
+/// if anything moved, the last frame was not decided by oriented boxes.
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory);
 
 }  // namespace farcull

@@ -1,11 +1,11 @@
-// A tree of boxes is asked about one item after the other, some side by side: the pairs of an item
-// a are those with b > a, so that pairs in the order of a are in order. Where owners are few, their
-// leaves stand one owner after the other, and an item is compared with later owners alone.
+// Finds pairs with a tree of boxes, item by item, several items in parallel. The pairs of an item a
+// are those with b > a, so the result is sorted by a. If owners are few, their leaves come one
+// owner after the other, and an item is compared with later owners alone.
 //
-// Trees of blocks are asked about one block after the other. Triangles stand in lanes of sixteen
-// boxes as floats, which are compared with each other; boxes that touch in floats are compared
-// again in doubles. Only comparisons decide, so every instruction set gives the same pairs in the
-// same order.
+// Trees of blocks are searched block by block. The triangles of a block are sixteen lanes of boxes
+// in floats, which are compared with each other. Boxes that touch in floats are compared again in
+// doubles. Only comparisons decide, so every instruction set gives the same pairs in the same
+// order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -87,7 +87,7 @@ class Comparison {
     return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
                    along(2, box.z0, box.z1));
   }
-  // Lanes of the block that stand behind the row.
+  // The lanes of a block that come after the row.
   HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
     return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
                   hn::Set(Words(), static_cast<std::uint32_t>(row)));
@@ -170,13 +170,13 @@ std::uint64_t find_leaves(const BoxTree<double>& tree, const WideBoxes<double>* 
   return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, least, leaves);
 }
 
-// Below so many items a second thread costs more than it saves, if it only finds their pairs.
+// With fewer items, a second thread that only finds pairs costs more than it saves.
 constexpr std::size_t kLeast = 4096;
 // Pairs that are found at a time, so that they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
-// Makes room for some more pairs, and for as many as there will be if the items to come have as
-// many, but at least for twice and at most for eight times as many: each growth copies the list.
+// Makes room for some more pairs, and for those still to come if the remaining items have as many
+// pairs each. Grows at least to twice and at most to eight times: each growth copies the list.
 void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
   const std::size_t needed = pairs.size() + more;
   if (needed <= pairs.capacity()) return;
@@ -231,8 +231,8 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
 
 namespace {
 
-// Whether owners ascend with the items and are at most as many as a node has children, so that
-// leaves in their order cost a few nodes more, and no overlap inside an owner is looked at.
+// True if owners ascend with the items and are at most as many as the children of a node. Leaves in
+// the order of owners then cost a few more nodes, but overlaps inside an owner are never examined.
 bool are_few(std::span<const std::uint32_t> owners) {
   std::size_t changes = 0;
   for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
@@ -242,8 +242,8 @@ bool are_few(std::span<const std::uint32_t> owners) {
   return changes < kWide;
 }
 
-// Sorts numbers below 64 * marks.size(), each of which is there once. Many of them are sorted by
-// marks, one bit for each number, which are left empty.
+// Sorts distinct numbers below 64 * marks.size(). Long lists are sorted with one mark bit for each
+// number. All marks are clear before and after.
 void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
   if (numbers.size() < marks.size() / 8) {
     std::ranges::sort(numbers);
@@ -259,8 +259,8 @@ void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>
 
 }  // namespace
 
-// Drops items whose boxes meet the box of no other owner: such an item has no pair, since that box
-// holds all boxes of the owner. Precondition: owners are few, and ascend with the items.
+// Drops items whose boxes overlap the box of no other owner. Such an item has no pair, since that
+// box contains all boxes of the owner. Precondition: owners are few, and ascend with the items.
 void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
   std::vector<Box> of_owner;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -310,8 +310,8 @@ void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) con
   for (std::uint32_t& other : part.found) other = order_[other];
 }
 
-// Where leaves stand owner by owner. Items ascend with their owners then, so as many leaves as
-// items have this owner or one before.
+// For leaves in the order of owners. Items then ascend with their owners, so the result is the
+// number of items whose owner is this one or an earlier one.
 std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
   const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
   return static_cast<std::uint32_t>(behind - owner_.begin());
@@ -357,7 +357,7 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
 }
 
 std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kLeaves = 64;  // that a thread asks about at a time
+  constexpr std::uint32_t kLeaves = 64;  // leaves that a thread takes at a time
   std::atomic<std::uint64_t> compared = 0;
   const std::uint64_t given = give_portions<Part>(
       items_.size(), kLeaves, chunks_for(items_.size(), kLeaves, threads_), take,
@@ -395,7 +395,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
       append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
-  // A part that is not complete would leave a gap before the next one, which is asked again.
+  // Joins parts in order and stops at the first incomplete one: the items after it are asked again.
   bool full = false;
   for (std::size_t chunk = 0; chunk < chunks && !full; ++chunk) {
     const Part& part = parts_[chunk];
@@ -517,7 +517,7 @@ Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPair
   return out;
 }
 
-// By the places of lanes; filled only for the blocks of these pairs.
+// The vertices by the places of lanes, filled only for the blocks of these pairs.
 UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
                                              const Lanes& lanes, std::span<const BlockPair> pairs,
                                              unsigned threads) {
@@ -574,7 +574,7 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
   };
   std::uint64_t given = give(some.between, {});
   if (neighbours) return given + give(some.inside, {});
-  // The vertices of one part at a time, to save memory. The blocks of a part are mostly its own.
+  // Keeps the vertices of one part at a time, to save memory. Few blocks occur in two parts.
   constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
   const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
   for (std::size_t from = 0; from < some.inside.size(); from += part) {

@@ -39,8 +39,8 @@ using TakePairs = std::function<void(std::vector<TrianglePair>& some)>;
 /// All pairs a < b of items of different owners whose closed boxes overlap, in ascending order.
 class OrderedPairs {
  public:
-  /// Of triangles of different objects, and of one object where it is `self`, whose boxes are grown
-  /// by half the clearance. Two triangles at the clearance or less are such a pair
+  /// Pairs of triangles of different objects, and of one object if it is `self`. Boxes are grown by
+  /// half the clearance. Two triangles at the clearance or less are such a pair
   /// (core/boxes/block.h), so none that collides is left out.
   /// clearance: world units, finite, >= 0. ignored: as in_order() gives them; their pairs are left
   /// out. neighbours: false leaves out pairs of one object that share a vertex index. threads: 0
@@ -52,8 +52,8 @@ class OrderedPairs {
   OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                std::span<const std::uint32_t> items, unsigned threads);
 
-  /// Replaces `out` by the next pairs: about `most` of them, fewer at the end, and at most all of
-  /// one item more for each thread. May leave it empty before the end. Precondition: most > 0.
+  /// Replaces `out` by about the next `most` pairs, fewer at the end, and at most all pairs of one
+  /// more item for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == items_.size(); }
   /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. An
@@ -65,8 +65,8 @@ class OrderedPairs {
   double share() const {
     return items_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(items_.size());
   }
-  /// Blocks of sixteen boxes that the items asked about were compared with; the same whatever
-  /// the threads and `most`, but fewer for give() than for next().
+  /// Blocks of sixteen boxes that items were compared with. Does not depend on the threads or on
+  /// `most`, but is smaller for give() than for next().
   std::uint64_t compared() const { return compared_; }
 
  private:
@@ -81,7 +81,7 @@ class OrderedPairs {
     std::vector<std::uint64_t> marks;
   };
   void append(std::uint32_t a, Part& part) const;             // pairs of item a, in order
-  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // those with the leaves behind it
+  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // pairs with later leaves
   void find(std::uint32_t leaf, std::uint32_t least, Part& part) const;
   std::uint32_t first_of_later_owners(std::uint32_t item) const;
   bool is_asked(const TrianglePair& pair) const;  // not ignored, and no neighbours left out
@@ -89,7 +89,7 @@ class OrderedPairs {
   void plant(std::vector<Box> boxes);  // the tree over the boxes of the items
   void drop_apart(std::vector<Box>& boxes);
 
-  const Scene* scene_ = nullptr;        // if neighbours are left out
+  const Scene* scene_ = nullptr;        // not null if neighbours are left out
   std::vector<std::uint32_t> objects_;  // per triangle; likewise
   std::optional<IgnoredObjects> ignored_;
   unsigned threads_;
@@ -102,7 +102,7 @@ class OrderedPairs {
   BoxTree<double> tree_;
   std::uint64_t compared_ = 0;
   std::uint32_t next_ = 0;      // the first item whose pairs have not been given
-  std::uint32_t asked_ = 1024;  // to ask about at a time
+  std::uint32_t asked_ = 1024;  // items to search for at a time
   std::vector<Part> parts_;
 };
 
@@ -114,8 +114,8 @@ class BlockTrees {
  public:
   /// Objects with an empty region have no tree.
   BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions);
-  /// Brings the trees up to date where these blocks (ascending, each once) have other boxes than
-  /// before. Precondition: blocks.origin is that of before, and every object has a tree.
+  /// Updates the trees if these blocks (ascending, each once) have other boxes than before.
+  /// Precondition: blocks.origin is unchanged, and every object has a tree.
   void update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed);
 
   /// Its leaves are the blocks of the object, counted from 0.
@@ -148,7 +148,7 @@ struct BlockPairs {
   std::size_t size() const { return between.size() + inside.size(); }
 };
 
-/// The blocks of some pairs, ascending. blocks: number of blocks of the scene.
+/// The numbers of the blocks that occur in the pairs, ascending. blocks: number of all blocks.
 std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks);
 
 /// Pairs of blocks whose boxes overlap. Two triangles that are at most the clearance apart have
@@ -159,10 +159,10 @@ struct BlockMeetings {
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
   BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
-  std::uint64_t overlaps = 0;   // pairs of blocks whose boxes overlap, also those in which nothing
-                                // moved, which stand in no list
-  std::uint64_t meetings = 0;   // of two objects, or of one with itself, that these decide
-  std::uint64_t triangles = 0;  // in all blocks of a pair
+  std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap, including pairs in
+                                   // which nothing moved; those are not listed
+  std::uint64_t meetings = 0;      // that these decide: of two objects, or of one with itself
+  std::uint64_t triangles = 0;     // in all blocks of a pair
   bool empty() const { return meetings == 0; }
 };
 
@@ -201,7 +201,7 @@ std::uint64_t give_findings(
     const Scene& scene, std::size_t count, double clearance, unsigned threads,
     const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
     const TakePairs& take);
-/// Two of them to compare; one with itself: each two of its triangles.
+/// Two blocks to compare. If a == b, every two triangles of the block are compared.
 struct LanePair {
   std::uint32_t a, b;
   bool drops_neighbours;  // leaves out pairs that share a vertex index

@@ -148,7 +148,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
   return compared;
 }
 
-/// for_leaves() whose boxes overlap a box.
+/// As for_leaves(), but visits only leaves whose boxes overlap `box`.
 template <class Number, class Visit>
 HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
                                                 const WideBoxes<Number>* blocks,

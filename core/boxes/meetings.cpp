@@ -1,5 +1,5 @@
-// Boxes of objects are joined, then those of the blocks of objects that meet. How often these
-// overlap says what decides: blocks along the axes, oriented ones, or a tree of all boxes.
+// Joins the boxes of objects, then those of the blocks of objects that meet. The number of overlaps
+// decides how pairs are found: blocks along the axes, oriented blocks, or a tree of all boxes.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>
@@ -157,10 +157,10 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
-// Looks for the pairs of blocks of each part, and gives a meeting with more than most_pairs() up,
-// or everything if there are more of the whole scene. ObjectOverlaps that are given up count as one
-// pair more than they may have, so that the answer does not depend on threads. find(meeting, part,
-// most): appends pairs to the part, as pair_blocks().
+// Finds the pairs of blocks of each part. Gives up a meeting with more than most_pairs(), or all
+// meetings if the whole scene has more. A meeting that is given up counts as one pair more than it
+// may have, so that the answer does not depend on threads. find(meeting, part, most): appends
+// pairs to the part, as pair_blocks().
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
@@ -196,7 +196,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   return given_up ? Found::too_many_of_a_meeting : Found::all;
 }
 
-// Oriented boxes decide if, in a sample, they leave at most so many pairs for each triangle.
+// Oriented boxes are used if, in a sample, they leave at most this many pairs for each triangle.
 constexpr std::size_t kOrientedPerTriangle = 64;
 
 // Whether more than `often` pairs of boxes of triangles overlap for each triangle, by a sample of

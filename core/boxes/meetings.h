@@ -38,8 +38,8 @@ ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
                                    std::span<const ObjectOverlap> meetings);
 
-/// Boxes of blocks decide if at most so many pairs of them overlap for each block that overlaps
-/// any, in each meeting.
+/// Boxes of blocks are used if every meeting has at most this many overlapping pairs of blocks for
+/// each block that overlaps any.
 constexpr std::size_t kPairsPerBlock = 32;
 /// Oriented boxes of blocks are tried if, in a sample, the boxes of more pairs of triangles overlap
 /// than this for each triangle, neighbours apart: slivers that lie askew have such boxes.
@@ -57,20 +57,20 @@ struct BlockDecision {
   std::uint64_t pairs = 0, self = 0;  // as ObjectOverlaps has them
 };
 
-/// Compares the boxes of the blocks of objects that meet, and decides by how often these overlap.
-/// Blocks along the axes decide where few of them overlap, oriented ones where a sample says that
-/// few overlap so, and a tree decides all else: also where there are too many meetings to list, or
-/// an object is stretched (core/boxes/triangle_blocks.h). Whatever decides finds every pair whose
-/// triangles are at most the clearance apart. threads: 0 for as many as there are cores; changes no
-/// answer. ignored: as find_meetings().
+/// Compares the boxes of the blocks of objects that meet. The number of overlaps decides how pairs
+/// are found: by blocks along the axes if few of them overlap, by oriented blocks if few of those
+/// overlap in a sample, else by a tree; also by a tree if there are too many meetings to list, or
+/// an object is stretched (core/boxes/triangle_blocks.h). Each way finds every pair at most the
+/// clearance apart. threads: 0 for as many as there are cores; changes no answer. ignored: as
+/// find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
-/// As above, where the blocks and meetings are known. Null: the decision depends on the pairs of
+/// As above, if the blocks and meetings are known. Null: the decision depends on the pairs of
 /// blocks.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);
-/// Likewise, where the blocks have their boxes or lanes, and decide_by_meetings() says nothing.
+/// As above, if the blocks have their boxes or lanes, and decide_by_meetings() does not decide.
 /// regions: where its objects meet.
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,

@@ -1,5 +1,5 @@
 // A block's frame comes from the second moments of its corners. Blocks are the leaves of a tree of
-// oriented boxes, which is asked about one block after the other. Only sums, products and
+// oriented boxes, which is searched for one block after the other. Only sums, products and
 // comparisons of floats decide, without fused operations, so every instruction set gives the same
 // pairs.
 #undef HWY_TARGET_INCLUDE
@@ -54,7 +54,7 @@ HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const Oriented
     const auto outside = [&](Vector distance, Vector reach) {
       return hn::Gt(hn::Abs(distance), hn::Add(reach, all(margin)));
     };
-    auto separated = hn::Gt(dx, dx);  // in no lane
+    auto separated = hn::Gt(dx, dx);  // no lane yet
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         turned[i][k] = dot(one.frame[i], at(block.frame[k], 0, from), at(block.frame[k], 1, from),
@@ -195,11 +195,11 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
 
 namespace {
 
-// Margins in units of the distance of the farthest corner from the origin: what floats can be off
-// where two oriented boxes are compared, and two triangles (docs/reliability.md, "Oriented boxes").
+// Margins in units of the distance of the farthest corner from the origin: bounds of the rounding
+// when two oriented boxes, or two triangles, are compared (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
-// Sums over points: how many, their coordinates, and the products of two of these.
+// Sums over points: their number, their coordinates, and the products of two coordinates.
 struct Moments {
   double count = 0;
   Vec3 sum = Vec3::Zero();
@@ -339,7 +339,7 @@ std::uint32_t order_in(const Scene& scene, const Object& object, double clearanc
   return static_cast<std::uint32_t>(inside.size());
 }
 
-// The tree over the blocks of an object, and its nodes from nodes[at] on.
+// Builds the tree over the blocks of an object. Its nodes are stored from nodes[at] on.
 BoxTree<float> plant(std::span<const OrientedBox> leaves, std::span<const OrientedLanes> lanes,
                      std::vector<Moments> moments, std::span<WideOriented> nodes, std::size_t at) {
   BoxTree<float> out;
@@ -399,12 +399,12 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   for (const Box& box : blocks.objects) {
     if (!box.is_empty()) all.add(box);
   }
-  // The middle, rounded: where doubles are as wide as the scene, it may be a corner of the box.
+  // The middle, rounded. In a scene as small as the distance of doubles, it may be a corner.
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
   // The corners are at most `reach` from the origin. Below the least of these numbers floats lose
-  // what the margins assume, above the largest they overflow.
+  // more than the margins allow; above the largest they overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;
   if (!(reach >= 0x1p-60 && reach + gap <= 0x1p60)) return nullptr;
   out->margin = static_cast<float>(kBoxMargin * reach + gap);

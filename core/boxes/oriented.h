@@ -1,10 +1,10 @@
-// Oriented boxes of blocks of triangles. Boxes along the axes say little about long thin triangles
-// that lie obliquely. So each block gets three directions of its own, by the principal directions
-// of its corners, and two triangles are compared along those of both blocks.
+// Oriented boxes of blocks of triangles. Boxes along the axes separate long, thin, oblique
+// triangles poorly. So each block gets three directions, from the principal directions of its
+// corners, and two triangles are compared along the directions of both blocks.
 //
 // If the images of two sets under one linear map have no common point, the sets have none. So any
 // direction may be compared; good ones separate more. All is computed in floats relative to one
-// origin, and margins contain what rounding can do (docs/reliability.md, "Oriented boxes").
+// origin, and margins cover all rounding errors (docs/reliability.md, "Oriented boxes").
 #pragma once
 
 #include <array>
@@ -73,7 +73,7 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
 std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                    const BlockPairs& some, double clearance, bool neighbours,
                                    unsigned threads, const TakePairs& take);
-/// Those of all their pairs of blocks, and those that were kept; sorted.
+/// The pairs of triangles in all their pairs of blocks, and the pairs that were kept; sorted.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads);
 

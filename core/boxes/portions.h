@@ -9,9 +9,9 @@
 
 namespace farcull {
 
-/// Calls find(begin, end, memory, flush) for portions of the numbers 0 .. count - 1 in turn. Each
-/// thread has a Memory, to whose `pairs` find appends; flush() gives them to `take` if there are
-/// many. All are given in the end. Returns their number.
+/// Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
+/// a Memory, and find appends to its `pairs`; flush() gives them to `take` if there are many. The
+/// rest is given at the end. Returns the number of pairs.
 template <class Memory, class Take, class Find>
 std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
                             const Take& take, const Find& find) {

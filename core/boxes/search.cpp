@@ -31,7 +31,7 @@ bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   return false;
 }
 
-// How many pairs of objects a stage of boxes leaves out.
+// The number of pairs of objects that a stage of boxes leaves out.
 std::optional<std::uint64_t> ignored_pairs(const BoxesSettings& settings) {
   if (settings.ignored.empty()) return std::nullopt;
   return settings.ignored.size();
@@ -54,7 +54,7 @@ Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
           .unit = Unit::triangles};
 }
 
-// Keeps what blocks found for the next frame. What a tree found is not kept.
+// Stores the pairs that blocks found for the next frame. Pairs found by a tree are not stored.
 void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, FrameMemory& memory) {
   const BlockDecision& decision = plan.decision;
   memory.frame = plan.by_tree() ? std::nullopt : std::optional(memory.moved.frame());

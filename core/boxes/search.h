@@ -1,7 +1,7 @@
-// The method `boxes`: every pair of triangles whose boxes overlap, or, where slivers lie askew,
-// every such pair whose oriented boxes overlap as well. A pair that intersects is among them
-// (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"): between objects, and inside those
-// that are tested against themselves. The method decides nothing exactly; verify/ does.
+// The method `boxes`: every pair of triangles whose boxes overlap. If slivers lie obliquely, only
+// those pairs whose oriented boxes overlap as well. No pair that intersects is lost
+// (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"), neither between objects nor inside
+// those tested against themselves. The method decides nothing exactly; verify/ does.
 //
 // A plan says what finds the pairs: boxes of blocks of 16 triangles, along the axes or oriented, or
 // a tree of the boxes of all triangles. The rules are fixed: the same scene and settings give the
@@ -22,7 +22,7 @@ struct BoxesSettings {
   double clearance = 0;    // world units, finite, >= 0: pairs at this distance or less count too
   bool full = false;       // leave nothing out: the boxes of all triangles are compared
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
-  bool lists = false;      // pairs of blocks are listed even where find_boxes() has a `take`
+  bool lists = false;      // pairs of blocks are listed even if find_boxes() has a `take`
   /// Objects that are not tested against each other, as in_order() gives them. Boxes compare none
   /// of their triangles.
   std::vector<ObjectPair> ignored = {};
@@ -59,9 +59,9 @@ struct BoxesResult {
 
 /// Finds the candidate pairs of the scene that was planned: of different objects, and of one object
 /// if it is marked `self`. The result does not depend on threads. memory: that of the plan; null if
-/// the plan has none. take: receives the candidates as they are found, so that they are never
-/// listed, if a tree finds them, or if blocks do and neither settings.lists nor plan.remembers;
-/// empty: they are listed.
+/// the plan has none. take: receives candidates as they are found, not listed, if a tree finds
+/// them, or if blocks do and settings.lists and plan.remembers are false; empty: candidates are
+/// listed.
 BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* memory = nullptr,
                        const Progress& progress = {}, const TakePairs& take = {});
 

@@ -166,7 +166,7 @@ void sort_by_code(UninitializedVector<Coded>& all, int bits) {
 // The cells of a grid over a box, and their places on a Morton curve.
 class MortonGrid {
  public:
-  // Cells are about half as wide as a block of a surface with so many triangles.
+  // Cells are about half as wide as a block of a surface with this number of triangles.
   MortonGrid(const FloatBox& box, std::uint32_t triangles)
       : bits_(
             std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(triangles / 16.0))) + 1, 4, 10)),

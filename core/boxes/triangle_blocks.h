@@ -1,6 +1,6 @@
 // Blocks of triangles. Triangles that follow one another in a file are mostly close, so one box can
-// rule out a whole block, and most triangles are never looked at one by one. Scattered triangles
-// are put in an order in which they are close.
+// rule out a whole block, and most triangles are never examined one by one. Scattered triangles
+// are sorted first, so that those of a block are close.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct TriangleBlocks {
   /// A gathered object: its triangles were put in an order of their own.
   struct Gathered {
     std::uint32_t first = 0;  // into lanes: its first block
-    std::uint32_t count = 0;  // blocks with lanes; the triangles of the others meet nothing
+    std::uint32_t count = 0;  // blocks with lanes; triangles of other blocks meet nothing
     bool any = false;
   };
   std::vector<Gathered> gathered;         // per object; empty: no object was gathered
@@ -68,8 +68,8 @@ constexpr double kStretched = 8;
 /// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
 /// are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
-/// Morton order, as blocks with lanes; all triangles of stretched ones in that of spatial_order().
+/// Chooses the origin. Orders the triangles of scattered objects that meet the object's region by
+/// Morton code, as blocks with lanes. Orders all triangles of stretched objects by spatial_order().
 /// regions: per object a box that contains the grown boxes of all its triangles that can meet
 /// anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,

@@ -25,7 +25,7 @@ struct CanvasWork {
   std::uint64_t state_changes = 0;     // of program, target or depth test: between steps
   std::uint64_t queries = 0;           // occlusion queries, and one a pass that counts primitives
   std::uint64_t readbacks = 0;         // answers that are read: reports, then each query
-  std::uint64_t waits = 0;             // for the device to finish what it was told
+  std::uint64_t waits = 0;             // for the device to finish its commands
   std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
   std::uint64_t downloaded_bytes = 0;  // of reports and queries
   std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
@@ -68,8 +68,8 @@ struct CanvasWork {
 /// depth interpolated by the rasterizer.
 enum class DepthMode { fragment, fixed };
 
-/// The parameters of a solid, read by its shader function: five vec4. The last three numbers belong
-/// to the canvas, for elements of its own at a fixed depth: a solid leaves them 0.
+/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are
+/// for elements of the canvas at a fixed depth; a solid leaves them 0.
 using Solid = std::array<std::array<float, 4>, 5>;
 
 /// A convex quadrilateral (px, in order around) and the solid seen through it.
@@ -90,7 +90,7 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false where some
+  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false if some
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
@@ -132,10 +132,10 @@ struct Step {
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that starts empty. Draws of one slot inside a step stand
-/// together. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is seen
-/// where one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
-/// where nothing is stored nothing is seen. touching = false: only fragments behind it (GREATER),
+/// Steps in order, on a depth buffer that starts empty. Draws of one slot in a step are
+/// consecutive. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is
+/// seen if one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
+/// where nothing is stored, nothing is seen. touching = false: only fragments behind it (GREATER),
 /// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
 /// contacts at equal depth are then not seen, so no guarantee holds.
 struct Pass {
@@ -156,9 +156,9 @@ class Canvas {
   /// (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
   /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
-  /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
-  /// Among fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas'
-  /// tests and for pictures.
+  /// give each pixel of the window, NaN if it has no fragment; height rows of width values. Among
+  /// fragments whose mapped depths are equal, any may be given. Proxies only. For the tests of the
+  /// lemmas and for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }
@@ -173,7 +173,7 @@ class Canvas {
   virtual CanvasWork work() const { return {}; }
 };
 
-/// The depth map of a window, the same float expression wherever it stands:
+/// The depth map of a window, everywhere the same float expression:
 ///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
 /// The rest of [0, 1] is for the items at fixed depths: 0 for kEverywhere, (0.75, 1) for a canvas's
 /// control items.
@@ -212,8 +212,8 @@ struct SolidCase {
   float cx, cy;
   Solid solid;
 };
-/// What solid_interval (core/canvas/canvas.h) gives for a SolidCase; without a hit, entry and exit
-/// mean nothing.
+/// The result of solid_interval (core/canvas/canvas.h) for a SolidCase. Without a hit, entry and
+/// exit have no meaning.
 struct SolidAnswer {
   bool hit;
   float entry, exit;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-// The triangles that one thread fattens, into drawables of its own until all parts are joined.
+// The triangles that one thread fattens. It has its own drawables until all parts are joined.
 class Part {
  public:
   Part(const Scene& scene, const Window& window, const Fattener& fattener, double radius)

@@ -20,7 +20,7 @@ std::uint64_t cell(double x, double lo, double hi) {
   const double span = 0.5 * hi - 0.5 * lo;
   const double at = (0.5 * x - 0.5 * lo) / span;
   constexpr double kCells = 1 << kCellBits;
-  if (!(at > 0)) return 0;  // also where the box is flat
+  if (!(at > 0)) return 0;  // also if the box is flat
   return static_cast<std::uint64_t>(std::min(at * kCells, kCells - 1));
 }
 

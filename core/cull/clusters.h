@@ -11,16 +11,16 @@
 namespace farcull {
 
 /// The level between objects and triangles: clusters of that many triangles of one owner, in the
-/// order of a space-filling curve, one question for the open triangles of a cluster. Each size is a
-/// level of its own, from the first to the last; empty: no such level. It is run on the first visit
-/// of a view, and changes no fixed point.
+/// order of a space-filling curve. One query asks for all open triangles of a cluster. Each size is
+/// a level, from first to last; empty: no such level. It is run on the first visit of a view, and
+/// changes no fixed point.
 struct Clusters {
   std::vector<std::uint32_t> sizes;  // triangles, each 2 or more
-  Reason reason = Reason::none;      // for the trace; none: the trace says nothing
+  Reason reason = Reason::none;      // for the trace; none: no entry in the trace
   std::uint64_t n = 0, m = 0;        // numbers of the reason
 };
 
-/// The fixed rule: clusters of 32 triangles where a question costs (occlusion queries) and more
+/// The fixed rule: clusters of 32 triangles if questions are costly (occlusion queries) and more
 /// than 32,768 triangles may take part; none otherwise.
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
 
@@ -31,9 +31,9 @@ std::vector<std::uint32_t> spatial_order(std::span<const std::uint32_t> triangle
                                          std::span<const std::uint32_t> owner,
                                          std::span<const Box> boxes);
 
-/// Per triangle of the scene (owner.size() of them): the number of its cluster, where each owner's
-/// triangles in `order` are cut into clusters of `size`, the last of an owner being smaller.
-/// Clusters ascend along the order; what is not in `order` has number 0.
+/// The cluster number of each triangle of the scene (owner.size() of them). Each owner's triangles
+/// in `order` are cut into clusters of `size`; the last cluster of an owner may be smaller. Numbers
+/// ascend along the order. Triangles that are not in `order` have number 0.
 std::vector<std::uint32_t> cluster_numbers(std::span<const std::uint32_t> order,
                                            std::span<const std::uint32_t> owner,
                                            std::uint32_t size);

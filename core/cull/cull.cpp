@@ -23,7 +23,7 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   return radius;
 }
 
-// The owner of each triangle: as given, its object, or itself where its object is tested against
+// The owner of each triangle: the given one, its object, or itself if its object is tested against
 // itself.
 std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settings) {
   if (!settings.owners.empty()) return settings.owners;
@@ -60,7 +60,7 @@ bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
 
-// Objects that take part, where they are too few to be asked as a whole; else 0.
+// The number of objects that take part, if they are too few to be asked as a whole; else 0.
 std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
                               const CullSettings& settings) {
   if (settings.least_objects == 0 || settings.objects_alone || !owned_by_objects(scene, settings))
@@ -101,7 +101,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .out = live,
          .unit = Unit::triangles});
   }
-  // The plan says it once, and only if something is drawn.
+  // This stage is reported once per plan, and only if something is drawn.
   const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
   if (few > 0) {
     stages.push_back({.kind = StageKind::objects,
@@ -183,7 +183,7 @@ class Culling {
   // Sets what all visits of the round agree on.
   void end_round() {
     if (settings_.clear == ClearRule::any || state_.live.empty()) return;
-    if (places_.empty()) return;  // where there is no view, none has cleared anything
+    if (places_.empty()) return;  // without a view, no view has cleared anything
     Stage stage = begin({.kind = StageKind::agreement,
                          .round = round_,
                          .depends = round_ > 1,
@@ -199,12 +199,12 @@ class Culling {
     end_at_few();
   }
 
-  // Whether the round that ends changed something, so that another one may. What follows an empty
-  // set is left out.
+  // True if the round that ends changed something, so that another one may too. If no triangle is
+  // left, the next round is left out.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
-    // That one round is the last no pixel decides.
+    // Whether round 1 is the last does not depend on pixels.
     if (last && (!ended || round_ == 1)) {
       leave_out({.kind = StageKind::further_rounds,
                  .reason = Reason::rounds_given,
@@ -229,7 +229,7 @@ class Culling {
     return false;
   }
 
-  // Whether the visit that comes is left out; records why.
+  // True if the next visit is left out; records why.
   bool leaves_out(std::size_t view) {
     ViewState& place = places_[view];
     view_ = settings_.views[view].name;
@@ -336,7 +336,7 @@ class Culling {
     return report;
   }
 
-  // The clusters of a run are fixed, so that fewer open triangles never ask in larger company.
+  // The clusters of a run are fixed, so later clusters never have more open triangles.
   void arrange_clusters() {
     if (own_owners_ || settings_.clusters.sizes.empty()) return;
     state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);
@@ -353,7 +353,7 @@ class Culling {
 
   // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // Versions count where bits join from view to view and triangles are asked one by one.
+  // Versions are compared if bits join from view to view and triangles are asked one by one.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -402,7 +402,7 @@ class Culling {
                      .queries_saved = saved_.queries});
   }
 
-  // A stage of the visit that goes on.
+  // A stage of the current visit.
   Stage of_visit(StageKind kind, Reason reason) const {
     return {.kind = kind, .subject = view_, .round = round_, .depends = true, .reason = reason};
   }
@@ -441,7 +441,7 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  CullState start_;                   // where all views have to clear: as the round began,
+  CullState start_;                   // if all views have to clear: as the round began,
   std::vector<std::uint8_t> agreed_;  // and the bits that every visit since has set
   bool done_ = false;                 // few enough triangles are left
   bool visited_ = false;              // a view was visited

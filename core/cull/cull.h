@@ -48,8 +48,8 @@
 
 namespace farcull {
 
-/// The radius of the ball, as the budget of each view times a factor (1 or more keeps the promise),
-/// or as published.
+/// The radius of the ball: each view's budget times a factor (guaranteed if 1 or more), or the
+/// published radius.
 struct RadiusRule {
   bool published = false;
   double factor = 1;
@@ -66,9 +66,9 @@ struct CullStep {
   std::uint64_t draws_saved = 0, queries_saved = 0;
 };
 
-/// How many views have to find a triangle fully visible before it is culled. any: one (CULLIDE).
-/// all: every one of them, each from the triangles with which the round began; a view that cannot
-/// be drawn clears nothing, so nothing is culled then, nor where there is no view.
+/// How many views must find a triangle fully visible before it is culled. any: one (CULLIDE). all:
+/// every view, each with the triangles that were left when the round began. A view that cannot be
+/// drawn clears nothing, so nothing is culled then; nor is anything culled without views.
 enum class ClearRule { any, all };
 
 struct CullSettings {
@@ -77,17 +77,17 @@ struct CullSettings {
   Fattener fattener;
   RadiusRule radius;
   bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
-  /// Every triangle of an object with Object::self is an owner; find_regions(scene, {.self = true})
-  /// goes with it.
+  /// Every triangle of an object with Object::self is an owner. Use it with regions of
+  /// find_regions(scene, {.self = true}).
   bool self = false;
-  /// Per triangle of the scene: its owner, where neither objects nor single triangles are owners
-  /// (core/cull/patches.h). No owner has triangles of two objects. Empty: by `self`. There is no
-  /// object level then.
+  /// The owner of each triangle of the scene, if owners are neither objects nor single triangles
+  /// (core/cull/patches.h). All triangles of an owner are of one object. There is no object level
+  /// then. Empty: `self` says what the owners are.
   std::vector<std::uint32_t> owners = {};
   bool touching = true;  // false: what only touches is not seen, see Pass::touching
   Clusters clusters = {};
   ClearRule clear = ClearRule::any;
-  int rounds = 0;  // at most so many; 0: until one changes nothing
+  int rounds = 0;  // the most rounds; 0: until a round changes nothing
   /// Objects are asked as a whole, in every round, and their triangles never. Objects have to be
   /// the owners then.
   bool objects_alone = false;
@@ -95,11 +95,11 @@ struct CullSettings {
   std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
   /// Objects that have to take part before they are asked as a whole; 0: they always are.
   std::uint32_t least_objects = 0;
-  /// A further round follows where the last one culled at least one live triangle in so many; 0:
-  /// where it changed anything.
+  /// A further round follows if the last one culled at least one live triangle in this many; 0: if
+  /// it changed anything.
   std::uint32_t worth_a_round = 0;
-  /// To start from, per triangle of the scene as CullResult::bits; empty: none. Plain CULLIDE takes
-  /// from them only what is culled.
+  /// The bits at the start, per triangle of the scene as CullResult::bits; empty: none. Plain
+  /// CULLIDE uses only which triangles they cull.
   std::vector<std::uint8_t> bits = {};
   std::function<void(const CullStep&)> watch = {};
 };
@@ -124,19 +124,19 @@ struct CullResult {
   std::vector<Stage> stages;
 };
 
-/// Culls the triangles of regions.triangles. A round visits every view; a visit runs, at object
-/// level (in round 1, where objects are the owners), at the level of clusters (in round 1) and at
-/// triangle level, the first pass, then the second; with `objects_alone` at object level only.
-/// Rounds follow until one changes nothing: sets no bit (quick), or culls nothing (plain); or until
-/// `rounds` of them have run. Where all views have to clear a triangle, a bit is set where each
-/// visit of the round set it. Left out, unless `full`, each as a stage with its
-/// reason: passes and visits that are not due (quick), levels and visits where no triangle is left,
-/// everything after a view that leaves at most `enough` triangles, the object level of few objects
+/// Culls the triangles of regions.triangles. A round visits every view; a visit runs the object
+/// level (round 1 only, if objects are owners), the cluster level (round 1 only) and the triangle
+/// level, on each the first pass, then the second; with `objects_alone` the object level only.
+/// Rounds follow until one changes nothing: sets no bit (quick), or culls nothing (plain); or
+/// until `rounds` of them have run. If all views have to clear a triangle, a bit is set if each
+/// visit of the round set it. Left out, unless `full`, each as a stage with its reason: passes
+/// and visits that are not due (quick), levels and visits if no triangle is left, everything
+/// after a view that leaves at most `enough` triangles, the object level of few objects
 /// (`least_objects`), and rounds after one that culled little (`worth_a_round`). The last two
-/// change which bits are set, never that a bit is true.
-/// Throws Error where the resolution is beyond the canvas's limit or the canvas cannot vouch for a
-/// pass; std::logic_error where settings.bits or settings.owners has another length than the scene,
-/// and for objects_alone where objects are not the owners.
+/// change which bits are set, never that a bit is true. Throws Error if the resolution is beyond
+/// the canvas's limit or the canvas cannot vouch for a pass; std::logic_error if settings.bits or
+/// settings.owners has another length than the scene, and for objects_alone if objects are not
+/// the owners.
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 
@@ -144,9 +144,9 @@ CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& 
 CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
                    const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
 
-/// The stages that cull() will go through, in order, before anything is drawn. Stages whose running
-/// depends on pixels are marked so, with the rule that will decide; rounds after the first are one
-/// stage. settings.bits are not looked at.
+/// The stages that cull() will go through, in order, before anything is drawn. Stages that run
+/// depending on pixels are marked so, with the rule that will decide; rounds after the first are
+/// one stage. settings.bits are ignored.
 std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings);
 

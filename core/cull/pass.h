@@ -1,5 +1,5 @@
-// The state of a culling run and one pass over it. core/cull/cull.h says what they are for; here
-// they stand apart so that tests can run passes by other rules.
+// The state of a culling run and one pass over it, explained in core/cull/cull.h. They have a
+// header of their own so that tests can run passes by other rules.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ constexpr PassRule kQuickRule = {
     .clears = false,
 };
 
-/// A level asks once for all open triangles of a group; groups stand together inside an owner.
+/// One query asks for all open triangles of a group. The groups of an owner are consecutive.
 struct Level {
   std::uint32_t size;                                 // as Stage::level
   const std::vector<std::uint32_t>* group = nullptr;  // per triangle of the scene; null: each alone
@@ -40,7 +40,7 @@ struct Level {
 
 struct CullState {
   std::vector<std::uint8_t> bits;     // per triangle of the scene
-  std::vector<std::uint32_t> live;    // those of an owner stand together, owners ascending
+  std::vector<std::uint32_t> live;    // an owner's are consecutive, owners ascend
   std::vector<std::uint32_t> owner;   // per triangle of the scene
   std::uint64_t changes[2] = {1, 1};  // how often an F, an L bit was set
   std::uint64_t culled = 0;           // triangles that have both bits
@@ -63,11 +63,11 @@ struct PassCost {
   }
 };
 
-/// Runs one pass on the canvas: owner by owner (ascending where F is asked, descending where L is),
-/// asks by the rule, then stores by the rule. What was not seen gets the bit, after the pass. Two
-/// kinds get it undrawn: triangles without elements in this view, and those asked before anything
-/// is stored. Undrawable ones get no bit and are stored everywhere. Stores that nobody is asked
-/// after are left out. items: those of `drawables`, triangles in the order of CullState::live.
+/// Runs one pass on the canvas, owner by owner (ascending if F is asked, descending if L is): asks
+/// by the rule, then stores by the rule. Triangles not seen get the bit after the pass. Two kinds
+/// get it undrawn: triangles without elements in this view, and those asked before anything is
+/// stored. Undrawable ones get no bit and are stored everywhere. Stores that no later query reads
+/// are left out. items: those of `drawables`, triangles in the order of CullState::live.
 PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
                   const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
                   bool touching, Canvas& canvas);

@@ -45,7 +45,7 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
                                        const Patches& patches, std::span<const std::uint32_t> live,
                                        std::span<const std::uint8_t> bits, bool neighbours = true);
 
-/// Which of some pairs drawing can take away.
+/// Pairs, divided into those that drawing may remove and the others.
 struct PairsToDraw {
   std::vector<TrianglePair> drawn;  // of different owners, without a common vertex
   std::vector<TrianglePair> other;  // all others: they share a vertex, so every view finds that

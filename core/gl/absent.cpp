@@ -1,6 +1,6 @@
-// Compiled in place of the rest of this folder where farcull is built without OpenGL
-// (-DFARCULL_GL=OFF). GlContext cannot be made then, so no function that takes one is ever called;
-// these functions are here for the linker, and throw the same Error.
+// Compiled in place of the rest of this folder if farcull is built without OpenGL
+// (-DFARCULL_GL=OFF). GlContext cannot be made then, so no function that takes one is ever called.
+// These functions are only for the linker, and throw the same Error.
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"

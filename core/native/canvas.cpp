@@ -16,7 +16,7 @@ namespace farcull {
 namespace {
 
 constexpr int kMostPixels = 16380;    // a side; its viewport is 2^14
-constexpr std::size_t kLeast = 2048;  // draws, below which another thread costs more than it saves
+constexpr std::size_t kLeast = 2048;  // draws; with fewer, another thread costs more than it saves
 
 // First and one past the last pixel whose centre is in [lo, hi].
 void cut(double lo, double hi, int size, std::uint16_t& from, std::uint16_t& to) {

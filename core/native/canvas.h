@@ -1,10 +1,10 @@
 // The canvas on the cores of the CPU: no device and no driver. Every thread draws all steps of a
-// pass, in order, on its rows of the window, so any number of threads gives the same bits; so does
-// every instruction set (core/native/lanes.h), since each operation is rounded once on all of them.
+// pass, in order, on its rows of the window, so any number of threads gives the same bits. Every
+// instruction set (core/native/lanes.h) does too, since each operation is rounded once on all.
 //
-// For proxies it promises more than OpenGL does (docs/budget.md, "The canvas on the CPU"): samples
-// lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles follow
-// OpenGL's rules (draw_triangles_native) and promise nothing.
+// For proxies it guarantees more than OpenGL does (docs/budget.md, "The canvas on the CPU"):
+// samples lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles
+// follow OpenGL's rules (draw_triangles_native) and give no guarantee.
 //
 // First the job of one thread: plain data, so that a function compiled for any instruction set can
 // take it.
@@ -18,12 +18,12 @@
 namespace farcull {
 
 /// Columns and rows of the buffer beyond the window's last: a block begins inside the window, and
-/// reads and writes back all its pixels. The columns keep what a thread writes back in a row out of
-/// the next row, which may be another thread's.
+/// reads and writes back all its pixels. Without the columns it would write to the next row, which
+/// may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
-/// The pixels of the window where an element may have a fragment: [x0, x1) x [y0, y1) from the
-/// window's lower left corner; empty where x0 >= x1 or y0 >= y1.
+/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the
+/// window's lower left corner; empty if x0 >= x1 or y0 >= y1.
 struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };
@@ -68,14 +68,14 @@ struct NativeLines {
 };
 
 /// Draws raw triangles by the fixed rules of OpenGL: corners snapped to 8 subpixel bits, pixel
-/// centres inside by the top-left rule, depth interpolated from the corners'. They promise
-/// nothing, and CULLIDE draws them.
+/// centres inside by the top-left rule, depth interpolated from the corners'. CULLIDE draws them.
+/// They give no guarantee.
 ///
-/// Conservatively, as GL_NV_conservative_raster does: a fragment in every pixel whose closed square
+/// With `conservative`, as GL_NV_conservative_raster: a fragment in every pixel whose closed square
 /// the snapped triangle touches, however small or thin it is. Its depth is that of the triangle's
-/// plane at the pixel's centre, but never outside the depths of its corners; of a triangle whose
-/// image is a segment or a point, the middle of these. So a fragment has one depth, where the
-/// triangle has a range of them in the pixel, and pairs can still be missed.
+/// plane at the pixel's centre, limited to the depths of its corners; if the triangle's image is a
+/// segment or a point, the middle of these depths. So a fragment has one depth, but the triangle
+/// has a range of depths in the pixel, so pairs can still be missed.
 void draw_triangles_native(const NativeJob& job);
 constexpr int kNativeSubpixelBits = 8;
 
@@ -83,7 +83,7 @@ constexpr int kNativeSubpixelBits = 8;
 
 struct NativeCanvasOptions {
   int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
-  /// For raw triangles: every pixel that one touches has a fragment (draw_triangles_native).
+  /// For raw triangles: a fragment in every pixel that one touches (draw_triangles_native).
   bool conservative = false;
   unsigned threads = 0;  // 0: as many as there are cores
 };
@@ -93,8 +93,8 @@ RasterLimits native_limits(int depth_bits = 32);
 
 class NativeCanvas final : public Canvas {
  public:
-  /// `mode` and `solid` as in the fattener whose drawables will come. Throws std::logic_error where
-  /// proxies come without their function on lanes, Error for other depth bits than 24 and 32.
+  /// `mode` and `solid` as in the fattener whose drawables will come. Throws std::logic_error if
+  /// proxies come without their function on lanes, Error for depth bits other than 24 and 32.
   NativeCanvas(DepthMode mode, const SolidProgram& solid, const NativeCanvasOptions& options = {});
 
   const RasterLimits& limits() const override { return limits_; }

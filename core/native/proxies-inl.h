@@ -107,7 +107,7 @@ HWY_INLINE bool already_seen(std::uint8_t* seen, std::uint32_t slot) {
   return std::atomic_ref<std::uint8_t>(seen[slot]).load(std::memory_order_relaxed) != 0;
 }
 
-/// Takes fragments of depth z (px) where `covered`. True: asked, and seen.
+/// Draws the covered fragments of depth z (px). True: they are asked, and one is seen.
 HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, Lane z, float* at,
                                int rows) {
   const Lane old = Lane(load_rows<kLanes>(at, job.stride, rows));
@@ -140,8 +140,8 @@ inline bool take_everywhere(const NativeJob& job, Verb verb) {
   return seen;
 }
 
-/// Calls visit(element, verb) -> whether it is seen, for the draws of a job in order; a slot that
-/// was seen is asked no more.
+/// Calls visit(element, verb), which returns whether it is seen, for the draws of a job in order. A
+/// slot that was seen is not asked again.
 template <class Visit>
 HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
@@ -199,7 +199,7 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws an element in the rows of the job. True: asked, and seen.
+/// Draws an element in the rows of the job. True: it is asked, and seen.
 template <class Kernel>
 HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
@@ -219,7 +219,7 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
   const Plain half_height = 0.5f * static_cast<Plain>(job.height);
   const Lane last_x(static_cast<Plain>(range.x1) - 0.5f - half_width);
   const Lane last_y(static_cast<Plain>(y1) - 0.5f - half_height);
-  // One block; true: asked, and seen.
+  // Draws one block. True: it is asked, and seen.
   const auto draw_block = [&](int x, int y) HWY_ATTR {
     float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
     const Lane cx = Lane(static_cast<Plain>(x) + 0.5f - half_width) + lane_columns();
@@ -262,7 +262,7 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
   });
 }
 
-/// Asks the kernel about single lines.
+/// Calls the kernel for single lines.
 template <class Kernel>
 HWY_INLINE void follow_lines(const NativeLines& lines) {
   const Solid& s = *lines.solid;

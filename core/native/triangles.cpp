@@ -47,7 +47,7 @@ struct SnappedTriangle {
   }
 };
 
-/// Takes the fragments of kWide pixels from `at` on, where `covered`. True: asked, and seen.
+/// Draws the covered ones of kWide pixels from `at` on. True: they are asked, and one is seen.
 HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<WideTag> covered,
                          float* at) {
   const NarrowTag narrow;

@@ -29,16 +29,16 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// The first of the nearest of some pairs of triangles, decided exactly. It shows of other pairs
-/// that they are no nearer: a triangle s of the first object and a triangle t of the second one are
-/// as far apart or farther if reach(s) <= start(t), and farther if reach(s) < start(t).
+/// The first of the nearest of some pairs of triangles, decided exactly. It proves that other pairs
+/// are no nearer: a triangle s of the first object and a triangle t of the second one are at least
+/// as far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
 struct SettledPair {
   TrianglePair pair;
   double distance = 0;  // world units, not below the exact one; 0 only if the triangles meet
   std::function<double(std::uint32_t)> reach, start;  // of a triangle; empty if the distance is 0
 };
-/// Exact arithmetic for a search in which more pairs are equally near than bounds in doubles can
-/// tell apart. Called by several threads at once, with pairs that are sorted.
+/// Exact arithmetic for a search in which bounds in doubles cannot tell which of many pairs is
+/// nearest. Called by several threads at once, with sorted pairs.
 using Settle = std::function<SettledPair(std::span<const TrianglePair>)>;
 
 /// The pairs of triangles of two objects that can be nearest. If the two are the same object, these
@@ -48,13 +48,13 @@ struct NearPairs {
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite if
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
-  /// All pairs of their triangles at the least distance are among these, where that distance is at
-  /// most the limit; the first of these pairs is enough where triangles meet, and where the trees
-  /// settle ties. Sorted, each once.
+  /// All pairs of their triangles at the least distance are among these, if that distance is at
+  /// most the limit. If triangles meet, or if the trees settle ties, the first of these pairs is
+  /// enough. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 
-/// How many boxes and pairs were looked at: how well culling works.
+/// The number of boxes and pairs that were examined; it shows how well culling works.
 struct ProximityCounts {
   std::uint64_t box_pairs = 0;       // bounds of boxes that were compared with the upper bound
   std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded
@@ -67,7 +67,7 @@ struct ProximityCounts {
 class ProximityTrees {
  public:
   /// threads: 0 for as many as there are cores; changes no answer. settle: if it is not empty,
-  /// searches call it where many pairs may be nearest, and keep the settled pair in place of them.
+  /// searches call it when many pairs may be nearest, and replace these by the settled pair.
   explicit ProximityTrees(const Scene& scene, unsigned threads = 0, Settle settle = {});
   ~ProximityTrees();
   ProximityTrees(ProximityTrees&&) noexcept;
@@ -91,23 +91,23 @@ class ProximityTrees {
   /// `within` need not be found. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// As above, but of others that are equally far only those with the lowest numbers need be found.
-  /// hints: in any order; of hints for the same two objects the first one counts. Where hints name
+  /// As above, but of others at the same distance only those with the lowest numbers need be found.
+  /// hints: in any order; of hints for the same two objects the first one counts. If hints name
   /// k others of an object, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
   /// All pairs of objects at most `within` apart, each object marked `self` with itself, and
-  /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error where
+  /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error if
   /// there are more than `most` pairs.
   std::vector<ObjectPair> objects_within(double within, std::size_t most) const;
 
   /// All pairs of triangles at most `within` apart, of different objects, or of one `self` object
-  /// if they are no neighbours; and a few that are farther only by roundings. Sorted, each once.
-  /// Precondition: within is finite. Throws std::logic_error for an invalid limit, and Error where
-  /// there are more than `most` pairs. Memory: at most some tens of bytes for each pair, and for
-  /// some thousands of other pairs.
+  /// if they are no neighbours; and a few that are farther only by rounding errors. Sorted,
+  /// distinct. Precondition: within is finite. Throws std::logic_error for an invalid limit, and
+  /// Error if there are more than `most` pairs. Memory: at most some tens of bytes for each pair,
+  /// and for some thousands of other pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 

@@ -76,7 +76,7 @@ std::vector<Search> divide(Search& search) {
     const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
     if (settled != search.kept.end()) part.kept.push_back(*settled);
   }
-  // The last one is looked at first, in each part as well.
+  // The last one is examined first, in each part as well.
   const std::size_t n = search.open.size();
   for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
   search.open.clear();
@@ -102,7 +102,7 @@ void join(Search& part, Search& search) {
 }  // namespace
 
 double scaled_limit(const SceneTrees& trees, double within) {
-  // A product that is subnormal is rounded; and the next number is not below the exact one.
+  // A subnormal product is rounded, but the next larger number is at least the exact product.
   return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
 }
 

@@ -1,10 +1,10 @@
 // ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
-// Searches go on side by side; one that takes long is divided. For the nearest objects, each object
-// asks about the others in the order of the gaps of their parts, and stops at a gap above the k-th
-// least upper bound so far. Where many parts overlap, each small object asks about all triangles at
-// once first, and then about the few others that this search leaves. For all pairs within a
-// distance, each object is searched with those that follow it, by searches whose bound stays the
-// limit and that stop often, to count the pairs of all of them.
+// Searches run in parallel; one that takes long is divided. For the nearest objects, each object is
+// searched with the others in the order of the gaps of their parts, and stops at a gap above the
+// k-th least upper bound so far. If many parts overlap, each small object is first searched with
+// all triangles at once, and then with the few others that this search leaves. For all pairs within
+// a distance, each object is searched with those that follow it. The bound of these searches stays
+// the limit, and they pause often so that the pairs of all of them can be counted.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -110,8 +110,8 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// All triangles of a scene as one object. Objects of one leaf ask about them where so many parts of
-// objects overlap that to search with one object after the other would take time with the square of
+// All triangles of a scene as one object. Objects of one leaf are searched with it if so many parts
+// of objects overlap that a search with one object after the other would take time quadratic in
 // their number.
 struct Crowd {
   static constexpr std::size_t kOverlaps = 16;  // parts that overlap, for each object
@@ -186,8 +186,8 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
   return out;
 }
 
-// The others that may be among the k nearest of an object. crowd: null where the object
-// searches with one other after the other.
+// The others that may be among the k nearest of an object. crowd: null if the object searches with
+// one other after the other.
 // hints: those that name the object, sorted. all: also others that are as near as the k-th and have
 // higher numbers.
 std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,
@@ -244,8 +244,8 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
       std::ranges::pop_heap(least);
       least.pop_back();
     }
-    // Others that overlap come in the order of their numbers. Once k of them meet this object,
-    // those that follow are not nearer, and have higher numbers.
+    // Overlapping others come in ascending order. Once k of them meet this object, the rest are no
+    // nearer, and have higher numbers.
     meeting += found.upper == 0;
     out.push_back(std::move(found));
     if (!all && meeting == k) break;

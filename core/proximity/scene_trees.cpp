@@ -116,9 +116,9 @@ std::vector<Part> children_of(const SceneTrees& trees, std::uint32_t object, con
 
 }  // namespace
 
-// Divides nodes into their children, the largest first, where the squared diagonals of the children
-// sum to less than half that of the node. Those of a compact surface sum to about as much as that
-// of its box, so it stays one part. Triangles far from each other have small boxes.
+// Divides nodes into their children, the largest first, if the squared diagonals of the children
+// sum to less than half that of the node. For a compact surface the sum is about that of its box,
+// so it stays one part. For triangles far from each other the boxes of children are small.
 void SceneTrees::add_parts(std::uint32_t object) {
   const auto is_smaller = [](const Part& x, const Part& y) { return x.square < y.square; };
   std::vector<Part> open = {part_of(trees_[object].box, trees_[object].levels, 0)};

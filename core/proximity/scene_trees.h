@@ -1,9 +1,9 @@
 // Trees over the triangles of each object and one over the objects; and the search for the nearest
 // triangles of two objects: branch and bound over pairs of nodes of their trees.
 //
-// A search works until it has looked at as many pairs of leaves as it may, and can go on then, or
-// be divided into searches that go on side by side. Its result depends on the scene, the question
-// and the hint alone, since no search looks at the results of another one.
+// A search pauses when it has examined as many pairs of leaves as it may. It can then continue, or
+// be divided into searches that run in parallel. Its result depends only on the scene, the question
+// and the hint, since no search uses the results of another one.
 #pragma once
 
 #include <algorithm>
@@ -114,8 +114,8 @@ class SceneTrees {
   Vec3 corner(std::uint32_t triangle, std::size_t k) const {
     return scene_->vertices[scene_->triangles[triangle][k]] * scale_;
   }
-  /// Boxes that together contain the triangles of an object: one, or several that are small beside
-  /// the object's box where its triangles lie far apart.
+  /// Boxes that together contain the triangles of an object: one box, or several much smaller ones
+  /// if its triangles lie far apart.
   std::span<const Box> parts(std::uint32_t object) const {
     return std::span(parts_).subspan(first_part_[object],
                                      first_part_[object + 1] - first_part_[object]);
@@ -163,8 +163,8 @@ struct alignas(64) PairBatch {
   std::size_t count = 0;  // of pairs; the columns behind them hold any finite numbers
 };
 
-/// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units. It
-/// is certain that they meet where upper is 0.
+/// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units. If
+/// upper is 0, they certainly meet.
 /// direction: from about the closest point of a to that of b.
 struct alignas(64) BatchBounds {
   std::array<double, kWide> lower, upper;
@@ -213,7 +213,7 @@ struct Reaches {
   std::vector<double> triangles;           // at kWide * leaf + k
 };
 
-/// What a settled pair shows about the triangles of the objects of a search.
+/// The planes of a settled pair: they prove that other pairs of triangles are no nearer.
 struct Planes {
   TrianglePair pair;  // is settled
   Reaches a;          // of the triangles of objects.a
@@ -228,11 +228,11 @@ struct Others {
   const SceneTrees* all;
   const Scene& scene;
   std::span<const std::uint32_t> owner;  // per triangle
-  std::uint32_t object;                  // the one that asks
-  std::size_t k;                         // so many others are asked for
-  bool ties;  // also others that are as near as the k-th and have higher numbers
-  /// No triangle from here on is asked about: k others with lower numbers meet the object for
-  /// certain.
+  std::uint32_t object;                  // the one whose nearest others are searched for
+  std::size_t k;                         // how many others are asked for
+  bool ties;  // whether to keep others as near as the k-th with higher numbers
+  /// Triangles from here on need no search: k others with lower numbers certainly meet the
+  /// object.
   std::uint32_t end = UINT32_MAX;
   /// The k least upper bounds of different others, sorted; of equal ones those with low numbers.
   std::vector<std::pair<double, std::uint32_t>> nearest = {};
@@ -255,17 +255,17 @@ struct Others {
 /// A search that has begun.
 struct Search {
   ObjectPair objects;
-  Others* others = nullptr;  // of objects.a; then objects.b is the one of its trees
-  double limit = 0;          // scaled: pairs farther apart are not looked for
+  Others* others = nullptr;  // of objects.a; then objects.b is the object of these trees
+  double limit = 0;          // scaled: pairs farther apart are not searched for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
-  /// The first pair so far that meets for certain. Then a pair behind it is no answer.
+  /// The first pair so far that certainly meets. Pairs after it are not the answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
   /// The first of the nearest pairs when pairs were settled last; it is kept.
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
   std::shared_ptr<const Planes> planes;  // of this pair, or of one that is as near or farther
   bool is_part = false;                  // of a search that was divided; makes no planes
   Vec3 direction = Vec3::Zero();         // of a pair with about the bound `upper`; 0: none
-  std::vector<NodePair> open;            // to be looked at, the last one first
+  std::vector<NodePair> open;            // to be examined, the last one first
   std::vector<KeptPair> kept;
   bool everything = false;       // all pairs within the limit are kept, near or not
   std::size_t kept_most = 1024;  // if more are kept, those that cannot be nearest are dropped, and
@@ -294,19 +294,19 @@ class SearchMemory {
 /// Begins a search. hint: null, or a pair of triangles that may be near.
 Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
                     const TrianglePair* hint, SearchMemory& memory);
-/// Begins a search for the nearest others of an object that has triangles, to which all pairs are
-/// left whose others can be among them.
+/// Begins a search for the nearest others of an object that has triangles. The search keeps all
+/// pairs whose other object can be among these.
 Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
                     SearchMemory& memory);
-/// Goes on until nothing is open, or `most` pairs of leaves were looked at.
+/// Continues until no pair of nodes is open, or until `most` pairs of leaves were examined.
 void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
 
-/// Pairs of leaves that a search looks at in one go. A search that is not done then is long, and is
-/// divided.
+/// Pairs of leaves that a search examines before it pauses. A search that is not finished by then
+/// is long, and is divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
-/// Keeps only the nearest pair that is kept, where exact arithmetic is at hand. Pairs that are no
-/// nearer than it and come behind it are no answer. Precondition: some pair is kept.
+/// Keeps only the nearest of the kept pairs, if the trees have exact arithmetic. Pairs after it
+/// that are no nearer are not the answer. Precondition: some pair is kept.
 void settle(const SceneTrees& trees, Search& search);
 /// A limit in world units, scaled and rounded up.
 double scaled_limit(const SceneTrees& trees, double within);

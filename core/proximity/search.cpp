@@ -1,5 +1,5 @@
-// Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all find
-// the same in the same order.
+// Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all give
+// the same results in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
 #include <hwy/foreach_target.h>
@@ -45,7 +45,7 @@ class Searcher {
   void begin(const TrianglePair* hint) {
     search_.open.push_back({0, 0, 0, static_cast<std::uint8_t>(a_.tree().levels),
                             static_cast<std::uint8_t>(b_.tree().levels)});
-    probing_ = true;  // the search looks at these pairs again later, so they are not kept now
+    probing_ = true;  // the search examines these pairs again later, so they are not kept now
     if (hint != nullptr && counts(hint->a, hint->b)) {
       add_hint(*hint);
       flush();
@@ -103,8 +103,8 @@ class Searcher {
     }
   };
 
-  // Nodes with lower triangles come first among nodes as near: if the objects meet, the first pair
-  // is the answer.
+  // Among equally near nodes, those with lower triangles come first: if the objects meet, the
+  // answer is the first pair that meets.
   bool comes_first(const NodePair& x, const NodePair& y) const {
     TrianglePair p = least(x), q = least(y);
     if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // the other object decides
@@ -114,7 +114,7 @@ class Searcher {
   TrianglePair least(const NodePair& at) const {
     return {a_.least(at.a_height, at.a), b_.least(at.b_height, at.b)};
   }
-  // Whether all pairs of the nodes come behind one that meets for certain.
+  // True if every pair of the nodes comes after a pair that certainly meets.
   bool is_behind(const NodePair& at) const {
     if (others_) return b_.least(at.b_height, at.b) >= others_->end;
     if (search_.first.a == UINT32_MAX) return false;
@@ -126,7 +126,7 @@ class Searcher {
     // If the objects are one, either node may hold the lower triangle.
     return self_ ? TrianglePair{std::min(lowest.a, lowest.b), 0} : lowest;
   }
-  // Whether no pair of the nodes is the answer, since they are no nearer than the settled pair.
+  // True if no pair of the nodes is the answer, because none is nearer than the settled pair.
   bool is_no_nearer(const NodePair& at) const {
     if (!search_.planes) return false;
     const auto &a = search_.planes->a.nodes, &b = search_.planes->b.nodes;
@@ -136,7 +136,7 @@ class Searcher {
     return is(a[at.a_height][at.a], -b[at.b_height][at.b]) ||
            (self_ && is(a[at.b_height][at.b], -b[at.a_height][at.a]));
   }
-  // The same of triangle i of leaf a and triangle j of leaf b.
+  // The same for triangle i of leaf a and triangle j of leaf b.
   bool is_no_nearer(const NodePair& at, std::size_t i, std::size_t j,
                     const TrianglePair& pair) const {
     if (!search_.planes) return false;
@@ -185,7 +185,7 @@ class Searcher {
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
     if (at.a_height != at.b_height) {
-      const bool a = at.a_height > at.b_height;  // the one that is divided
+      const bool a = at.a_height > at.b_height;  // the one to divide
       const WideBoxes<double>& own =
           a ? a_.children(at.a_height, at.a) : b_.children(at.b_height, at.b);
       const OneBox box = a ? b_.box_of(at.b_height, at.b) : a_.box_of(at.a_height, at.a);
@@ -263,10 +263,10 @@ class Searcher {
     return out;
   }
 
-  // Drops pairs that are farther apart along the normal of one of their triangles than the bound,
-  // or, in the plane of the triangle, across one of its edges. Boxes along the axes tell little of
-  // slivers and large triangles, and one direction is tried for all pairs of its triangle at once,
-  // which takes less time than to bound two of them.
+  // Drops pairs that are farther apart than the bound along the normal of one of their triangles,
+  // or, in the plane of the triangle, across one of its edges. Boxes along the axes separate
+  // slivers and large triangles poorly. One direction is tried for all pairs of its triangle at
+  // once, which takes less time than to bound two of them.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two
@@ -340,7 +340,7 @@ class Searcher {
     return out;
   }
 
-  // The places at which the triangles of a leaf end along the direction.
+  // The extents of the triangles of a leaf along the direction.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
     const Numbers n;
     const Vec3& d = search_.direction;
@@ -365,7 +365,7 @@ class Searcher {
   }
   void add(const BlockCorners& a, std::size_t i, const BlockCorners& b, std::size_t j) {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
-    // The bounds of two triangles depend on their order in the last digits.
+    // The last digits of the bounds depend on the order of the two triangles.
     if (first > second) return add(b, j, a, i);
     if (search_.is_behind({first, second}) || !counts(first, second)) return;
     PairBatch& batch = memory_.batch;
@@ -418,7 +418,7 @@ class Searcher {
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};
-        // It leads away from the object that asks.
+        // The direction leads away from the object whose nearest others are searched for.
         if (others_ && !others_->is_own(batch.pairs[best].a)) search_.direction *= -1;
         new_direction();
       }

@@ -25,7 +25,7 @@ static_assert(kWide % kLanes == 0);
 
 HWY_INLINE Number number(double x) { return hn::Set(Numbers(), x); }
 HWY_INLINE Number clamped(Number x) { return hn::Max(number(0), hn::Min(x, number(1))); }
-/// numerator / denominator where the latter is positive, else 0.
+/// numerator / denominator if the denominator is positive, else 0.
 HWY_INLINE Number ratio(Number numerator, Number denominator) {
   return hn::IfThenElseZero(hn::Gt(denominator, number(0)), hn::Div(numerator, denominator));
 }
@@ -51,7 +51,7 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-/// A point of a triangle, by the weights of its corners 1 and 2; corner 0 has the rest.
+/// A point of a triangle, by the weights of corners 1 and 2; corner 0 has the remaining weight.
 struct Weights {
   Number one, two;
 };
@@ -225,7 +225,7 @@ class Proof {
   Point most_;
 };
 
-/// The sign of a determinant where it is certain.
+/// The sign of a determinant if it is certain.
 struct Sign {
   Mask positive, negative;
 };
@@ -247,7 +247,7 @@ HWY_INLINE Sign sign_of_determinant(const Point& a, const Point& b, const Point&
   return {hn::Gt(value, doubt), hn::Lt(value, hn::Neg(doubt))};
 }
 
-/// Lanes in which an edge of one triangle passes through the other one for certain.
+/// Lanes in which an edge of one triangle certainly passes through the other one.
 HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   Point a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -259,7 +259,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // In which sense edge k of a passes edge j of b, and so edge j of b edge k of a.
+      // The sense in which edge k of a passes edge j of b; also that in which j passes k.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }

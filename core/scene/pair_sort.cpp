@@ -14,7 +14,7 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// From so many on, the partners of one triangle may be marked instead of sorted.
+// From this number on, the partners of one triangle may be marked instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
 // Sorts the pairs of one first triangle and leaves each there once, at the begin; returns how many
@@ -60,8 +60,8 @@ struct Range {
   }
   std::size_t size() const { return first.back(); }
 
-  // Sorts them into `out`, which has room for all, so that only the few partners of each triangle
-  // are left to sort; returns how many differ.
+  // Groups the pairs by their first triangle in `out`, which has room for all, and then sorts the
+  // few partners of each; returns how many pairs differ.
   std::size_t sort(Parts parts, std::span<TrianglePair> out) {
     // From the back: first[a + 1], the end of the partners of a, becomes their start.
     for (const auto& part : parts) {

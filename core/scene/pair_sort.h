@@ -14,17 +14,17 @@
 
 namespace farcull {
 
-/// All pairs of the parts, sorted by (a, b), each once. Linear in the pairs and the range of a
-/// where there are many pairs. The answer does not depend on `threads` (0: as many as there are
-/// cores).
+/// All pairs of the parts, sorted by (a, b), without repeats. If there are many pairs, the time is
+/// linear in their number and the range of a. The answer does not depend on `threads` (0: as many
+/// as there are cores).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
 /// As above; empties the parts as soon as it has read them, to make room.
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
 
-/// Pairs that arrive some at a time, in no order, each once or more. They are kept in parts of one
-/// length, since a list that doubles would be copied each time.
+/// Collects pairs that arrive in groups, unsorted and perhaps repeated. They are kept in parts of
+/// one length, since a list that doubles would be copied each time.
 class GatheredPairs {
  public:
   void add(std::span<const TrianglePair> some);
@@ -38,10 +38,10 @@ class GatheredPairs {
   std::vector<std::vector<TrianglePair>> parts_;
 };
 
-/// Collects pairs from several threads, each pair as often as it is found. A thread adds to a list
-/// of its own. A list that reaches its share of the larger of `buffer` and the number of distinct
-/// pairs is sorted, and goes into one list of the distinct pairs. So the lists hold at most
-/// `buffer` pairs or as many as are distinct, and the work stays linear in the pairs that are
+/// Collects pairs from several threads; a pair may come several times. A thread adds to its own
+/// list. A list that reaches its share of `buffer`, or of the number of distinct pairs if that is
+/// larger, is sorted and merged into one list of the distinct pairs. So the lists hold at most
+/// `buffer` pairs, or as many as are distinct, and the work stays linear in the pairs that are
 /// added.
 class PairPool {
  public:

@@ -227,7 +227,7 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
 }
 
 FrameChange MovedCorners::compare(const Scene& scene) {
-  constexpr std::size_t kAtOnce = 64;  // most vertices lie among others that did not move either
+  constexpr std::size_t kAtOnce = 64;  // most vertices are among others that did not move either
   // If an allocation below throws, the copy is partial and is lost.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;

@@ -29,7 +29,7 @@ struct Box {
 
 /// True iff the closed boxes share a point (touching counts). Exact: it only compares doubles.
 bool overlap(const Box& a, const Box& b);
-/// The common part of two boxes; empty where they do not overlap.
+/// The common part of two boxes; empty if they do not overlap.
 Box intersection(const Box& a, const Box& b);
 
 /// Two objects as indices, a < b; or one object twice.
@@ -134,7 +134,7 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: what answers about all objects.
+/// Throws Error if objects of the scene are ignored. who: name of the work that needs them all.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Tells whether the objects of a pair of triangles are ignored.
@@ -155,34 +155,34 @@ class IgnoredObjects {
 
 // ---- which corners moved from one frame to the next ----
 
-/// What is new in a frame of a scene.
+/// What changed from the previous frame of a scene to this one.
 struct FrameChange {
   bool same = false;  // as many vertices as in the frame before, the same triangles and objects
   std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
 };
 
-/// Which corners moved between two frames of the same triangles and objects. Whoever keeps
-/// something of a frame keeps its number too, and uses what it kept only in the frame that follows.
+/// Which corners moved between two frames of the same triangles and objects. A class that keeps
+/// results of a frame also keeps its number, and uses the results only in the next frame.
 class MovedCorners {
  public:
   /// Begins the next frame. change: what is new in it, if the caller knows; null: the scene is
   /// compared with that of the last frame, and a copy is kept. In a frame that waits() nothing is
   /// compared.
   void update(const Scene& scene, const FrameChange* change = nullptr);
-  /// True in some frames after those that were not worth while.
+  /// True for some frames after frames in which knowing what moved saved nothing.
   bool waits() const { return waits_ > 0; }
-  /// Says whether it was worth while to know what moved in this frame, if it is known. At most once
-  /// a frame.
+  /// Says whether knowing what moved saved work in this frame, if it was known. At most once a
+  /// frame.
   void notify(bool worth_while);
   /// Frames begun, the present one included.
   std::uint64_t frame() const { return frame_; }
-  /// Whether this is the frame after the given one and has the same triangles and objects, so that
-  /// the others may be asked what moved since.
+  /// True if this is the frame after the given one and has the same triangles and objects, so that
+  /// the functions below say what moved since.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
   /// Whether a triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }
   bool triangle(std::uint32_t t) const { return any() && triangle_moved_[t] != 0; }
-  /// All these triangles, each once.
+  /// All triangles with a corner that moved, each once.
   const std::vector<std::uint32_t>& triangles() const { return triangles_; }
   static constexpr int kMostWaits = 16;  // frames
 
@@ -207,7 +207,7 @@ class MovedCorners {
   // Per vertex v the triangles that have it: of_vertex_[first_of_[v]] to of_vertex_[first_of_[v +
   // 1]]. Empty: not made yet.
   std::vector<std::uint32_t> first_of_, of_vertex_;
-  std::vector<std::uint8_t> triangle_moved_;  // if any did
+  std::vector<std::uint8_t> triangle_moved_;  // valid only if a corner moved
   std::vector<std::uint32_t> triangles_;      // that moved
 };
 
@@ -216,10 +216,10 @@ class MovedCorners {
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
 /// False if the matrix (finite, row by row) maps space to a plane, a line or a point, as far as
-/// doubles tell: its determinant is 0, or no larger than its own rounding errors.
+/// doubles can show: its determinant is 0, or at most its own rounding errors.
 ///
 /// Each row is divided by its largest number, which changes neither answer nor signs. A term of the
-/// determinant then meets 8 roundings at most: the three quotients, two products, a difference and
+/// determinant then has at most 8 roundings: the three quotients, two products, a difference and
 /// two sums. So 9 u times the sum of the magnitudes covers them, as in verify/filter_scalars.h.
 bool is_invertible(std::array<double, 9> r);
 

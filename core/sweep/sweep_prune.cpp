@@ -18,13 +18,13 @@
 namespace farcull {
 namespace {
 
-// Moves of an insertion sort, per element of its list, after which sorting anew is cheaper than to
-// go on.
+// Limit on the moves of an insertion sort, per element of its list. Beyond it, a full sort is
+// cheaper.
 constexpr std::uint64_t kMoves = 8;
 
-// Sorts what is almost sorted. Calls exchanged(e, f) where e moves from behind f to before it:
-// once for each two elements that stand the wrong way round, and for no others. False, with the
-// list in some order, where it takes more than kMoves per element.
+// Sorts what is almost sorted. Calls exchanged(e, f) if e moves from behind f to before it: once
+// for each two elements in the wrong order, and for no others. Returns false, with the list in some
+// order, if it takes more than kMoves per element.
 template <class Element, class Less, class Exchanged>
 bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Less& less,
                     const Exchanged& exchanged) {
@@ -205,7 +205,7 @@ void SweepPrune::forget() {
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
-  constexpr int kTries = 32;  // cost about what the sweep of one triangle does
+  constexpr int kTries = 32;  // these tries cost about as much as sweeping one triangle
   survivors_.clear();
   marks_.assign(boxes.size(), kDropped);
   groups_.resize(boxes.size());
@@ -251,8 +251,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep: the one along which boxes are shortest, compared with the extent
-/// of all. It changes only if another one is clearly better, since the order is lost with it.
+/// Chooses the axis of the sweep: the one along which boxes are shortest, relative to the extent of
+/// all. It changes only if another axis is clearly better, since changing loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();
@@ -272,8 +272,8 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   const auto best = static_cast<int>(std::min_element(ratio.begin(), ratio.end()) - ratio.begin());
   const int sweep = ratio[best] * kBetter < ratio[before] ? best : before;
   axes_ = {sweep, (sweep + 1) % 3, (sweep + 2) % 3};
-  // Columns about as wide as four boxes are long, so that most boxes lie in one or two along an
-  // axis; no more of them than twice the boxes.
+  // A column is about as wide as four boxes are long, so that most boxes are in one or two columns
+  // along an axis. There are at most twice as many columns as boxes.
   for (int k = 0; k < 2; ++k) {
     const int axis = axes_[k + 1];
     const double columns = std::clamp(0.25 / ratio[axis], 1.0, std::exp2(kMostBits));
@@ -306,7 +306,7 @@ void SweepPrune::renew_order(std::size_t triangles) {
 void SweepPrune::fill_columns(std::span<const Box> boxes) {
   constexpr std::uint64_t kEntries = 4;
   const auto [sweep, u, v] = axes_;
-  // Never decreasing in x, so where two boxes overlap, the larger lower end is in a column of both.
+  // Never decreases in x, so if two boxes overlap, the larger lower end is in a column of both.
   const auto column = [this](double x, int k) {
     const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
     const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));

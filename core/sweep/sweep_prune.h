@@ -29,8 +29,8 @@ class BoxSweep {
  public:
   /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,
   /// each once; valid until the next call. Empty boxes overlap nothing. Takes O(n + exchanges of
-  /// ends + pairs), or where there are too many exchanges, or other boxes are empty than in the
-  /// last call, the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
+  /// ends + pairs). If there are too many exchanges, or other boxes are empty than in the last
+  /// call, takes the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
   const std::vector<TrianglePair>& update(std::span<const Box> boxes);
 
   /// In the last call: how often two neighbours in a list changed places.
@@ -55,7 +55,7 @@ class BoxSweep {
   std::vector<Box> boxes_;              // of the last call
   std::vector<TrianglePair> pairs_;     // of the last call
   std::vector<TrianglePair> appeared_;  // during a call: of the pairs, those that are new, and
-  std::vector<TrianglePair> vanished_;  // those that are gone; possibly several times
+  std::vector<TrianglePair> vanished_;  // pairs that no longer overlap; possibly repeated
   std::uint64_t swaps_ = 0;
   bool from_scratch_ = false;
   bool is_whole_ = false;  // all members are of the same boxes
@@ -120,14 +120,14 @@ class SweepPrune {
   void sort_order();
 
   BoxSweep objects_;
-  std::array<int, 3> axes_ = {0, 1, 2};  // that of the sweep of triangles, those across
+  std::array<int, 3> axes_ = {0, 1, 2};  // the axis of the sweep of triangles, then the others
   // The survivors, in the order along the first axis that was last sorted.
   std::vector<std::uint32_t> order_;
 
   // Values of the running call. Members so that no frame asks for the memory again.
   std::vector<std::uint32_t> survivors_;  // triangles that may have candidates; ascending
   std::vector<std::uint32_t> groups_;     // of each triangle
-  std::vector<std::uint8_t> marks_;       // of each triangle: what is known of it
+  std::vector<std::uint8_t> marks_;       // per triangle: its Mark
   std::array<double, 2> from_ = {0, 0};   // of the columns along their axes
   std::array<double, 2> scale_ = {0, 0};  // 2^10 to the extent
   std::array<int, 2> bits_ = {0, 0};      // 2^bits_ columns along each of their axes

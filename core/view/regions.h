@@ -17,15 +17,15 @@ struct Regions {
                                          // object: all that can take part
 };
 
-/// Further views and finer offsets are left out where no more triangles than this are kept: the
-/// exact tests of so few take less time than the upload and the readbacks of one view.
+/// Further views and finer offsets are left out if at most this many triangles are kept: the exact
+/// tests of these take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
 /// Below this many objects the level that asks each as a whole is left out: it draws everything
 /// twice, and of few objects that overlap one seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
-/// A further round follows where the last one culled at least one triangle in so many. A round
-/// costs about what the exact tests of as many triangles cost, so it has to cull a good part of
-/// them (docs/methods.md, "What a run leaves out").
+/// A further round follows if the last one culled at least one triangle in this many. A round costs
+/// about as much as the exact tests of that many triangles, so it has to cull a good part of them
+/// (docs/methods.md, "What a run leaves out").
 constexpr std::uint32_t kWorthARound = 8;
 
 struct RegionRules {
@@ -33,9 +33,9 @@ struct RegionRules {
   bool full = false;  // leave nothing out: every triangle takes part
 };
 
-/// With `self` the box of a marked object of two triangles or more is a place of its own, and all
-/// of its triangles take part. With `full` the places are the same, or the box of the scene if
-/// there is no such place, so that the views are the same, and every triangle takes part.
+/// With `self` the box of a marked object of two triangles or more is a region of its own, and all
+/// of its triangles take part. With `full` every triangle takes part; the regions, and so the
+/// views, are the same, except that the box of the scene is the region if there is no other.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
 /// The regions that drawing needs to decide about these pairs: their triangles, and the places in

@@ -125,7 +125,7 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
                  c = window.map(row, 2) * d[2];
     out.p[row] = (a + b) + c;
     const double sum = (std::abs(a) + std::abs(b)) + std::abs(c);
-    if (!(sum <= bound)) bound = sum;  // also where it is not a number
+    if (!(sum <= bound)) bound = sum;  // also if it is not a number
   }
   bound = kMapRounding * bound + kMapUnderflow;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;

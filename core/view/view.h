@@ -44,7 +44,7 @@ struct View {
   Eigen::Matrix3d rows;
 };
 
-/// The parts of a text between separators, one more than there are of these.
+/// The parts of a text between separators. There is one part more than there are separators.
 std::vector<std::string> split_list(const std::string& text, char separator = ',');
 
 /// "x", "-y", ... or a direction "1:1:0.5" (finite, not zero; scaled to unit length). Throws Error
@@ -70,7 +70,7 @@ struct Window {
 /// A point in pixel space; each coordinate is within `error` px of the exact image under map and
 /// origin.
 struct PixelPoint {
-  Vec3 p;        // may be non-finite where the conversion overflowed; then error is infinite
+  Vec3 p;        // may be non-finite if the conversion overflowed; then error is infinite
   double error;  // px
 };
 PixelPoint to_pixel(const Window& window, const Vec3& x);
@@ -115,8 +115,8 @@ struct Patch {
   std::span<const Vec3> points() const { return {corners.data(), static_cast<std::size_t>(count)}; }
 };
 
-/// The image of the world triangle `corners` clipped to window.lo .. window.hi. Ask drawable()
-/// before count: where it is false, an empty polygon is no proof that the triangle stays outside.
+/// The image of the world triangle `corners` clipped to window.lo .. window.hi. Check drawable()
+/// before count: if it is false, an empty polygon does not prove that the triangle is outside.
 Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners);
 
 }  // namespace farcull

@@ -1,7 +1,7 @@
-// The walk down the blocks of cells, level by level: each block has the triangles that can matter
-// to a cell in it, and passes on to its parts those that still can. A level reads what the levels
-// above it found, and nothing of itself, so the answer does not depend on the number of threads.
-// For the two forms of the diagram (voronoi.h) alone.
+// Visits the blocks of cells level by level. Each block has the triangles that can matter to a cell
+// in it, and passes on those that can still matter to its parts. A level reads only what the levels
+// above it found, so the answer does not depend on the number of threads. Only for the two forms
+// of the diagram (voronoi.h).
 #pragma once
 
 #include <algorithm>

@@ -38,7 +38,7 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
       std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
   if (!(largest > 0)) return out;
   // The largest coordinate is then in [1, 2). A coordinate that becomes subnormal is off by less
-  // than 2^-1074, where a cell is at least 2^-52 / kVoronoiLargest.
+  // than 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
   out.exponent = -std::ilogb(largest);
   Vec3 extent;
   for (int k = 0; k < 3; ++k) {

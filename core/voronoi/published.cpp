@@ -1,5 +1,5 @@
-// The published form: each cell names its two nearest objects. A block is left out where every two
-// objects that its cells may name have been named by others.
+// The published form: each cell names its two nearest objects. A block is left out if every two
+// objects that its cells may name have already been named by other cells.
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +9,8 @@ namespace farcull {
 namespace voronoi {
 namespace {
 
-// Whether one object is nearer than another one to every point of a block. Unlike distances from
-// the middle of the block, the test is sharp also where both are far away.
+// True if one object is nearer than another one to every point of a block. The test stays sharp if
+// both are far away, unlike a comparison of distances from the middle of the block.
 //
 // Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
 // square of the distance from v is less than that from T everywhere if one of two bounds of their
@@ -207,7 +207,7 @@ class Published {
     return out;
   }
 
-  // Whether no other candidate than `other` dominates this one.
+  // True if no candidate except `other` dominates this one.
   static bool only_by(const Candidate& candidate, std::size_t other) {
     return candidate.dominators == 0 || (candidate.dominators == 1 && candidate.by == other);
   }

@@ -1,7 +1,7 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
 // middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all others. An end is about
-// as near to the cell as any triangle is. And it is no farther than half the distance looked for,
-// of which every point of space gives an upper bound.
+// as near to the cell as the nearest triangle. And its distance is at most half the distance that
+// is searched for, of which every point of space gives an upper bound.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -108,7 +108,7 @@ class Reliable {
     }
   }
 
-  // How far an end of a segment that is the shortest of this object may be from the point.
+  // An end of the object's shortest segment is at most this far from the point.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
   // The triangles that may hold an end; none if all of these are of one object.

@@ -63,7 +63,7 @@ struct VoronoiGrid {
   std::array<int, 3> cells = {1, 1, 1};
 
   int longest() const;  // the largest of `cells`
-  /// A distance in units of the grid, in world units, rounded up or kept; infinite where it is too
+  /// A distance in units of the grid, in world units, rounded up or kept; infinite if it is too
   /// large for a double.
   double world(double distance) const;
 };
@@ -105,7 +105,7 @@ inline float dot(const GridPoint& a, const GridPoint& b) {
 inline GridPoint cross(const GridPoint& a, const GridPoint& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-// The quotient, clamped to [0, 1]; 0 where it is not a number.
+// The quotient, clamped to [0, 1]; 0 if it is not a number.
 inline float part(float numerator, float denominator) {
   const float t = numerator / denominator;
   return t > 0 ? std::min(t, 1.0f) : 0.0f;
@@ -179,7 +179,7 @@ struct VoronoiCounts {
   std::uint64_t distances = 0;  // of a point and a triangle
 };
 
-/// What a form of the diagram leaves. Objects without triangles have no neighbours.
+/// The result of a form of the diagram. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
   /// Pairs of objects, sorted, each once. The published form: some cell has these two as its
   /// nearest objects; among equally near objects (as floats) the first counts. The reliable form:
@@ -187,11 +187,11 @@ struct VoronoiNeighbours {
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
 
-  // Of the reliable form; the published one leaves these empty.
+  // Only of the reliable form; the published one leaves these empty.
   /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
   /// A and one of another object, that are d apart is among these. Sorted, each once.
   std::vector<TrianglePair> triangles;
-  /// For each object an upper bound of d, in world units, rounded up; infinite where it has no
+  /// For each object an upper bound of d, in world units, rounded up; infinite if it has no
   /// triangle or no other object has one.
   std::vector<double> upper;
 };

@@ -323,8 +323,8 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
-  // A scene of several names consists of meshes, so a first name that is no mesh is a
-  // certificate's.
+  // A scene of several names consists of meshes, so if the first name is not a mesh, it names a
+  // certificate.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {
     throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

@@ -24,7 +24,7 @@ std::string clean_lines(const std::string& text);
 using TakeWord = std::function<void(std::uint64_t)>;
 
 /// Asks the proved checker as well. Throws Error unless it proves just what this one has proved.
-/// status: of this one. words: gives those of the scene.
+/// status: that of this checker. words: gives the words of the scene.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
@@ -39,12 +39,12 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
 
-/// Gives the certificates and the scene to `farcull-check-verified`, which lies beside this program
-/// or in the PATH, and returns its exit status: 0 proved, 1 refuted or not proved, 2 a file that it
-/// cannot read. tiles: the certificates are those of all tiles of the scene, in order. It prints
-/// its verdict on standard output, after the SHA-256 of the files as this program has them: both
-/// checkers print the same. words: gives the words of the scene; they go to the checker through a
-/// file in memory. Throws Error if it cannot be run.
+/// Gives the certificates and the scene to `farcull-check-verified`, which is in the folder of this
+/// program or in the PATH. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
+/// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order. It
+/// prints its verdict on standard output, after the SHA-256 of the files as this program has them:
+/// both checkers print the same. words: gives the words of the scene; they go to the checker
+/// through a file in memory. Throws Error if it cannot be run.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words);
 

@@ -48,8 +48,8 @@ struct CheckedTile {
   std::string pair;    // the one that refutes, by the numbers in the whole scene
 };
 
-// Why the tiles are not a whole; empty if each begins where the one before it ends, the first has
-// no beginning and the last no end. docs/tiles.md: then each pair belongs to one of them.
+// Says why the tiles do not cover everything. Empty if each begins where the previous one ends, the
+// first has no beginning and the last no end; then each pair belongs to one tile (docs/tiles.md).
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {

@@ -51,7 +51,7 @@ constexpr const char* kExamples =
 
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
 
-// Reads the parts. A mesh without triangles becomes a part without triangles, behind the others.
+// Reads the parts. A mesh without triangles becomes a part without triangles, after the others.
 Scene read_parts(SceneArguments files) {
   std::vector<std::string> empty;
   for (;;) {
@@ -113,8 +113,8 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
       kExamples);
 }
 
-// The arguments, with the mesh files of a folder and of the folders in it in place of the folder. A
-// file in a format that is not read is an error, unless the same part is beside it as a mesh.
+// The arguments, with each folder replaced by the mesh files in it and in its subfolders. A file in
+// a format that is not read is an error, unless the same part is in the folder as a mesh.
 SceneArguments ClashCommand::parts() const {
   SceneArguments out = scene_;
   out.names.clear();

@@ -375,7 +375,7 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("-o", &outputs.picture, "picture.png"),
         std::tuple("--html", &outputs.page, "page.html")}) {
     if (!*path) continue;
-    // Under two names, standard output would be written at two positions at once.
+    // With two names for standard output, two files would write to it, each at its own position.
     if (**path == "/dev/stdout") *path = "-";
     if ((*path)->empty())
       throw Error(option, "the path is empty", "name a file, or - for standard output");

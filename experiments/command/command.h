@@ -49,7 +49,7 @@ struct OptionRow {
   const char* type = "";
   std::string help;
   Need need = Need::may;
-  const char* group = "";  // heading of the help that it stands under; empty: the common one
+  const char* group = "";  // heading above it in the help; empty: the common one
 };
 using Rows = std::vector<OptionRow>;
 inline Rows operator+(Rows first, const Rows& then) {
@@ -181,7 +181,7 @@ void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> 
 /// may hold.
 void complain(const std::string& message);
 
-/// What readers passed over (take_reading_notes()), as lines on standard error, each once.
+/// Prints what readers passed over (take_reading_notes()) on standard error, each line once.
 void say_notes();
 
 /// load_scene() and say_notes().
@@ -215,7 +215,7 @@ class TerminalProgress {
   bool shown_ = false;
 };
 
-/// Where results go besides the table.
+/// The outputs of a command besides the table.
 struct Outputs {
   Text json = {};
   Text pairs = {};

@@ -74,7 +74,7 @@ int CompareCommand::run() const {
   RunOptions& options = arguments.options;
   arguments.self = options_.has("self");
   options.seed = seed_of(scene_.names);
-  options.method = Method::far;  // which has all options but the clearance
+  options.method = Method::far;  // far has all options except the clearance
   for (const auto& [name, text] : options_.given()) {
     if (run_option(name).take) take_option(name, text, options);
   }

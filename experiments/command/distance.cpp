@@ -231,7 +231,7 @@ int DistanceCommand::run() const {
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
-// The objects of answers for which it is not known what lies inside.
+// The objects of answers that may have another object inside, but are not closed.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {

@@ -107,7 +107,7 @@ std::vector<ProbeResult> lemma_probes() {
 
 using Json = nlohmann::ordered_json;
 
-// The device that GlContext would take for this option. The list has the problems of the others.
+// The device that GlContext would use for this option. The list says why the others fail.
 std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
   for (const std::string kind : {"hardware", "software"}) {
     for (const GlDevice& d : devices) {

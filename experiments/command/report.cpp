@@ -82,7 +82,7 @@ void check_store_outside(const std::string& folder) {
   }
 }
 
-// The JSON that tells the Python program about this one.
+// JSON about this program for the Python program.
 std::string context_for_python() {
   Json known = Json::array(), scenes = Json::object();
   for (const Study& study : studies())

@@ -142,8 +142,8 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Two triangles of one plane. b is then moved by so many of the shortest steps: out of the plane,
-/// or in the plane across the edge at which both touch.
+/// Two triangles of one plane. b is then moved by that many of the shortest steps: out of the
+/// plane, or in the plane across the edge at which both touch.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);

@@ -134,7 +134,7 @@ MadePair random_pair(RandomDraws& draws, double) {
   return out;
 }
 
-/// A long edge through `centre`, and the third corner beside the edge by 1 / aspect.
+/// A long edge through `centre`; the third corner is 1 / aspect away from the edge.
 Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
   const Vec3 half = draws.point();
   const Vec3 beside = draws.point() / aspect;

@@ -45,7 +45,7 @@ Objects cloth(RandomDraws& draws, double gap, int cells) {
   })};
 }
 
-/// A sheet folded flat: every layer is exactly in the plane z = 0, a little aside of the others.
+/// A sheet folded flat: every layer is exactly in the plane z = 0, slightly beside the others.
 Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,
@@ -224,8 +224,8 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// Three shells, each outside the one before by the gap. The outermost is moved by 1.5 gaps along x
-/// and a random vector of up to a gap along each axis, so that it mostly crosses the middle one.
+/// Three shells, each outside the previous one by the gap. The outermost is moved by 1.5 gaps along
+/// x and a random vector of up to a gap along each axis, so that it mostly crosses the middle one.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -332,7 +332,7 @@ Objects stack(RandomDraws& draws, double now, int) {
   return leaning(draws, std::move(out));
 }
 
-/// A thread through a ring: it goes on by 1.5 with each frame, and is `now` beside the axis. At
+/// A thread through a ring. It moves by 1.5 with each frame, and is `now` away from the axis. At
 /// 7/8 its side touches an edge of the ring.
 Objects thread(RandomDraws& draws, double now, int frame) {
   Mesh ring = shapes::surface(16, 4, true, [](std::uint32_t i, std::uint32_t j) -> Vec3 {
@@ -371,9 +371,9 @@ Objects cogs(RandomDraws&, double now, int) {
   return {std::move(cog), std::move(other)};
 }
 
-// Loads.
+// Families with very many pairs that meet.
 
-/// n long thin triangles along x that n along y cross, each each.
+/// n long thin triangles along x, and n along y. Each of the first crosses each of the others.
 Objects bars(RandomDraws&, double, int n) {
   Objects out(2);
   const double width = 0.25 / n;

@@ -173,11 +173,11 @@ DrawnPair one_ulp(RandomDraws& random) {
     case 1:
       pair.b = {at - u, at + u, at + v};
       break;
-    case 2:  // coplanar but for the rounding
+    case 2:  // coplanar except for the rounding
       pair.b = {at, at + (at - pair.a[1]) * random.between(-1, 2),
                 at + (at - pair.a[2]) * random.between(-1, 2)};
       break;
-    default:  // both in one plane of equal z, but for a corner of b
+    default:  // both in one plane of equal z, except a corner of b
       for (int i = 0; i < 3; ++i) {
         pair.a[i].z() = at.z();
         pair.b[i] = {random.point().x(), random.point().y(), at.z()};

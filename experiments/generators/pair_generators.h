@@ -129,7 +129,7 @@ struct MeshFamily {
     int detail = 0;
   };
   std::vector<Member> members;
-  std::size_t small = 0;  // so many members, the first ones, are in a small suite too
+  std::size_t small = 0;  // the first members that a small suite also has
   bool motion = false;    // the members are frames: equal triangles, whose vertices move
 };
 

@@ -174,9 +174,9 @@ Window lab_window(int side, double depth) {
   return w;
 }
 
-// Moves each corner by kMaxDoubleError along each axis, as double arithmetic may. Half of the time
-// one vector moves all corners, which moves the points of the triangle farthest; else each corner
-// has a vector of its own, which turns the edges.
+// Moves each corner by kMaxDoubleError along each axis, as double arithmetic may. In half of the
+// cases one vector moves all corners, which moves the triangle's points farthest; else each corner
+// has its own vector, which turns the edges.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
   const bool turn = random.below(2) != 0;
   Vec3 by(0, 0, 0);

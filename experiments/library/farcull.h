@@ -37,12 +37,12 @@ enum class Contacts {
   segments,  // the kind, and the points that the triangles have in common
 };
 
-/// Asked with the name of the step that a call is at: at once, and then about every 50 ms, in the
-/// thread of the caller. If it returns false, the call ends with the error Cancelled. What it
-/// throws ends the call too, and is thrown by it. With it the work is done in another thread.
+/// Called with the name of the current step: at once, and then about every 50 ms, in the caller's
+/// thread. If it returns false, the call ends with the error Cancelled. If it throws, the call ends
+/// and throws the same exception. The work then runs in another thread.
 using MayGoOn = std::function<bool(const std::string& step)>;
 
-/// The error of a call that MayGoOn ended.
+/// The error of a call that MayGoOn cancelled.
 class Cancelled : public Error {
  public:
   Cancelled();
@@ -129,7 +129,7 @@ struct Report {
     bool ran = false;
     std::string reason;  // why the stage ran or was left out
     double ms = 0;
-    std::uint64_t in = 0, out = 0;  // how many items entered, and how many were left
+    std::uint64_t in = 0, out = 0;  // numbers of items before and after
     std::string unit;               // what the items are: triangles or pairs
   };
 
@@ -158,8 +158,8 @@ struct Result {
   std::vector<Contact> contacts;            // one for each of `pairs`, and one for each
   std::vector<Contact> neighbour_contacts;  // of `neighbour_pairs`; empty without
                                             // Options::contacts
-  /// False: Options::limit ended the search, so there may be more pairs after the last one. No pair
-  /// before the last one is missing.
+  /// False: Options::limit ended the search, so more pairs may follow the last one. No pair before
+  /// the last one is missing.
   bool complete = true;
   Report report;
 };
@@ -167,8 +167,8 @@ struct Result {
 /// Finds the colliding pairs of one input; keeps nothing. Throws as Collider does.
 Result collide(const Input& input, const Options& options = {});
 
-/// Finds colliding pairs again and again: buffers and results about triangles that did not move
-/// stay from call to call. An object serves one call at a time, from any thread. A second call at
+/// Finds colliding pairs repeatedly. It keeps buffers, and results about triangles that did not
+/// move, from call to call. An object serves one call at a time, from any thread. A second call at
 /// the same time, or a call of an object that was moved from, throws Error and changes nothing.
 /// Moving and destroying are not protected: no other thread may use the object then.
 class Collider {
@@ -180,10 +180,10 @@ class Collider {
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// Throws Error for input that is not as Input says, for input in which there is nothing to test
-  /// (one object without `self`, or fewer than two triangles), for a self_objects that does not
-  /// have one value for each object, and for ignored objects that the input does not have;
-  /// Cancelled if Options::may_go_on says so. The object can be used again after each of these. The
+  /// Throws Error for input that does not satisfy Input, for input without anything to test (one
+  /// object without `self`, or fewer than two triangles), for a self_objects that does not have one
+  /// value for each object, and for ignored objects that the input does not have; Cancelled if
+  /// Options::may_go_on returns false. The object can be used again after each of these. The
   /// calling thread may round in any direction and flush subnormals: the call sets its
   /// floating-point environment (rounding, flushing, traps) and restores it at the end.
   Result find(const Input& input);

@@ -71,10 +71,10 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
 }
 
 // Checks the copies, not the input: another thread of the caller may change the input meanwhile,
-// but the numbers in the scene have to be right. What was in `to` was checked before, so what is
-// equal to it needs no check: most of a scene is often as it was in the last call.
-// A vertex that is not finite becomes 0, 0, 0, and is named in `bad`: no triangle may use it. So it
-// differs from what is there in every call.
+// but the numbers in the scene have to be right. The old contents of `to` were checked before, so
+// equal numbers need no check: most of a scene is often as it was in the last call.
+// A vertex that is not finite becomes 0, 0, 0, and is listed in `bad`: no triangle may use it. So
+// such a vertex counts as changed in every call.
 // change: receives the vertices that differ from those before; may be null.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change,
                    std::vector<std::uint32_t>& bad) {
@@ -101,7 +101,7 @@ void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameCha
   }
 }
 
-// bad: ascending vertices that are not finite, of so many.
+// bad: the vertices that are not finite, ascending. vertices: number of all vertices.
 void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
                     const Scene& scene) {
   if (bad.empty()) return;
@@ -153,8 +153,8 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-// Each object has a triangle at least. So a label for each triangle, as in 0, 0, 1, 1, can never be
-// taken for the first triangles of objects, most of which would have no triangles then.
+// Each object must have a triangle. So a label for each triangle, as in 0, 0, 1, 1, cannot be
+// mistaken for the first triangles of objects: most of these would have no triangles.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
   for (std::size_t o = 0; o < starts.size(); ++o) {
     const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];
@@ -274,8 +274,8 @@ Vec3 moved(const Pose& pose, const Vec3& p) {
           ((r[6] * p.x() + r[7] * p.y()) + r[8] * p.z()) + t[2]};
 }
 
-// Moves the vertices. Those of objects in the pose of the last call are as they were then, unless
-// `all` are to be moved.
+// Moves the vertices. Vertices of objects whose pose is that of the last call are left as they
+// are, unless `all` is true.
 void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
   std::vector<bool> moves(poses.size(), true);
   for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];

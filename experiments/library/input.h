@@ -104,9 +104,9 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 
 /// Copies the input into `taken`, which holds that of the last call, and reuses its memory. self:
 /// every object is tested against itself; self_objects: the same for each object, empty or one for
-/// each. change: receives what is new since the last call; may be null. asked: a scene in which
-/// there is nothing to test is an error. Throws Error for input that is not as Input says, and
-/// leaves `taken` empty then.
+/// each. change: receives what is new since the last call; may be null. asked: a scene without
+/// anything to test is an error. Throws Error for input that does not satisfy Input, and leaves
+/// `taken` empty then.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
@@ -115,7 +115,7 @@ void check(const Options& options);
 
 ContactDetail detail_of(Contacts contacts);
 
-/// The ignored pairs of a scene with so many objects. Throws Error if a pair names an object that
+/// The ignored pairs of a scene with this many objects. Throws Error if a pair names an object that
 /// the scene does not have.
 std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2>>& ignore,
                                    std::size_t objects);

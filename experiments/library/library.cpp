@@ -51,7 +51,7 @@ struct Collider::State {
 
   // Takes the scene of a call; from the third call on, what is new in it as well.
   void take_scene(const Input& input);
-  // The collisions of the scene. start: when the call began; callers: its environment.
+  // Finds the collisions. start: when the call began; callers: the caller's environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
 

@@ -1,5 +1,5 @@
-// `farcull bench` measures peers and our methods from the same triangles to the same pairs; with
-// --distances, to distances between objects and their errors. One process runs them all.
+// `farcull bench` times peers and our methods from the same triangles to the same pairs; with
+// --distances, to distances between objects, whose errors it counts. One process runs them all.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,
@@ -25,7 +25,7 @@ struct BenchContestant {
   std::string library = {};   // of a peer, with its version
   std::string left_out = {};  // why it does not run; empty: it does
   double setup_ms = 0;
-  BenchRun run = {};  // null where it is left out
+  BenchRun run = {};  // null if it is left out
 };
 
 struct BenchOptions {
@@ -33,9 +33,9 @@ struct BenchOptions {
   std::string methods = "all";  // likewise
   unsigned threads = 1;
   int repeat = 5;
-  double limit_s = 60;  // a contestant whose cold run takes longer is not repeated
-  std::string device;   // "": GL where there is one; "cpu": no GL; or as for farcull run
-  bool self = false;    // every object is tested against itself as well
+  double limit_s = 60;                // a contestant whose cold run takes longer is not repeated
+  std::string device;                 // "": GL if there is one; "cpu": no GL; or as for farcull run
+  bool self = false;                  // every object is tested against itself as well
   std::optional<std::uint64_t> seed;  // of the scene
 };
 
@@ -118,8 +118,8 @@ struct DistanceErrors {
   std::uint64_t answers = 0;
   std::uint64_t lacking = 0;       // distances that only our answer has
   std::uint64_t beyond = 0;        // distances that our answer leaves out: beyond `within`
-  std::uint64_t exact = 0;         // the same double
-  std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
+  std::uint64_t exact = 0;         // answers that are the same double as ours
+  std::uint64_t other_zero = 0;    // answers 0 for objects apart, or not 0 for objects that meet
   std::uint64_t other_object = 0;  // with `nearest`: another object that is not as near
   double largest_relative = 0;     // of distances that neither calls 0
   FARCULL_FIELDS(answers, exact, lacking, beyond, other_zero, other_object, largest_relative)

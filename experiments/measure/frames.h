@@ -18,7 +18,7 @@ namespace farcull {
 
 /// The loop over frames of every command. Calls `one` with each frame of the range and a progress
 /// that puts `before` and "frame 3 of 10: " before its stages. SIGINT, SIGTERM and SIGHUP end the
-/// program at once, with a line on standard error that says how many frames were done, and `end`.
+/// program at once, with a line on standard error: the number of finished frames, and `end`.
 /// end: null for no line.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
@@ -28,7 +28,7 @@ struct FramesQuestion {
   RunOptions options;
   FrameRange range;
   bool self = false;
-  bool strict = false;       // farcull verify: ask the guarantee of every method
+  bool strict = false;       // farcull verify: require the guarantee of every method
   bool pairs = false;        // write the CSV of pairs
   PairColumns columns = {};  // of the CSV, besides the usual ones
   bool certificates = false;
@@ -41,7 +41,7 @@ struct FrameTimes {
   double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
   FARCULL_FIELDS(median, p95, max)
 };
-/// Frames per second at so many milliseconds each; empty where that is no positive number.
+/// Frames per second if each takes `ms` milliseconds; empty if that is not a positive number.
 std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 
@@ -53,7 +53,7 @@ struct FrameReport {
   std::string rows;                       // for people; those of the first frame have a heading
   std::string pairs_csv;    // as pairs_rows(), after a column `frame`; the first with the header
   long number = 0;          // of the frame
-  std::string certificate;  // its text, where certificates are wanted
+  std::string certificate;  // its text, if certificates are wanted
 };
 using FrameSink = std::function<void(const FrameReport&)>;
 
@@ -62,8 +62,8 @@ using FrameSink = std::function<void(const FrameReport&)>;
 class FrameRecord {
  public:
   explicit FrameRecord(std::string path) : output_(std::move(path)) {}
-  /// head: an object, which may be empty; the first frame's head counts. summary: of the frames up
-  /// to this one. Throws Error as GrowingOutput.
+  /// head: an object, may be empty; only that of the first frame is written. summary: of all frames
+  /// up to this one. Throws Error as GrowingOutput does.
   void add(const nlohmann::ordered_json& head, const nlohmann::ordered_json& frame,
            const nlohmann::ordered_json& summary);
   void add(const FrameReport& report) { add(report.head, report.frame, report.summary); }
@@ -80,7 +80,7 @@ struct FramesResult {
   std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
   Accounting sum;               // of all frames, without examples; 0 without an accounting
-  NothingToTest nothing;        // why no frame has a pair to test; empty where one has
+  NothingToTest nothing;        // why no frame has a pair to test; empty if one has
 };
 
 /// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and

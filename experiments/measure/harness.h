@@ -126,7 +126,7 @@ class MeasurementContext {
   const std::string& device() const { return device_; }
   const Progress& progress() const { return progress_; }
 
-  /// The scene of that name; it is kept until another scene is asked for. frame < 0: the scene
+  /// The scene of that name; it is kept until another scene is requested. frame < 0: the scene
   /// without frames; else this frame of its motion, which has `frames` frames. The same name with
   /// another number of frames is another scene.
   const Scene& scene(const std::string& name, long frame = -1, long frames = 0);

@@ -48,7 +48,7 @@ double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  std::vector<double> limit(count, -1);  // below 0: there is no other object
+  std::vector<double> limit(count, -1);  // below 0: the object has no other
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = 0; b < count; ++b) {
       if (a == b || boxes[a].is_empty() || boxes[b].is_empty()) continue;

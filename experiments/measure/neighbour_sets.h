@@ -53,7 +53,7 @@ struct NeighbourSets {
   std::vector<TrianglePair> pairs = {};
   /// boxes, voronoi: of each pair of objects, how many triangles of a and of b are left.
   std::vector<std::array<std::uint64_t, 2>> left = {};
-  /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Else empty.
+  /// Why there are no sets: the diagram would keep too many pairs, or memory ran out. Else empty.
   std::string left_out = {};
 };
 
@@ -83,7 +83,7 @@ bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
 
-/// Sizes of the sets, and what they lack.
+/// Sizes of the sets, and how many nearest neighbours they miss.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // of these, objects whose sets hold no nearest one

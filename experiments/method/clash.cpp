@@ -126,7 +126,7 @@ Meetings meetings_of(const Scene& scene, std::vector<TrianglePair> pairs) {
   return out;
 }
 
-/// Sets what the contacts of a row say.
+/// Sets the fields of a row that describe its contacts.
 void describe(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
               std::span<const ContactShape> contacts, ClashRow& row) {
   row.pairs = pairs.size();
@@ -174,7 +174,7 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
   row.proved = overlap != Overlap::unknown;
 }
 
-/// Whether the insides of the objects overlap for certain, so that there is a depth.
+/// True if the insides of the objects certainly overlap, so that there is a depth.
 bool has_depth(const Objects& objects, const ClashRow& row) {
   const bool deep =
       (row.verdict == ClashVerdict::clash && row.proved) || row.verdict == ClashVerdict::contained;

@@ -19,9 +19,9 @@
 
 namespace farcull {
 
-/// How two objects lie, the most serious first.
-/// clash: their surfaces pass through each other, or their insides overlap; also where they touch
-///   and no proof says that they do only that (ClashRow::proved).
+/// The relation of two objects, the most serious first.
+/// clash: their surfaces pass through each other, or their insides overlap; also if they touch and
+///   it is not proved that they only touch (ClashRow::proved).
 /// contained: the surfaces do not meet, and all or a part of one object is inside the other.
 /// unknown: as `contained`, if the outer object were closed. It is not, so it has no inside.
 /// touch: they meet, and it is proved that their insides do not.
@@ -38,7 +38,7 @@ struct ClashOptions {
   std::vector<ObjectPair> ignored = {};  // as in_order() gives them: they are examined, but are
                                          // listed apart
   bool depth = false;    // bounds of the depth of clashes; they take longer than all
-                         // else where parts have many triangles
+                         // else for parts with many triangles
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
@@ -52,7 +52,7 @@ struct ClashRow {
   std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
   std::optional<SquaredDistance> squared = {};  // of the surfaces, if they are at most the
                                                 // clearance apart and do not meet
-  double distance = 0;                          // its root, rounded once
+  double distance = 0;                          // root of `squared`, rounded once
   Box box = Box::empty();  // of the common points; of the inner object; of two nearest points
   std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};  // a common point, twice; a corner of
                                                                // the inner object, twice; or two

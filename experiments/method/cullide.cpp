@@ -1,5 +1,5 @@
-// FAR and the CULLIDE family: boxes say what is drawn, a canvas culls it view by view, with one
-// offset after the other, and the boxes of what is kept are joined.
+// FAR and the CULLIDE family. Boxes find what has to be drawn. A canvas culls it view by view, with
+// one offset after the other. Then the boxes of what is left are joined.
 #include <algorithm>
 #include <iterator>
 
@@ -16,13 +16,13 @@
 namespace farcull {
 namespace {
 
-// The order in which offsets are tried, each on what the one before has left.
+// The offsets in the order in which they are tried, each on what the previous one left.
 std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset == "obb") return {obb_fattener()};
   // A new offset goes here.
-  // Where nothing is promised, boxes before would be one more chance to miss.
+  // Without a guarantee, comparing boxes first would add one more way to miss pairs.
   if (options.full || !guaranteed(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
 }
@@ -36,7 +36,7 @@ Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
 
 CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
   const bool self = tests_self_alone(options.method);
-  // What a method that promises leaves out costs time alone, never a pair.
+  // If a method is guaranteed, leaving stages out can only cost time, never lose a pair.
   const bool thrifty = guaranteed(options) && !options.full;
   return {.views = parse_views(views_of(options)),
           .resolution = resolution_of(options),
@@ -158,7 +158,7 @@ Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool fu
   return stage;
 }
 
-// Triangles that drawing culled are kept all the same where a pair inside their patch is.
+// Keeps triangles that drawing culled, if a pair inside their patch needs them.
 void add_members(const Scene& scene, Candidates& out) {
   const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
   std::vector<std::uint32_t> all;
@@ -242,7 +242,7 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   work.self = tests_self_alone(options.method);
   const bool objects = options.broad_phase == BroadPhase::objects;
   if (objects || !compare_boxes(scene, threads, plan, work)) {
-    plan.options.broad_phase = BroadPhase::objects;  // also where those of triangles decide little
+    plan.options.broad_phase = BroadPhase::objects;  // also if boxes of triangles would cull little
     find_places(scene, plan, work);
   }
   if (options.objects_alone && work.patches.cut) {

@@ -171,8 +171,8 @@ constexpr std::array kDriverVariables = {
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
-// Mesa takes each option of driconf also from the variable of its name, in lower case. Other
-// variables in lower case are rare, but for those of proxies.
+// Mesa also reads each driconf option from the environment variable of its name, in lower case.
+// Other variables in lower case are rare, except those of proxies.
 bool may_be_driconf(const std::string& variable) {
   const std::string name = variable.substr(0, variable.find('='));
   return std::none_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) &&
@@ -368,7 +368,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // This comes first, so that no later failure leaves an older promise that these results refute.
+  // Comes first, so that a later failure leaves no older verdict that these results refute.
   if (!out.holds) forget(file);
   if (!out.holds && out.failed.empty()) return out;
   out.note = write(file, file_text(inputs, out));

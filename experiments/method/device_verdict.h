@@ -1,6 +1,6 @@
-// Decides whether a device keeps the assumptions A1 to A10 that the promise of far rests on
+// Decides whether a device keeps the assumptions A1 to A10, on which the guarantee of far depends
 // (docs/reliability.md), as far as probes can tell. The probes run once for a device, a driver and
-// a build of farcull; a file keeps their findings.
+// a build of farcull; a file keeps their results.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct KernelProbeOptions {
   std::uint64_t seed = 1;
   bool brief = false;        // about a third of the samples
   bool bare = false;         // kernels that widen nothing
-  bool late_stores = false;  // another solid is stored than is asked about
+  bool late_stores = false;  // another solid is stored than asked
 };
 
 /// Probes solid_interval of both offsets. All functions here make the context current while they
@@ -58,12 +58,12 @@ std::string utc_now();
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;              // which probe broke off, and why; then nothing is promised
+  std::string problem;              // the probe that failed to finish, and why; no guarantee then
   std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
   std::size_t probes = 0;           // how many ran
   double ms = 0;                    // time of the probes
   bool remembered = false;          // read from the file; no probe ran now
-  std::string file;                 // where the verdict is kept; empty: nowhere
+  std::string file;                 // file of the verdict; empty: it is not stored
   std::string note;                 // why the file could not be written
 };
 

@@ -489,7 +489,7 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
-    DistanceMemory kept;  // whole or not at all, whatever is thrown
+    DistanceMemory kept;  // stored whole or not at all, whatever is thrown
     if (options.pairs != DistancePairs::all) {
       for (const Distance& d : out.distances) {
         kept.objects.push_back(d.objects);

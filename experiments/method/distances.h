@@ -51,7 +51,7 @@ class Insides {
   std::unique_ptr<OfObject[]> objects_;
 };
 
-/// For each *part* of the object, its triangles that hang together by vertex positions, the first
+/// For each *part* of the object (its triangles connected by common vertex positions), the first
 /// corner of its first triangle.
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object);
 
@@ -115,7 +115,7 @@ std::vector<Distance> nearest_triangles(const Scene& scene, std::span<const Obje
 /// Why the question is about no two triangles of the scene; empty if it is about some.
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 
-/// What the record claims, for account_distances().
+/// The answers of the record as claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
 /// Answers the question of the options. Throws Error if options are bad, if the question is about

@@ -16,7 +16,7 @@ namespace farcull {
 /// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), every triangle an owner.
 /// i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks of triangles. exact: no
 /// culling.
-/// docs/methods.md tells each one's source and where it can miss.
+/// docs/methods.md gives the source of each method, and says where it can miss.
 enum class Method {
   far,
   cullide,
@@ -40,14 +40,14 @@ using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& 
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 
-/// When a method promises to miss no pair.
+/// When a method guarantees to miss no pair.
 enum class Promises { never, always, at_budget_radius };
 
 struct Traits {
   Method method;
   const char* name;  // the value of --method
   Promises promises = Promises::never;
-  bool draws = false;             // on a canvas, in views at a resolution
+  bool draws = false;             // it draws on a canvas, in views at a resolution
   bool fattens = false;           // fattens what it draws, by an offset and a radius
   bool quick = false;             // keeps visibility bits between passes
   bool culls = true;              // false: tests every pair whose boxes overlap

@@ -100,8 +100,8 @@ struct Image {
   double area = 0;
   Range x, y, depth;
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
-  double slant = 0;    // how many px of depth a ball of 1 px adds to the plane
-  double snapped = 1;  // by how much snapping changes the expected area of a thin image
+  double slant = 0;    // px of depth that a ball of 1 px adds to the plane
+  double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
 // E|w + s N| / w for a standard normal N.
@@ -112,7 +112,7 @@ double snapped_share(double width) {
          std::erf(z / std::numbers::sqrt2);
 }
 
-// The rectangle around a flat polygon along its longest edge: what an oriented box shows of it.
+// The rectangle around a flat polygon along its longest edge. It is the image of an oriented box.
 std::vector<Vec3> rectangle(std::span<const Vec3> points, const Vec3& normal) {
   Vec3 along = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -173,17 +173,17 @@ struct Part {
   std::uint32_t of, by;
   double share;  // of the area of the image
   Range x, y;
-  double strip = 0, width = 0, height = 0;  // where both hide each other: area and sides
+  double strip = 0, width = 0, height = 0;  // region where both hide each other: area and sides
 };
 
 struct ViewOfParts {
   std::vector<Image> images;         // per triangle; without polygons
-  std::vector<std::uint32_t> first;  // per triangle, into parts, and one more
+  std::vector<std::uint32_t> first;  // per triangle its first index into parts; and the end
   std::vector<Part> parts;           // sorted
   double radius = 0;                 // px, of the ball
 };
 
-// What `back` loses to `front`, if they hide each other also where their depths differ by `near`.
+// Adds the part of `back` that `front` hides, also where their depths differ by up to `near`.
 void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
               double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
   if (back.depth.hi + near < front.depth.lo) return;
@@ -390,13 +390,13 @@ class Equations {
   const CullSettings& settings_;
   const double sharpness_;
   State now_;
-  std::vector<State> before_;  // per view: the state in which it decides
+  std::vector<State> before_;  // per view: the state in which the view decides
 };
 
 }  // namespace
 
-// The model is off by a factor of 1.2 in what is missed; where nearly all is missed, by one of 1.5
-// in what is found.
+// The number of missed pairs is off by a factor of up to 1.2; if nearly all are missed, the number
+// of found ones by up to 1.5.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -482,7 +482,7 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
     out.missed += missed;
     variance += missed * (1 - missed);
   }
-  // Pairs of one triangle are mostly missed together.
+  // Pairs with a common triangle are mostly missed together.
   out.deviation = std::sqrt(2 * variance);
   return out;
 }

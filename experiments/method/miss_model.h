@@ -23,12 +23,12 @@ struct MissPrediction {
   double high() const;
 };
 
-/// Why there is no prediction for a method with these options; empty if there is one. A method that
-/// promises misses nothing and needs none.
+/// Why there is no prediction for a method with these options; empty if there is one. A method with
+/// a guarantee misses nothing and needs none.
 std::string why_unpredicted(const RunOptions& options);
 
-/// The misses of a plan, or why they are not predicted. A method that promises to miss nothing has
-/// neither.
+/// The misses of a plan, or why they are not predicted. A method that guarantees to miss nothing
+/// has neither.
 struct MissesOfPlan {
   std::optional<MissPrediction> predicted;
   std::string why_not;
@@ -36,13 +36,13 @@ struct MissesOfPlan {
 /// Finds the colliding pairs by exact tests, and predicts the misses.
 MissesOfPlan misses_of(const Scene& scene, const Plan& plan);
 /// A line for people: "misses     46 of 203 colliding pairs expected, 30 to 70"; empty for a method
-/// that promises.
+/// with a guarantee.
 std::string misses_line(const MissesOfPlan& misses);
 
 /// How sharply a region with an area, a width and a height above one pixel is sure to hold a pixel
 /// centre. Fitted to random triangles on random grids, not to any scene.
 constexpr double kMissSharpness = 3.5;
-/// The probability that a region holds a pixel centre, where all positions of the grid are equally
+/// The probability that a region holds a pixel centre, if all positions of the grid are equally
 /// likely. area, width and height in px; they are those of a region that was fattened by a disc of
 /// `radius` px.
 double centre_probability(double area, double width, double height, double radius = 0,

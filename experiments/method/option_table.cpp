@@ -24,7 +24,7 @@ std::string offset_names() {
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
-// Checks only the form of the text; the device is looked for when it is needed.
+// Checks only the form of the text; the device is opened when it is needed.
 bool is_device(const std::string& device) {
   return device.empty() || is_cpu(device) || device == "gl" || device == "hardware" ||
          device == "software" || device.find_first_not_of("0123456789") == std::string::npos;

@@ -54,10 +54,10 @@ struct RunOptions {
   double clearance = 0;     // world units, finite, >= 0; boxes and exact only
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
-                           // candidates of far and boxes nor decided
+                           // candidates of far and boxes, nor decided
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
                                          // in_order() gives them
-  std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours included; 0: all
+  std::uint64_t limit = 0;  // only the first pairs that collide, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
   bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
   std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: it is not random
@@ -90,7 +90,7 @@ struct Option {
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
   /// The value for records; null: the record has it elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
-  /// Says how to draw: null in the record of a method that draws and found nothing to draw.
+  /// True: the option says how to draw, so it is null in the record of a run that drew nothing.
   bool of_drawing = false;
   std::vector<std::string> words = {};  // words that a shell completes, if not listed by `type`
 };
@@ -138,8 +138,8 @@ int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
-/// Whether the method promises to miss nothing: boxes and i-collide, and far at the budget
-/// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
+/// True if the method guarantees to miss nothing: boxes and i-collide, and far at the budget radius
+/// or more with fragment depth. For a run, the device must keep its assumptions as well.
 bool guaranteed(const RunOptions& options);
 /// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
 /// command line: "--rounds 1 --clear all"; empty if there are none.

@@ -41,7 +41,7 @@ struct Plan {
 
 /// Plans the run. The same scene and options give the same plan. No device is opened. threads: of
 /// the CPU; 0: as many as there are cores. memory: as plan_boxes(). Throws Error for options that
-/// are out of range or do not go together, and for a scene that the method has no use for.
+/// are out of range or contradict each other, and for a scene that the method cannot use.
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
           const Progress& progress = {}, FrameMemory* memory = nullptr);
 

@@ -32,7 +32,7 @@ struct UsedDevice {
   std::string lanes = {};    // the instruction set of the native canvas; empty for others
   int depth_bits = 0;        // of the canvas
   std::string note;          // why this device; empty: none was used
-  bool relies = false;       // the promise relies on the GL device
+  bool relies = false;       // the guarantee depends on the GL device
 };
 
 /// For sweep and prune: the number of triangles of the objects that are left after comparing boxes
@@ -68,7 +68,7 @@ struct Candidates {
     const auto* views = std::get_if<std::vector<ViewReport>>(&by);
     return views ? *views : none;
   }
-  /// Whether a method that draws drew. Else boxes left nothing, or pixels could resolve no view.
+  /// True if a drawing method drew. If not, boxes left nothing, or pixels could resolve no view.
   bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
@@ -89,10 +89,10 @@ struct RunTimes {
 
 /// Whether a miss would break a guarantee.
 struct Promise {
-  bool holds = false;  // the method promises (see guaranteed()), and the device that it used keeps
-                       // what the promise rests on
+  bool holds = false;  // the method is guaranteed() and the device that it used keeps
+                       // the assumptions on which the guarantee depends
   std::string reason;  // why, or why not
-  std::optional<DeviceVerdict> verdict;  // of that device; empty if the promise rests on no device
+  std::optional<DeviceVerdict> verdict;  // of that device; empty if the guarantee needs no device
 };
 
 struct Record {

@@ -116,8 +116,8 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
   return listed > kMostListed;
 }
 
-// Searches in the order of pairs, and stops when so many collide as the limit says. Where hardly
-// any collide, as of points in one place, it stops after kMostSearched candidates.
+// Searches in the order of pairs, and stops when as many pairs collide as the limit says. If hardly
+// any collide, as for points in one place, it stops after kMostSearched candidates.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;

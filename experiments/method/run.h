@@ -15,16 +15,16 @@
 namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// question: decides candidates as they are found where boxes alone find them, so that memory does
-/// not grow with their number; null: lists them all, but for a method that culls nothing. marks:
+/// question: if boxes alone find candidates, decides them as they are found, so that memory does
+/// not grow with their number; null: lists them all, except for a method that culls nothing. marks:
 /// false leaves out the triangles of candidates that are not listed. Throws Error for any fault of
 /// the device. After any exception the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
                 bool marks = true);
 
-/// The promise of the method on the device that it used, by the session's verdict about the device.
-/// After an exception the session has forgotten its device, as after find().
+/// The guarantee of the method on the device that it used, by the session's verdict about the
+/// device. After an exception the session has forgotten its device, as after find().
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);
 
 /// How a caller of run() uses it, besides the options of the user.
@@ -34,11 +34,11 @@ struct RunUse {
   std::function<void(std::vector<TrianglePair>&)> filter = {};
   std::string scene_hash = {};  // scene_hash() of the scene, if the caller knows it
   /// True: the record has only the pairs, their contacts, counts, times and stages. It has no hash
-  /// and no degenerate triangles of the scene, no accounting, no promise, and no triangles of
+  /// and no degenerate triangles of the scene, no accounting, no Promise, and no triangles of
   /// candidates.
   bool answer_only = false;
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
-  /// compared. Of use only where the session remembers frames.
+  /// compared. Used only if the session remembers frames.
   const FrameChange* change = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
 };
@@ -48,7 +48,7 @@ struct RunUse {
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
-/// Decides candidates by exact predicates: all of them, or with limit > 0 until so many collide.
+/// Decides candidates by exact predicates: all of them, or until `limit` of them collide (if > 0).
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit);
 
@@ -65,8 +65,8 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 /// pair has to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
-/// Whether the record breaks a guarantee: a pair was missed by a method that promises to miss none.
-/// strict: no method may miss a pair (`farcull verify`). Does not look at the verdict about the
+/// True if the record breaks a guarantee: a method that guarantees to miss no pair missed one.
+/// strict: no method may miss a pair (`farcull verify`). Ignores the verdict about the
 /// device.
 bool broken(const Record& record, bool strict);
 

@@ -40,7 +40,7 @@ class Session {
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
-  /// The number of threads, the number of cores in place of 0.
+  /// The number of threads; if it was given as 0, the number of cores.
   unsigned cpu_threads() const {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
@@ -48,7 +48,7 @@ class Session {
   /// Whether the context's device keeps the assumptions; probes the device if no verdict is kept.
   /// Does not restore the GL state.
   const DeviceVerdict& verdict();
-  /// Where canvases draw: on the cores of the CPU, or on the GL device of context().
+  /// The device on which canvases draw: the cores of the CPU, or the GL device of context().
   const CanvasDevice& canvas_device();
   /// The canvas for the drawables of this fattener. There is one for each name of a fattener. Only
   /// GL has query modes.
@@ -62,8 +62,8 @@ class Session {
   FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases and the context, since nothing on a device is trusted after a failure, and
-  /// the results of the last frame. Each is made again when it is next needed.
+  /// Drops the canvases and the context, since the contents of a device are unknown after a
+  /// failure. Also drops the results of the last frame. Each is made again when it is next needed.
   void forget_device();
 
  private:

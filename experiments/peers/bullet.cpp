@@ -1,5 +1,5 @@
 // Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, over boxes that are made here.
-// Bullet's own test of two triangles rounds, so it is not used: the leaves are candidates.
+// Bullet's test of two triangles rounds, so it is not used: the leaves are candidates.
 //
 // Bullet's find_collision() is not called. It compares rounded centres and extents, with a
 // tolerance relative to the extents, so it can lose small boxes that touch far from the origin. It

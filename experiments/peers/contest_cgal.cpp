@@ -73,7 +73,7 @@ std::vector<TrianglePair> self_scene(const Scene& scene) {
   PMP::self_intersections(mesh, std::back_inserter(pairs));
   std::vector<TrianglePair> out;
   for (const auto& [a, b] : pairs) out.push_back({a.idx(), b.idx()});
-  leave_out_untested(scene, out);  // a pair of a face with itself says that it is degenerate
+  leave_out_untested(scene, out);  // a pair of a face with itself marks a degenerate face
   return out;
 }
 

@@ -57,8 +57,8 @@ std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
   static Session session(device(), 1, {});
   if (draws(options.method)) options.device = device();
   options.verify = false;
-  // Probing a software renderer takes longer than an answer may, except the first one. So these
-  // two triangles are drawn before it, even if boxes alone decide what is asked first.
+  // Probing a software renderer takes longer than an answer may, except for the first answer. So
+  // these two triangles are drawn before it, even if boxes alone decide the first question.
   [[maybe_unused]] static const Record probed =
       run(scene_of({.shared = {},
                     .a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
@@ -120,7 +120,7 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
   return of_options({.method = method}, says, use);
 }
 
-/// The control of "far misses none": with less than the radius it has to miss some.
+/// Control for "far misses none": far with a smaller radius, which must miss some pairs.
 Contestant far_at(const std::string& radius) {
   Contestant out = of_options({.method = Method::far, .radius = parse_radius(radius)},
                               "a control, which has to miss pairs", "nothing");

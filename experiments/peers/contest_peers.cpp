@@ -33,7 +33,7 @@ Contestant narrow(const Peer& peer) {
           .mesh = pairs};
 }
 
-/// The distance that a library gives for two triangles, each an object of its own. It says no
+/// The distance that a library gives for two triangles, each of them an object. It gives no
 /// points.
 std::function<ContestDistance(const SuitePair&)> distance_by(const DistancePeer& peer) {
   return [peer](const SuitePair& pair) {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
-/// The fields of a line between tabulators: its number, the question, and what is asked about.
+/// The fields of a line, which tabs separate: its number, the question, and the data.
 using Fields = std::vector<std::string_view>;
 
 Fields fields_of(std::string_view line) {

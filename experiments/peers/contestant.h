@@ -32,10 +32,10 @@ struct ContestantCard {
   std::string library = {};  // name and version, such as "CGAL 5.5.1"
   Means means = Means::closed;
   bool degenerate = true;   // the library takes triangles that are segments or points
-  bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
+  bool neighbours = false;  // uses which corners two triangles share, and leaves these out
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
-  bool guaranteed = false;  // only for farcull's methods: a miss breaks a promise
-  // Of libraries of the study these texts stand in experiments/report/chapters/libraries.csv.
+  bool guaranteed = false;  // only for farcull's methods: a miss breaks the guarantee
+  // For libraries of the study these texts are in experiments/report/chapters/libraries.csv.
   std::string call = {};    // the function that is called, and its arguments
   std::string says = {};    // what its documentation says of exactness and of touching
   std::string source = {};  // where the documentation says so; others may omit it
@@ -48,7 +48,7 @@ struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How far two triangles are apart, and a point of each at that distance if the library says one.
+/// The distance of two triangles, and a point of each at that distance if the library gives one.
 struct ContestDistance {
   double distance = 0;
   std::optional<std::array<Vec3, 2>> points = {};
@@ -71,7 +71,7 @@ struct Contestant {
 
 /// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a
 /// refusal, except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call
-/// or a line that is no question; 3 if memory ran out.
+/// or a line that is not a question; 3 if memory ran out.
 int contest(int argc, char** argv, const std::vector<Contestant>& contestants);
 
 /// Calls `ask` for every pair of objects, and with a == b for each object that is tested against

@@ -13,14 +13,14 @@ struct KnownContestant {
   std::string name = {};     // as its card says
   std::string program = {};  // farcull_contestant_PROGRAM
   std::string package = {};  // the package that it needs; empty: none
-  std::string answers = {};  // the questions that it is asked, such as "pair mesh"
+  std::string answers = {};  // the questions that the study asks it, such as "pair mesh"
 };
 
 /// The contestants in the order of tables, the same in every build.
 const std::vector<KnownContestant>& known_contestants();
 /// The contestant with this name. Throws Error if there is none.
 const KnownContestant& known_contestant(const std::string& name);
-/// The command line of the contestant's program, which is in the folder that the variable
+/// The command line of the contestant's program. The program is in the folder that the variable
 /// FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program. Empty: it was
 /// not built.
 std::string command_of(const KnownContestant& contestant);

@@ -43,7 +43,7 @@ std::string refuses_large(const Scene& scene) {
 
 // These functions move x outward by more than its rounding to float: the step is at least an ulp of
 // f, f -+ an ulp is a float, and rounding is monotone; kTiny is more than half an ulp of subnormal
-// floats. For |x| < 2^127. (This is faster than finding the nearest float beyond x, and as good.)
+// floats. For |x| < 2^127. (This is faster than finding the nearest float beyond x, and suffices.)
 constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);

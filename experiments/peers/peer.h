@@ -76,8 +76,8 @@ struct DistancePeer {
   std::string name;          // as in --peers
   std::string library;       // with its version
   std::string missing = {};  // why it cannot run in this build; empty: it can
-  /// False: the library answers in floats, so its time does not tell how fast distances can be
-  /// computed.
+  /// False: the library answers in floats, so its time does not show how fast exact distances can
+  /// be.
   bool comparable = true;
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about this
@@ -130,7 +130,7 @@ inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
 /// The numbers of the objects that have triangles, ascending.
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 
-/// The range of vertices that an object with triangles uses. Mostly no other object uses the range.
+/// The range of vertices that an object with triangles uses. Objects seldom share a range.
 struct VertexRange {
   std::uint32_t first = 0, last = 0;
 };

@@ -68,7 +68,7 @@ std::string clash_page(const Scene& scene, const ClashRecord& record, const std:
            {"rows", rows},
            {"segments", blocks.add(packed_numbers(quantized(segments, box)))},
            {"frame", frame},
-           // Two hues that people who see few colours can tell apart, and neither is green.
+           // Two hues that people with colour blindness can distinguish; neither one is green.
            {"colours",
             {{"found", {0, 0, 0}},
              {"missed", {0, 0, 0}},

@@ -1,4 +1,4 @@
-// What all pages share: blocks of data, the triangles of a scene, and the scripts at the end.
+// The parts that all pages share: blocks of data, the triangles of a scene, and the final scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -70,7 +70,7 @@ struct TextStyle {
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room);
 
-/// What determines the pixels of a text: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
+/// The versions that determine the pixels of a text: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
 std::string lettering_version();
 
 struct LegendEntry {
@@ -86,7 +86,7 @@ struct SheetPanel {
   Rgba headline_colour;
   Image image;  // opaque; all panels have the same size
   std::vector<LegendEntry> legend;
-  int left = 0, top = 0;  // where compose() has put the image in the sheet
+  int left = 0, top = 0;  // position of the image in the sheet of compose()
 };
 
 /// Blends `above` over `below`, which is opaque and of the same size, with that opacity.
@@ -148,8 +148,8 @@ struct PanelResult {
   std::uint64_t idle = 0;                        // of `kept`, in no collision
   std::uint64_t rings = 0;                       // around misses that are too small to see
   bool drew = false;                             // it drew in views at a resolution
-  bool broken = false;                           // the method promises, and missed a pair
-  std::string device;                            // what answered: a renderer, "cpu", or "none"
+  bool broken = false;                           // the method is guaranteed, but missed a pair
+  std::string device;                            // device used: a renderer, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px
 };
 

@@ -1,6 +1,6 @@
 // Converts and checks the command line of a picture, then makes the picture: runs the methods,
 // compares their pairs with the truth, and draws a panel for each. Objects are pale, collisions
-// strong, and missed pairs have a colour of their own.
+// strong, and missed pairs red.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>

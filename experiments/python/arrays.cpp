@@ -50,7 +50,7 @@ MeshArrays::MeshArrays(const py::array& vertices, const py::array& triangles,
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles) {
-  // The caller has looked that these are whole numbers; those beyond 2^63 become negative.
+  // The caller has checked that these are whole numbers; those beyond 2^63 become negative.
   const auto given =
       py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!given || given.ndim() != 2 || given.shape(1) != 2)

@@ -27,10 +27,10 @@ namespace farcull::python {
 
 namespace py = pybind11;
 
-/// Runs `work` in a thread of its own, without the lock of the interpreter, with the floating-point
-/// environment of the proofs. The calling thread releases the lock and checks for signals every 50
-/// ms: if a handler of Python raises, as that of Ctrl-C does, the work is asked to stop, and the
-/// handler's exception is thrown when the work has ended. `work` must not touch Python. Its
+/// Runs `work` in its own thread, without the lock of the interpreter, with the floating-point
+/// environment that the proofs assume. The calling thread releases the lock and checks for signals
+/// every 50 ms. If a handler of Python raises, as that of Ctrl-C does, the work is asked to stop,
+/// and the handler's exception is thrown when the work has ended. `work` must not touch Python. Its
 /// exceptions are thrown here. Precondition: the lock is held.
 void run_without_gil(const std::function<void()>& work);
 
@@ -55,8 +55,8 @@ class Turn {
   std::atomic_flag& used_;
 };
 
-/// Stops all running calls and waits for their end; later calls are stopped as well. For the end of
-/// the interpreter. Precondition: the lock is held.
+/// Stops all running calls and waits for their end; later calls are stopped as well. To be called
+/// when the interpreter ends. Precondition: the lock is held.
 void end_calls();
 
 /// Lets a run stop between its stages.

@@ -37,7 +37,7 @@ py::dict report_of(const Report& report) {
                   "stages"_a = std::move(stages));
 }
 
-// What is said of how each pair meets: the arrays of kinds and of segments, or None. Range: any
+// The contact details of each pair: the arrays of kinds and of segments, or None. Range: any
 // range of Contact with a size.
 template <class Range>
 std::pair<py::object, py::object> contact_arrays(const Range& contacts, Contacts asked) {

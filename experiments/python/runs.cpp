@@ -117,7 +117,7 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   return out;
 }
 
-// The triangles of a mesh after vertices that are at most so far apart were merged.
+// The triangles of a mesh after vertices that are at most the tolerance apart were merged.
 py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
                                   const py::array_t<std::int64_t>& triangles,
                                   const std::string& tolerance) {
@@ -322,7 +322,7 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
-// The pixels, what the panels say, and the page with the same answers if `page` asks for it.
+// The pixels, the texts of the panels, and the page with the same answers if `page` asks for it.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom, int width,
                      int height, const std::string& device, unsigned threads, bool page) {

@@ -76,7 +76,7 @@ std::string differences_text(const ListDifferences& differ) {
                           : "a pair is missing";
 }
 
-// Checks a list without a certificate: makes the evidence, which the checker does not trust either.
+// Checks a list without a certificate: makes the evidence, which the checker then verifies.
 CheckResult check_list(const Scene& scene, const std::string& name,
                        std::span<const ListedPair> rows, double clearance) {
   const Stopwatch start;
@@ -247,7 +247,7 @@ Verdict FrameVerdicts::in_all() const {
 }
 
 Json FrameVerdicts::json(long wanted) const {
-  // Of frames that were not looked at nothing is proved.
+  // Nothing is proved about frames that were not checked.
   const bool whole = all() == static_cast<std::uint64_t>(wanted);
   const Verdict verdict = in_all() == Verdict::proved && !whole ? Verdict::not_proved : in_all();
   const auto& bad = first_[static_cast<std::size_t>(verdict)];

@@ -34,10 +34,10 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 /// The statement that the check has proved if its verdict is `proved`: "these 12 pairs of the scene
 /// meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// The same for so many pairs, without what limits it.
+/// The same for this many pairs, without the limits of the proof.
 std::string proved_text(std::size_t pairs, double clearance);
-/// The end of the statement where it is not about all pairs. self: whether an object is tested
-/// against itself; ignores: whether pairs of objects are ignored.
+/// The end of the statement if it is not about all pairs. self: whether an object is tested against
+/// itself; ignores: whether pairs of objects are ignored.
 std::string proved_limits(double clearance, bool self, bool ignores);
 /// The verdict with its reason, and the pair that it is about: one line or two.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);

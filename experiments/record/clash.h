@@ -10,15 +10,15 @@
 namespace farcull {
 
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};  // with touch, pairs that touch are listed, too
+  std::vector<ClashVerdict> failing = {};  // also lists pairs that touch if touch is here
   std::string unit = {};                   // of the lengths, such as "mm"; empty: not said
 };
 
-/// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
+/// For people: the summary, then a row for each pair. Pairs that touch get rows only if asked for.
 /// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
-/// What a row says beyond its verdict, such as the kinds of contact.
+/// Details of a row besides its verdict, such as the kinds of contact.
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
 /// Whether no pair is a clash, contained, unknown or one of `failing`, and every pair that was

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
-// By DistancePairs, and by WhichInside; the objects of `unknown` meet.
+// In the order of DistancePairs, then of WhichInside. `unknown`: the objects meet.
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 

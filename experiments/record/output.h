@@ -90,8 +90,8 @@ nlohmann::ordered_json threads_json(const GlInfo& gl);
 /// The floating-point environment of the caller and the one in force.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// Pairs that the scene leaves out (verify/certificate/certificate.h): objects, pairs, and which
-/// objects, as the first and the last of each run of them.
+/// Pairs inside objects that were not tested (verify/certificate/certificate.h): the number of
+/// objects, the number of pairs, and the objects as ranges (first and last).
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 /// Parts of records: the scene; the stages of a trace.
@@ -140,11 +140,11 @@ Certificate certificate_of(const Scene& scene, const Record& record,
 
 /// One line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
-/// The plan as JSON (docs/record.md, "Plans"). misses: what the method is predicted to miss.
+/// The plan as JSON (docs/record.md, "Plans"). misses: the predicted misses of the method.
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
                                  const std::optional<MissPrediction>& misses = {});
 
-/// What the plan says about a stage: "runs", "left out" or "depends".
+/// The plan's decision about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
 // Distances (docs/proximity.md).

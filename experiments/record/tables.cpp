@@ -53,8 +53,8 @@ TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
   const auto after = std::upper_bound(
       scene.objects.begin(), scene.objects.end(), triangle,
       [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next object does, so the last one there is the
-  // owner.
+  // An object without triangles starts where the next object does, so the last object with this
+  // start is the owner.
   const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
   return {owner, triangle - scene.objects[owner].first_triangle};
 }
@@ -96,7 +96,7 @@ std::string device_text(const Record& record) {
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
 
-// A line about the device's verdict; empty unless the promise of the method rests on a device.
+// A line about the device's verdict; empty unless the method's guarantee depends on a device.
 std::string promise_line(const Record& record) {
   if (!record.promise.verdict) return "";
   return fmt::format("promise    {}{}\n",
@@ -176,7 +176,7 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
 }
 
-// Adds a stage of a round to the row that it is folded into.
+// Adds a stage of a round to the row that contains it.
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
@@ -294,7 +294,7 @@ std::string ignored_line(const Record& record) {
   if (record.options.ignored.empty()) return "";
   const std::string objects =
       counted(record.options.ignored.size(), "pair of objects", "pairs of objects");
-  // Where boxes decide, ignored objects are left out before there are candidates to count.
+  // If boxes decide, ignored objects are left out before there are candidates to count.
   if (record.found.ignored == 0)
     return "ignored    " + objects + ", of which no candidate pairs were made\n";
   return fmt::format("ignored    {} of {}\n",

@@ -31,11 +31,11 @@ NothingToTest nothing_to_test(const Scene& scene);
 /// method.
 std::string default_method_line(const RunOptions& options);
 
-/// What the line of a method that draws says if boxes leave nothing to draw.
+/// The text in the line of a drawing method if boxes leave nothing to draw.
 inline constexpr const char* kNothingToDraw = "nothing left to draw";
 /// Why a method that draws did not, such as kNothingToDraw; empty if it did, and for other methods.
 std::string not_drawn_text(const Record& record);
-/// The line that names a faster method, for a method that promises and draws on the cores of a CPU;
+/// The line that names a faster method, for a guaranteed method that draws on the cores of a CPU;
 /// empty for others (docs/results/stages.md).
 std::string faster_line(const RunOptions& options);
 
@@ -54,18 +54,18 @@ std::string not_asked_line(const Scene& scene, const std::string& options = "--s
 /// empty if there are none.
 std::string folded_text(const Scene& scene);
 
-/// The lines that say what was run, on what, and what was not asked.
+/// The lines that say what was run, on which device, and what was not tested.
 std::string run_heading(const Scene& scene, const Record& record);
 
 /// A row for each stage: its time, how many items entered and how many were left, and why.
 std::string stage_table(const std::vector<Stage>& stages);
 
-/// The answer of one run, in lines of at most 80 columns where the words allow it: the pairs, the
-/// accounting, and what was run on what. `verdict`, lines of the caller, stands before the
+/// The answer of one run, in lines of at most 80 columns if the words allow it: the pairs, the
+/// accounting, and what was run on which device. `verdict`: lines of the caller, placed before the
 /// accounting.
 std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict = "");
-/// What run --verbose adds: the views, the radius, and a row for each stage, with what was left out
-/// and why. The stages of a view are folded into one row, and so are all rounds after the first.
+/// The lines that run --verbose adds: the views, the radius, and a row for each stage, with what
+/// was left out and why. The stages of a view share one row, and so do all rounds after the first.
 std::string run_details(const Record& record);
 /// Both.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");

@@ -1,7 +1,7 @@
 // A scene that moves, frame by frame.
 //
 // In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
-// same memory, which tells a backend what it has to send again. If the topology changes, nothing of
+// same memory, so a backend can see what it has to send again. If the topology changes, nothing of
 // the previous frame is reused.
 #pragma once
 

@@ -23,7 +23,7 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Whether the name matches a pattern, in which a * stands for any characters. After a mismatch,
+/// True if the name matches a pattern, in which a * stands for any characters. After a mismatch,
 /// the last * takes one character more.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;

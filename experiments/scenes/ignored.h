@@ -9,8 +9,8 @@
 
 namespace farcull {
 
-/// Treatment of a name that no object has. After the first frame it is no error: objects may come
-/// and go, and an absent object need not be ignored.
+/// Treatment of a name that no object has. After the first frame it is not an error: objects may
+/// appear and disappear, and an absent object need not be ignored.
 enum class UnknownName { refused, passed_over };
 
 /// The pairs of an object that the pattern `first` matches and a different object that `second`

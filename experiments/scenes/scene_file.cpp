@@ -396,7 +396,7 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// The name of each file without its extension; with its folder, where another file is called alike.
+// The name of each file without extension; with its folder if another file has the same name.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   std::map<std::string, std::set<std::string>> called;  // the files with a name
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);

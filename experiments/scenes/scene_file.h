@@ -63,8 +63,8 @@ struct SceneArguments {
 /// If meshes are welded, the name of the scene says so. Scene::ignored has the pairs of the scene
 /// file and those of `ignore`.
 Scene load_scene(const SceneArguments& arguments);
-/// Throws Error if `weld` or `format` is given and no mesh is named that it is about. load_scene()
-/// and stream_scene() call it.
+/// Throws Error if `weld` or `format` is given, but no named mesh can be affected by it. Called by
+/// load_scene() and stream_scene().
 void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
 /// ignored_objects().

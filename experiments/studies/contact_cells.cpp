@@ -33,8 +33,8 @@ Corners fin(double rise, double half, double slope, double base, double top) {
   return {Vec3(0, 0, base) - along, Vec3(0, 0, base) + along, Vec3(0, 0, top)};
 }
 
-// The triangles of a contact at the origin in the view z, one of each object. rise: of the second
-// one, or of the last one of a stack.
+// The triangles of a contact at the origin in the view z, one of each object. rise: slope of the
+// second one, or of the last one of a stack.
 std::vector<Corners> contact(const std::string& family, double value, double slope, double rise) {
   const auto crossing = [&](double first, double second, double ratio) {
     return std::vector<Corners>{fin(1, 3, slope, -first / 2, first / 2),

@@ -41,14 +41,14 @@ struct FragmentCounts {
   FARCULL_FIELDS(elements, covered, fragments)
 };
 
-/// The resolution that the size of triangles chose for a RunPoint.
+/// The resolution that was chosen for a RunPoint by the size of its triangles.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
-  double mean_pixels = 0;        // that a triangle covers at it
+  double mean_pixels = 0;        // mean number of pixels that a triangle covers at it
   FARCULL_FIELDS(resolution, mean_pixels)
 };
 
-/// Neighbours (verify/exact.h) among the candidates of a method, and the colliding ones of them.
+/// How many candidates of a method are neighbours (verify/exact.h), and how many of these collide.
 struct NeighbourCounts {
   std::uint64_t neighbour_candidates = 0, neighbours = 0;
   FARCULL_FIELDS(neighbour_candidates, neighbours)
@@ -63,10 +63,10 @@ struct RunCounts : AnswerCounts {
   /// What culled: the triangles that boxes left to views or to a join, and the views that were
   /// drawn. Without a view the boxes of triangles decided.
   std::uint64_t left_by_boxes = 0, views_used = 0;
-  std::uint64_t colliding_triangles = 0;  // of the truth
+  std::uint64_t colliding_triangles = 0;  // that truly collide
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // the method guarantees to miss nothing, by its options
-  /// True if it promises, but its device does not keep the assumptions; else empty.
+  /// True if the method is guaranteed, but its device does not keep the assumptions; else empty.
   std::optional<bool> revoked = {};
   std::string scene_hash;
   std::optional<std::uint64_t> object_triangles = {};  // only for i-collide
@@ -118,7 +118,7 @@ struct PlacementCounts {
 };
 
 /// Counts of a point of the study "model": a method that may miss, at several positions of the grid
-/// of pixels, beside what method/miss_model.h predicts.
+/// of pixels, and the prediction of method/miss_model.h.
 struct ForecastCounts {
   std::uint64_t colliding = 0, positions = 0;
   std::uint64_t missed_in_all = 0;                  // pairs, the sum over the positions
@@ -178,10 +178,10 @@ struct SceneCounts {
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
 using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 
-/// Counts of a LibraryPoint, as experiments/suite/ask.py names them: `missed` and `wrong` compare
-/// with closed triangles, `own_` with what the library's documentation promises; `scores` has them
-/// for each family, parameter and kind. example_FAULT: a family and the smallest pair of its kind
-/// of fault for which the documentation promises the answer.
+/// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong`
+/// compare with closed triangles, `own_` with the library's documented guarantee; `scores` has them
+/// for each family, parameter and kind. example_FAULT: a family, and the smallest pair of its kind
+/// of fault for which the documentation guarantees the answer.
 struct LibraryCounts {
   NamedCounts values = {};
 };
@@ -275,7 +275,7 @@ struct Measurement {
 };
 Measurement stored(const PointResult& result);
 
-/// True if a promise is broken: `promises` is true and `missed`, `missed_pairs`, `wrong` or
+/// True if a guarantee is broken: `promises` is true and `missed`, `missed_pairs`, `wrong` or
 /// `violations` is above 0, or a contestant did not answer a question.
 bool breaks_promise(const Measurement& measurement);
 

@@ -24,7 +24,7 @@ using enum Method;
 struct AccuracyScene {
   std::string name;
   bool self = false;   // one object against itself, by S-CULLIDE and boxes
-  bool again = false;  // the same scene as another one, drawn with another seed
+  bool again = false;  // another row has the same scene with another seed
 };
 
 // Scenes of three kinds: smooth surfaces, scans, and randomly drawn scenes, these with several
@@ -47,7 +47,7 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick) {
   return out;
 }
 
-// Of forms of CULLIDE, and of FAR at other radii than the budget's: these promise nothing, so that
+// For forms of CULLIDE, and for FAR at other radii than the budget's. These have no guarantee, so
 // no view can be skipped, and a run takes up to five times as long.
 constexpr int kMostOfForms = 1024;  // px
 
@@ -302,7 +302,7 @@ PointResult measure_stability(const Point& point, MeasurementContext& lab) {
   return out;
 }
 
-constexpr long kOfFar = 10;  // far looks at every tenth frame
+constexpr long kOfFar = 10;  // far tests every tenth frame
 
 std::vector<Point> cloth_grid(const GridChoice& choice) {
   const int triangles = choice.quick ? 200 : 20000;

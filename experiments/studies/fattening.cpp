@@ -202,7 +202,7 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel; those of the others are too small.
+// Generators of triangles whose depth varies inside a pixel; other triangles are too small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
@@ -279,7 +279,7 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; so small that hardly any other pair keeps a missed one
+constexpr double kSmallest = 0x1p-5;  // px; so small that other pairs rarely keep a missed one
 
 // Three series. With 8 subpixel bits: triangles of each size at the published radius (10^6
 // placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius. The smallest

@@ -1,5 +1,5 @@
 // The study "model" compares the misses that the model of docs/misses.md predicts with those of
-// runs. A run sees one position of the grid of pixels below the scene, and the model speaks of all.
+// runs. A run has one position of the grid of pixels below the scene; the model averages over all.
 // So each point is run at several positions, drawn at random.
 #include <fmt/format.h>
 

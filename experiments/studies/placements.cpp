@@ -81,7 +81,7 @@ class Quarry {
     const double reach = longest(out[0]);
     while (out.size() < kPatchTriangles) {
       Corners more = corners_of(random.below(object_.triangle_count));
-      // Scaled to the size of the first triangle, and moved beside it.
+      // The triangle is scaled to the size of the first one, and moved near it.
       const double size = longest(more);
       if (!(size > 0)) continue;
       const Vec3 from = mean(more), to = middle + reach * random.in_ball();

@@ -62,7 +62,7 @@ struct RunPoint {
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
   int resolution = 0;                            // px; 0: none, or chosen by the scene
   /// If the resolution is 0: take the least one at which triangles that can take part cover this
-  /// many pixels on average, over the triangles and the axes; 0: see above.
+  /// many pixels on average, over the triangles and the axes. 0: as the field above says.
   double mean_pixels = 0;
   std::string views = {};
   /// Forms of the methods that draw, as in RunOptions.
@@ -109,7 +109,7 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/contestants.h) and the kind of question that it is asked of a suite.
+/// A contestant (peers/contestants.h) and one kind of question of a suite.
 struct LibraryPoint {
   std::string contestant = {};
   std::string question = "pair";  // as in docs/ask.md
@@ -124,7 +124,7 @@ struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 0;   // of a diagram, in cells; 0: the method has none
-  double widening = 1;  // of the reliable diagram; below 1 it promises nothing
+  double widening = 1;  // of the reliable diagram; below 1 there is no guarantee
   int repeat = 1;       // see runs_of()
 };
 

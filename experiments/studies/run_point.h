@@ -36,7 +36,7 @@ RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
 /// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
 /// and z at kCellsResolution. In half of the cells the triangles meet at a corner of a pixel, so
-/// that sampling loses them where the ball is too small; in the other half they are 3 px apart, so
+/// that sampling loses them if the ball is too small; in the other half they are 3 px apart, so
 /// that there is something to cull. Throws std::logic_error for an unknown family.
 constexpr int kCellsResolution = 512;
 Scene contact_cells(const ContactCells& scene);
@@ -63,7 +63,7 @@ inline PointResult measure_run_point(const Point& point, MeasurementContext& lab
 /// RunCounts::at_risk and at_risk_bare. Runs it twice.
 std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
                                                       MeasurementContext& lab);
-/// measure_run(), for FAR at a radius that promises with the pairs at risk.
+/// measure_run(); for FAR at a radius with a guarantee, also the pairs at risk.
 PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab,
                               Record* record = nullptr);
 

@@ -86,7 +86,7 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
 
 using Json = nlohmann::ordered_json;
 
-// So that they are measured again.
+// Drops the void rounds, so that they are measured again.
 void drop_void_rounds(JsonObject& times) {
   Json kept = Json::array();
   for (const Json& round : times["rounds"]) {
@@ -227,10 +227,10 @@ class Runner {
     const Point& point() const { return task->points[position]; }
     const PointKey& key() const { return task->keys[position]; }
   };
-  // What runs of a point in one round gave.
+  // The results of the runs of a point in one round.
   struct Runs {
     At at;
-    std::optional<PointResult> first = {};  // empty: none has come to its end
+    std::optional<PointResult> first = {};  // empty: no run has finished
     std::vector<double> ms = {};
     bool failed = false;
   };
@@ -247,7 +247,7 @@ class Runner {
     return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
   }
 
-  // What the store knows of points that other studies have too.
+  // Takes over results that the store has for the same points in other studies.
   void find_known() {
     std::set<std::int64_t> alike;
     for (const auto& [run, then] : store_.runs()) {
@@ -326,7 +326,7 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // The points of a scene in turn, as often as runs fall on a round; again if the machine was busy.
+  // Runs the points of a scene in turn, all runs of the round, and again if the machine was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -369,7 +369,7 @@ class Runner {
     if (!runs.first) runs.first = std::move(result);
   }
 
-  // A point without times.
+  // Measures a point without times.
   void count_point(Task& task, std::size_t position) {
     const At at{&task, position};
     const Stopwatch watch;

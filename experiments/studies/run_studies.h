@@ -44,7 +44,7 @@ std::vector<std::string> shard_files(const std::string& folder);
 
 struct MergeSummary {
   std::size_t files = 0, studies = 0, rows = 0;
-  std::size_t machines = 0;  // number that differ in device, driver, CPU or its features
+  std::size_t machines = 0;  // how many differ in device, driver, CPU or CPU features
 };
 
 /// Writes the store `out` with the rows of all files; it appears whole or not at all. Throws Error
@@ -68,8 +68,8 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// If other programs take more of the processors than this, times are measured again, and in the
-/// end void.
+/// If other programs take more of the processors than this, times are measured again, and at last
+/// marked void.
 constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {
@@ -110,7 +110,7 @@ struct StudiesSummary {
   /// Points that could not be measured, in words, with the error. They have no row, and the next
   /// run tries them again.
   std::vector<std::string> failed;
-  /// Rows of methods that broke their promise, in this run or an earlier one.
+  /// Rows of methods that broke their guarantee, in this run or an earlier one.
   std::vector<std::string> broken;
 };
 

@@ -94,7 +94,7 @@ Measurement stored(const PointResult& result) {
 bool breaks_promise(const Measurement& measurement) {
   const Json& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
-  // A contestant also breaks its promise if it does not answer.
+  // A contestant also breaks its guarantee if it does not answer.
   for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
                             "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
     if (counts.value(count, std::uint64_t{0}) > 0) return true;
@@ -437,8 +437,8 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction. A row that says why nothing was measured is replaced, and
-    // one that lacks rounds or has void ones.
+    // One statement is one transaction. It replaces a row that says why nothing was measured, and a
+    // row that lacks rounds or has void ones.
     static const std::string text = fmt::format(
         "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "
         "SET run = excluded.run, measured = excluded.measured, device = excluded.device, counts = "

@@ -63,7 +63,7 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
   return out;
 }
 
-/// Points where a test of a point is hard. The parameter: 0 anywhere in the box; 1 above or below a
+/// Points where deciding "inside" is hard. The parameter: 0 anywhere in the box; 1 above or below a
 /// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
 Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];
@@ -212,7 +212,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // which() holds for points off the mesh alone.
+    // The result of which() holds only for points off the mesh.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

@@ -33,11 +33,11 @@ struct SuiteQuestions {
 /// The text of a file of questions.
 std::string questions_text(const SuiteQuestions& questions);
 
-/// Questions about the first pairs of a family, as many as in the small suite: how far are they
-/// apart?
+/// Questions about the first pairs of a family, as many as in the small suite: the distance of
+/// each pair.
 SuiteQuestions questions_of(const SuitePairs& pairs);
-/// Questions about the objects of a mesh: whether each meets itself, and of closed ones which
-/// points are inside, and which two clash. Where the oracles do not decide, there is no question.
+/// Questions about the objects of a mesh: whether each meets itself; for closed objects, which
+/// points are inside, and which two clash. If the oracles do not decide, there is no question.
 SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 
 // Each label is decided by two programs that share no code. Throws Error naming `where` if they
@@ -52,9 +52,9 @@ std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3,
 /// numbers (verify/inside.h), and in integers (verify/certificate/integer_distance.h).
 std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
                                 const std::string& where);
-/// Whether the insides of the closed objects 0 and 1 have a point in common. Yes rests on a point
-/// that both oracles of decide_inside() call inside both; no on a plane along an axis between them.
-/// Empty if neither is found.
+/// True if the insides of the closed objects 0 and 1 overlap: both oracles of decide_inside() say
+/// that some point is inside both. False if an axis-aligned plane lies between the objects. Empty
+/// if neither is found.
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Makes a suite and writes it as files, and reads their list. docs/suite.md has the format. The
-// bytes depend on the size and the seed alone, neither on the machine nor on its number of cores.
+// Makes a suite, writes it as files, and reads their list. docs/suite.md has the format. The bytes
+// depend only on the size and the seed, not on the machine or its number of cores.
 #pragma once
 
 #include <array>

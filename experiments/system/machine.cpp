@@ -84,7 +84,7 @@ void confine_to_cores(unsigned threads) {
 
 std::string cpu_model() { return cpuinfo({"model name"}); }
 
-// x86 says flags, Arm Features.
+// The key is "flags" on x86 and "Features" on Arm.
 std::string cpu_features() { return cpuinfo({"flags", "Features"}); }
 
 PeakMemory::PeakMemory() {

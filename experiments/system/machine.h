@@ -10,8 +10,8 @@ namespace farcull {
 /// How many cores this process may use.
 unsigned usable_cores();
 
-/// Confines the process, with all threads that it starts from now on, to that many cores, so that
-/// no library uses more cores than it should. Throws Error naming --threads if the machine has
+/// Confines the process, with all threads that it starts from now on, to this number of cores, so
+/// that no library uses more cores than it should. Throws Error naming --threads if the machine has
 /// fewer or the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
@@ -33,7 +33,7 @@ class PeakMemory {
   std::optional<double> before_kib_;
 };
 
-/// What other programs took of the processors that this process may use.
+/// How much other programs used the processors that this process may use.
 struct Load {
   double share = 0;  // of their time, 0 to 1
   /// Two standard deviations of `share`, since the system counts by ticks of a clock.

@@ -368,7 +368,7 @@ void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   // The next file that is opened would get the number of a closed stream, and the table would be
-  // written into that file. So a file that refuses reads or writes takes the number.
+  // written into that file. So another file takes the number: one that refuses reads or writes.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

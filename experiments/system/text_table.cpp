@@ -1,5 +1,5 @@
-// Lays out tables, where the width of a column is that of its widest cell. Colours are ANSI escape
-// sequences, which every terminal that is not dumb understands.
+// Lays out tables: the width of a column is that of its widest cell. Colours are ANSI escape
+// sequences, which every terminal except a dumb one understands.
 #include "experiments/system/text_table.h"
 
 #include <unistd.h>
@@ -12,7 +12,7 @@ namespace farcull {
 
 namespace {
 
-// The number of characters of a text in UTF-8: each has one byte that does not go on with another.
+// The number of characters of a text in UTF-8: the bytes that are not continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](unsigned char c) { return (c & 0xc0) != 0x80; }));

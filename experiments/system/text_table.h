@@ -33,10 +33,10 @@ enum class Colour { good, bad, doubtful };  // green, red, yellow
 /// NO_COLOR is unset or empty (https://no-color.org).
 bool takes_colour(int stream);
 
-/// The text in bold and in the colour where the stream takes colours; else as it is.
+/// The text in bold and in the colour if the stream takes colours; else unchanged.
 std::string coloured(const std::string& text, Colour colour, int stream);
 
-/// The word as a POSIX shell reads it back: as it is where it is plain, else in single quotes.
+/// The word as a POSIX shell reads it back: unchanged if it is plain, else in single quotes.
 inline std::string quoted(const std::string& word) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||

@@ -47,7 +47,7 @@ template <class Value>
 Value at(const Source& source, const char* place) {
   try {
     const Json& value = source.json.at(nlohmann::ordered_json::json_pointer(place));
-    // get() would round a number, or take a negative one for a large one.
+    // get() would round a fraction, and turn a negative number into a large one.
     if (!std::is_same_v<Value, std::uint64_t> || value.is_number_unsigned())
       return value.get<Value>();
   } catch (const nlohmann::json::exception&) {

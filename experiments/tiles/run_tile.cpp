@@ -56,8 +56,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The number of cuts at or before the place, or at most `reach` after it, as meets() rounds. With
-// no reach this is the tile in which the place lies.
+// The number of cuts that are at most `reach` after the place, rounded as in meets(). With reach 0
+// this is the tile in which the place lies.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
@@ -75,7 +75,7 @@ class Loads {
     ++step_[tile_at(cuts_, box.lo[cuts_.axis])];
     --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
-  // Of the fullest tile, and of all tiles together.
+  // The triangles of the fullest tile, and the sum over all tiles.
   std::pair<std::uint64_t, std::uint64_t> most_and_all() const {
     std::pair<std::uint64_t, std::uint64_t> out;
     std::uint64_t now = 0;
@@ -365,7 +365,7 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
 }
 
-// ---- what a run on a tile, and a plan of tiles, tell people and programs ----
+// ---- what a run on a tile, and a plan of tiles, print and record ----
 
 namespace {
 

@@ -1,5 +1,5 @@
-// Tiles of a scene that is too large for the memory: where they are cut, a run on one of them, and
-// what `farcull merge` joins. docs/tiles.md has the proof that each pair belongs to one tile.
+// Tiles of a scene that is too large for the memory: where it is cut, a run on one tile, and the
+// work of `farcull merge`. docs/tiles.md has the proof that each pair belongs to one tile.
 #pragma once
 
 #include <array>
@@ -110,7 +110,7 @@ TileScene gather_tile(const SceneSource& source, const Census& census, const Til
 WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part);
 
 struct TileQuestion {
-  RunOptions options;  // of boxes, without a limit; `ignored` is empty
+  RunOptions options;  // for the method boxes, no limit; `ignored` is empty
   TileNumber number = {};
   /// Returns the pairs of objects to ignore besides those that the scene ignores. Its argument is
   /// names_of() the census. Empty: no more pairs.
@@ -172,7 +172,7 @@ struct MergedTiles {
   std::uint64_t rows = 0;             // of the list
   std::uint64_t false_negatives = 0;  // of all accountings
   bool verified = false;              // every tile has an accounting
-  bool guaranteed = true;             // every tile promises to miss nothing (docs/record.md)
+  bool guaranteed = true;             // every tile is guaranteed to miss nothing (docs/record.md)
 };
 
 /// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists

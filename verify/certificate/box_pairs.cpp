@@ -31,7 +31,7 @@ void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   const auto from = order.begin() + first;
   const auto to = from + count;
   Node node{.bounds = bounds[*from], .first = first, .count = count};
-  Bounds centres;  // box of the centres; halves are added, since a sum may overflow
+  Bounds centres;  // box of the centres; adds halves, since a sum may overflow
   for (int k = 0; k < 3; ++k) {
     const auto centre = [&](std::uint32_t t) { return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2; };
     centres.lo[k] = centres.hi[k] = centre(*from);

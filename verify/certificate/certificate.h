@@ -1,6 +1,6 @@
-// A certificate: what a run claims about every pair of triangles whose boxes overlap, with one byte
-// of evidence a pair, so that a stranger can prove or refute it without any of the code that
-// culled. docs/certificate.md is the format and the proof that 38 directions suffice.
+// A certificate says what a run claims about every pair of triangles whose boxes overlap, with one
+// byte of evidence for each pair. So a stranger can prove or refute the claims without any of the
+// code that culled. docs/certificate.md has the format and the proof that 38 directions suffice.
 //
 // A check that passes proves something about the scene alone: which of the pairs of triangles that
 // count meet. A pair counts if its triangles are of different objects, or of one object marked
@@ -15,8 +15,8 @@
 // apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
 // decided as without a clearance.
 //
-// The certificate of a tile (docs/tiles.md) is about the pairs that belong to the tile alone. Those
-// of tiles that follow each other from one end of an axis to the other prove the whole list.
+// The certificate of a tile (docs/tiles.md) is only about the pairs that belong to the tile. The
+// certificates of tiles that together cover an axis from end to end prove the whole list.
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// The pairs that the scene does not ask about (not_asked()). They are no part of the claims.
+  /// The pairs that the scene does not ask about (not_asked()). The claims do not cover them.
   struct Unasked {
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;
@@ -163,7 +163,7 @@ std::string to_string(Verdict verdict);
 struct CheckResult {
   Verdict verdict = Verdict::not_proved;
   std::string reason;                   // empty where proved
-  std::optional<TrianglePair> pair;     // the one that refutes, or whose evidence fails
+  std::optional<TrianglePair> pair;     // the pair that refutes, or whose evidence fails
   Certificate::Claims found;            // counted by the checker, whatever was claimed
   std::vector<TrianglePair> meeting;    // the pairs that meet, sorted; decided by the checker
   std::string list_sha256;              // pair_list_hash() of `meeting`; empty if none was decided

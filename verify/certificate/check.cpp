@@ -17,11 +17,11 @@ namespace {
 
 enum class EvidenceFault : std::uint8_t {
   as_claimed,
-  // These leave the certificate unproved:
+  // These findings leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
   not_neighbours,   // neighbours meet only in what they share, but the byte does not say so
   no_evidence,      // the byte means nothing
-  // And these refute it:
+  // These findings refute it:
   culled_meets,
   meets,       // a kept pair meets, but is claimed to be disjoint
   separated,   // the pair is disjoint, but is claimed to meet
@@ -239,7 +239,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
   return tally.finish(certificate, scene, whole, decide_ms);
 }
 
-// Why the certificate is of another scene; empty if the keys are the same but for the name.
+// Why the certificate is of another scene; empty if the keys are the same except for the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
   const auto differ = [](const char* what, const std::string& one, const std::string& other) {
     return std::string("the certificate is of another scene: ") + what + " " + one + ", given " +

@@ -1,5 +1,5 @@
-// A pair of triangles is scaled to integers once. They are GMP's integers, since the square of a
-// distance is mostly long.
+// Scales a pair of triangles to integers once. They are GMP's integers, since the square of a
+// distance mostly has many digits.
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ bool is_rounded(double x, const mpq_class& exact) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
   const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
-  // 2^1024 stands for infinity.
+  // 2^1024 replaces infinity.
   const auto rational = [](double y) {
     return std::isfinite(y) ? mpq_class(y) : mpq_class((y > 0 ? 1 : -1) * (mpz_class(1) << 1024));
   };

@@ -29,7 +29,7 @@ struct FractionPoint {
 /// False for -0.0.
 bool is_rounded(const Vec3& x, const FractionPoint& point);
 
-/// The distance of two triangles, and where on them its ends lie. Features are numbered: 0 to 2 the
+/// The distance of two triangles, and the places of its ends. Features are numbered: 0 to 2 the
 /// corners, 3 to 5 the edge from corner 0 to 2 to the next one, 6 the face. The features are the
 /// first pair (by the feature of a, then by that of b) that has two nearest points.
 struct IntegerDistance {

@@ -1,5 +1,5 @@
-// A pair is scaled to integers once. 128-bit integers decide it if the coordinates are short enough
-// and there is no clearance, else GMP's integers.
+// Scales a pair to integers once. 128-bit integers decide it if the coordinates are short enough
+// and there is no clearance; else GMP's integers do.
 #include "verify/certificate/integer_pair.h"
 
 #include <algorithm>

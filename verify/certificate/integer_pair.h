@@ -83,8 +83,8 @@ class IntegerPair {
 /// True iff the closed convex hulls share a point: iff none of the 38 directions separates them.
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff the
-/// gap along none of the 38 directions is longer than the clearance.
+/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff no
+/// gap along one of the 38 directions is longer than the clearance.
 bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// Guesses in doubles which of the 38 directions separates two triangles most clearly: the first,

@@ -333,7 +333,7 @@ class PointSearch {
   }
 
   BigVector point_;                // times scale_
-  mpz_class scale_;                // > 0 where there is a point
+  mpz_class scale_;                // > 0 if there is a point
   std::array<BigVector, 3> from_;  // from each corner to the point, times scale_
   BigVector normal_, u_, v_, w_, side_;
   mpz_class numerator_, value_;

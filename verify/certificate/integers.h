@@ -166,7 +166,7 @@ Fraction square_of(double length);
 /// without leading zeros, each part at most kMostDigits long. Empty for any other text.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// A double that is at least the root, and hardly more; infinity if no finite double is so large.
+/// A double that is at least the root, and hardly more; infinity if no finite double suffices.
 double root_above(const Fraction& fraction);
 
 /// A length by its square, with the double above it.

@@ -1,4 +1,4 @@
-// Certificates as text. The reader does not trust the text: a first pass goes over the syntax
+// Certificates as text. The reader does not trust the text: a first pass checks the syntax
 // alone.
 #include <algorithm>
 #include <cmath>
@@ -84,8 +84,8 @@ class Syntax : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
 };
 
-/// Readers of values. place: where the value is, as in unattested.views[1].width. Each throws Error
-/// naming the file if the value is of another kind.
+/// Readers of values. place: the path of the value, as in unattested.views[1].width. Each throws
+/// Error naming the file if the value is of another kind.
 class Reader {
  public:
   /// name: of the file.

@@ -143,7 +143,7 @@ class CsvReader {
       line.remove_prefix(end);
       return out;
     }
-    std::string out;  // two quotes stand for one
+    std::string out;  // two quotes mean one
     for (;;) {
       const std::size_t end = line.find('"');
       if (end == std::string_view::npos) fail("the quotes of a cell are not closed on their line");

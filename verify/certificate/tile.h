@@ -30,15 +30,15 @@ inline Tile tile_of(int axis, std::span<const double> cuts, std::size_t k) {
 /// Whether a place on the axis is in the tile. Exact: it only compares doubles.
 inline bool holds(const Tile& tile, double at) { return at >= tile.from && at < tile.to; }
 
-/// Whether a triangle, whose box reaches from lo to hi on the axis, may be of a pair that belongs
-/// to the tile and whose boxes are at most `clearance` apart. The difference is rounded as that of
-/// two boxes is (box_pairs.h); rounding is monotone.
+/// True if a triangle may be in a pair that belongs to the tile and whose boxes are at most
+/// `clearance` apart. lo, hi: the ends of its box on the axis. The difference is rounded as that of
+/// two boxes (box_pairs.h); rounding is monotone.
 inline bool meets(const Tile& tile, double lo, double hi, double clearance) {
   return lo < tile.to && tile.from - hi <= clearance;
 }
 
-/// Whether a pair belongs to the tile, by the places where the boxes of its triangles begin:
-/// whether the later one is in the tile.
+/// True if a pair belongs to the tile: the later one of the two places where the boxes of its
+/// triangles begin is in the tile.
 inline bool owns(const Tile& tile, double lo_a, double lo_b) {
   return holds(tile, std::max(lo_a, lo_b));
 }

@@ -109,8 +109,8 @@ void require_memory() {
   ::munmap(reserved, bytes);
 }
 
-// Throws Error unless libEGL is there and its client extensions can list and open devices.
-// libepoxy aborts the process where libEGL is missing, so epoxy_has_egl() is asked first.
+// Throws Error unless libEGL exists and its client extensions can list and open devices.
+// libepoxy aborts the process if libEGL is missing, so epoxy_has_egl() is asked first.
 void require_egl() {
   asked_threads();
   require_memory();
@@ -242,7 +242,7 @@ struct GlCurrent::Before {
     if (context != EGL_NO_CONTEXT) {
       eglBindAPI(api);
       if (eglMakeCurrent(display, draw, read, context)) return;
-      // It was destroyed meanwhile: then nothing is current.
+      // The previous context was destroyed meanwhile, so no context is current.
     }
     if (ours != EGL_NO_DISPLAY || now != EGL_NO_DISPLAY) {
       eglBindAPI(EGL_OPENGL_API);

@@ -12,7 +12,7 @@ struct GlDevice {
   int index = 0;
   std::string kind;        // "software" or "hardware"
   std::string extensions;  // EGL device extensions
-  std::string drm;         // device file, where it has one
+  std::string drm;         // device file, if it has one
   bool usable = false;     // a context of the version that farcull needs could be made
   std::string vendor, renderer, version;  // of that context
   std::string problem;                    // why it is not usable
@@ -31,13 +31,13 @@ struct GlInfo {
 };
 
 /// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent of it lives: any number of contexts can be used in turn in one thread, beside contexts
-/// of the caller's own, and one context by several threads, one at a time.
+/// GlCurrent of it lives. A thread can use any number of contexts one after the other, besides the
+/// caller's own, and several threads can use one context, one at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of
-  /// list_devices(). Throws Error where there is no EGL, no such device, or its OpenGL is too old.
-  /// The context that was current in the calling thread is current again afterwards.
+  /// list_devices(). Throws Error if there is no EGL or no such device, or if its OpenGL is too
+  /// old. The context that was current in the calling thread is current again afterwards.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -45,10 +45,10 @@ class GlContext {
 
   const GlInfo& info() const;
 
-  /// Every device, each tried with a context of its own; an empty list where there are none. Throws
+  /// Every device, each tried with a context of its own; an empty list if there are none. Throws
   /// Error without EGL.
   static std::vector<GlDevice> list_devices();
-  /// True where EGL lists a hardware device; none is opened. Throws Error without EGL.
+  /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
   static bool hardware_listed();
 
  private:
@@ -57,12 +57,12 @@ class GlContext {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Makes a context current in this thread for as long as the object lives; then the
-/// context from before is current again: nothing, another GlContext, or a context of the caller's
-/// own with its surfaces and its rendering API. Nests. Whatever calls GL holds one.
+/// Makes a context current in this thread for as long as the object lives. Then the previous
+/// context is current again: none, another GlContext, or a context of the caller with its surfaces
+/// and its rendering API. Objects may be nested. All code that calls GL holds such an object.
 class GlCurrent {
  public:
-  /// Throws Error where the context cannot be made current: another thread is using it, or a
+  /// Throws Error if the context cannot be made current: another thread is using it, or a
   /// context of another window-system interface (GLX) is current in this thread.
   explicit GlCurrent(const GlContext& context);
   ~GlCurrent();
@@ -85,9 +85,9 @@ int driver_threads(const std::string& renderer);
 /// The risk of those threads and the remedy, without a full stop; empty if there are none.
 std::string risk_of_threads(const std::string& renderer);
 
-/// Reads GL's error flags and the reset status; throws Error naming `stage` unless both are clean
-/// (assumption A7), or where the driver has left this thread with another floating-point
-/// environment than the proofs are about.
+/// Reads GL's error flags and the reset status. Throws Error naming `stage` unless both are clean
+/// (assumption A7), or if the driver has left this thread with a floating-point environment other
+/// than the one that the proofs assume.
 void check_gl(const std::string& stage);
 
 }  // namespace farcull

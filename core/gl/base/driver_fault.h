@@ -1,7 +1,7 @@
 // Faults of a GL driver, with which `farcull doctor` and the tests check that a fault is noticed
-// (assumption A7). While an object lives, functions that fail stand in place of GL's entry points
-// (libepoxy's function pointers), and shader sources are changed on their way to the compiler.
-// Only core/gl and its tests include this.
+// (assumption A7). While an object lives, failing functions replace GL's entry points (libepoxy's
+// function pointers), and shader sources are changed on their way to the compiler. Only core/gl and
+// its tests include this.
 #pragma once
 
 #include <epoxy/gl.h>

@@ -62,7 +62,7 @@ bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
       if (open != 0) glEndQuery(target);
     }
     drop();
-    // Errors of the deleted objects concern nobody. A lost context may report errors without end.
+    // Ignores errors about the deleted objects. A lost context may report errors without end.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
     return true;
@@ -71,8 +71,8 @@ bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
   }
 }
 
-// Numbers that look random, so that no few of them cancel in a sum; each step is a bijection, so no
-// two are equal before 2^32 of them.
+// Numbers that look random, so that it is unlikely that a few of them cancel in a sum. Each step is
+// a bijection, so the first 2^32 numbers are all different.
 std::uint32_t gl_number() {
   static std::atomic<std::uint32_t> last{0};
   std::uint32_t tag = last += 1;

@@ -25,7 +25,7 @@ namespace farcull {
                              const std::string& cause = "a command was lost");
 
 /// Ends open queries, makes the context current while drop() deletes objects, and forgets GL's
-/// errors. False where the context cannot be had: then drop() was not called.
+/// errors. False if the context cannot be made current: then drop() was not called.
 bool gl_forget(const GlContext& context, const std::function<void()>& drop);
 
 template <void (*Delete)(GLuint)>
@@ -88,17 +88,17 @@ void gl_dispatch(std::uint32_t groups, int row);
 /// be bound).
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
 
-/// A number that no other call in the process has returned, before the first 2^32 of them.
+/// A number that differs from all others that this process got, for the first 2^32 calls.
 std::uint32_t gl_number();
 
-/// Bytes of a storage buffer that stand before its data: its tag and three words 0.
+/// Bytes of a storage buffer before its data: its tag and three words 0.
 constexpr std::size_t kTagBytes = 16;
 
 /// A shader storage buffer that grows and never shrinks. It begins with a tag, a number that no
-/// other buffer of the process has: a program that reads it knows that this buffer is bound.
+/// other buffer of the process has. A program reads the tag to know that this buffer is bound.
 /// Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the data. Every
 /// function asks GL whether the buffer is bound before it touches contents, so that a lost binding
-/// cannot spoil another buffer. Each throws Error where GL fails.
+/// cannot spoil another buffer. Each function throws Error if GL fails.
 class GlStore {
  public:
   /// Grows to hold `wanted` bytes of data, or up to half as much again, at most `most`. Returns
@@ -120,8 +120,8 @@ class GlStore {
   std::size_t bytes_ = 0;
 };
 
-/// Waits until the device has done all that it was told. Throws Error naming `stage` where that
-/// takes longer than kLongestWait, or the device cannot say.
+/// Waits until the device has finished all commands. Throws Error naming `stage` if that takes
+/// longer than kLongestWait, or if the device cannot tell.
 void gl_wait(const std::string& stage);
 constexpr int kLongestWait = 600;  // s
 
@@ -129,13 +129,13 @@ constexpr int kLongestWait = 600;  // s
 /// waits, and no answer depends on it. A context must be current in every call.
 class GlClock {
  public:
-  /// For `stamps` places.
+  /// A clock with `stamps` places.
   explicit GlClock(std::size_t stamps);
   /// Forgets all places.
   void forget();
   void stamp(std::size_t place);
-  /// ms on the device between two places; negative where they are not known. The device must have
-  /// finished what it was told. Throws Error where a stamp was lost.
+  /// Milliseconds on the device between two places; negative if unknown. The device must have
+  /// finished all commands. Throws Error if a time stamp was lost.
   double between(std::size_t from, std::size_t to) const;
 
  private:

@@ -1,7 +1,7 @@
 // The passes of the GL canvas. A pass is cut into batches, one for each element buffer that a step
-// reads in a row. It sends its list, draws it batch by batch, and believes the answers only after
-// the report, the count of primitives and the control items say that it ran. GlCanvas forgets the
-// state after any failure, so that nothing on the device is believed then.
+// reads in a row. It sends its list and draws it batch by batch. It uses the results only if the
+// report, the count of primitives and the control items show that everything ran. After any failure
+// GlCanvas forgets its state, since the contents of the device are then unknown.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // A batch begins at a multiple of so many entries.
+      // A batch begins at a multiple of this many entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -123,10 +123,10 @@ class Layout {
 };
 
 // The draw list of `pass`. With `marks`, it begins with a store and ends with an ask; if the
-// caller's steps do not, a step of control items alone is added (state.h). The first store draws
-// this pass's mark, and the first ask looks for the mark of the pass before; canvas.odd says which
-// of pixels 1 and 2 has which. Without `marks`, no step is added, and no mark is drawn or asked
-// for.
+// caller's steps do not, a step with control items only is added (state.h). The first store draws
+// this pass's mark, and the first ask looks for the mark of the previous pass; canvas.odd says
+// which of the pixels 1 and 2 has which mark. Without `marks`, no step is added, and no mark is
+// drawn or asked for.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -171,7 +171,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
 // Selects the stored elements with these bytes; false: the caller must write them. A scene that
 // does not change has one set of elements for each view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // so three in all
+  constexpr std::size_t kEarlier = 2;                       // so there are three in all
   constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
@@ -246,8 +246,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   clock.stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
-    // New names for every pass: a query that is never issued then has no object, and no stale
-    // answer to give.
+    // Every pass makes new queries. A query that is never issued then has no object, so it cannot
+    // return the result of an earlier pass.
     queries.clear();
     while (queries.size() < laid.slots) queries.push_back(gl_make<GlQuery>(glGenQueries));
   }

@@ -1,4 +1,4 @@
-// Sets the state that a pass draws with. Each value that GL can return is asked for after it was
+// Sets the state that a pass draws with. Each value that GL can return is read back after it was
 // set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
 // flags. Each dispatch and each batch of draws leaves an echo in the report, which is compared with
 // the echo computed here.
@@ -63,7 +63,7 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // Each piece begins where a range may begin, and its first 16 bytes stand for a tag.
+  // Each piece begins where a range may begin, and its first 16 bytes are reserved for a tag.
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -138,7 +138,7 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   gl_wait(stage);
   const std::size_t bits = kHead + echoes_.size();
-  // With this filling, no echo is found if nothing is read.
+  // This filling contains no echo, so if nothing is read, no echo is found.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);

@@ -1,13 +1,13 @@
 // The canvas on the device: what a pass sends, the report in which the device says what it has read
 // and done (assumption A7), and the state. For core/gl/canvas alone.
 //
-// The canvas draws elements of its own besides those of the caller: the quad for kEverywhere, and
-// control items, by which lost commands are seen. Control items stand in corner pixels of the
+// The canvas draws elements besides those of the caller: the quad for kEverywhere, and control
+// items, which reveal lost commands. Control items are in corner pixels of the
 // render target, outside the window. In pixel 0 the k-th store of a pass leaves the depth
 // kControlTop - k * kControlGap. The next ask has a control item at that depth (or half a gap
-// behind it, where equal depths are not seen), which is seen only if that store ran. Passes mark
-// pixels 1 and 2 in turn. Each pass asks in the pixel that the pass before marked: kAsked is seen
-// there unless the buffer was cleared.
+// behind it, where equal depths are not seen), which is seen only if that store ran. Passes
+// alternate between the marked pixels 1 and 2. Each pass asks in the pixel that the previous pass
+// marked: kAsked is seen there unless the buffer was cleared.
 #pragma once
 
 #include <array>
@@ -45,12 +45,12 @@ constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 
 /// All that a pass sends.
 struct CanvasPass {
-  std::uint32_t serial = 0;   // no other pass of the process has it
+  std::uint32_t serial = 0;   // unique among the passes of the process
   std::vector<GpuDraw> list;  // begins with two entries where the store has its tag; each
                               // batch begins with {serial, word of the report}
   std::vector<float> own;     // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  std::uint32_t slots = 0;  // the caller's; with marks, one that must not be seen; controls'
+  std::uint32_t slots = 0;  // caller's; then one that must stay unseen (with marks); then controls'
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
   }
@@ -69,9 +69,9 @@ class CanvasReport {
   /// block: bytes of data in a storage block; alignment: of a storage buffer range, in bytes.
   CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment);
 
-  /// Expects so many batches of draws, at most `dispatches` dispatches, and `flags` to be packed.
+  /// Expects this many batches of draws, at most `dispatches` dispatches, and `flags` to be packed.
   void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
-  /// How many dispatches expect() makes for so many bytes.
+  /// The number of dispatches that expect() makes for this many bytes.
   std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
   /// Lets the device sum what the store holds from its beginning; read() compares the sum with that
   /// of `data` (a multiple of 16 bytes).
@@ -111,14 +111,14 @@ constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2;
 /// A program of canvas.vert and canvas.frag, and the echo of its uniforms.
 struct CanvasProgram {
   GlProgram name;
-  std::uint32_t number = 0;  // no other program of the process has it
+  std::uint32_t number = 0;  // unique among the programs of the process
   std::uint32_t echo = 0;    // of the uniforms that belong to the window
 };
 
 /// Elements that were sent, so that the same ones are not sent twice.
 struct CanvasElements {
   std::vector<GlStore> chunks;
-  std::vector<std::byte> bytes;  // what was sent to them
+  std::vector<std::byte> bytes;  // the bytes that were sent to them
 };
 
 /// The canvas on the device: its programs, render targets and stores, and the state that a pass
@@ -135,14 +135,14 @@ struct CanvasState {
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
   int target_width = 0, target_height = 0;
-  bool odd = false;                     // which of two pixels the next pass marks
+  bool odd = false;                     // which of pixels 1 and 2 the next pass marks
   CanvasElements current;               // of the last begin()
   std::vector<CanvasElements> earlier;  // of calls before, which may come again
   std::size_t per_chunk = 0;            // elements
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
   std::size_t alignment = 256;  // of a storage buffer range, in bytes
-  GLenum conservative = 0;      // what turns conservative rasterization on; 0: not wanted
+  GLenum conservative = 0;      // GL capability for conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
@@ -182,8 +182,8 @@ struct CanvasState {
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
 
-  // Uploads the elements of `drawables` and prepares the targets. All functions throw Error where
-  // the device refuses or a command was lost; then nothing on the device is to be believed.
+  // Uploads the elements of `drawables` and prepares the targets. All functions throw Error if the
+  // device refuses or a command was lost; the contents of the device are then unknown.
   void begin(const Window& window, const Drawables& drawables);
   std::vector<std::uint8_t> run(const Pass& pass);
   std::vector<float> depths(Verb verb, const std::vector<Draw>& wanted);

@@ -53,8 +53,8 @@ std::uint32_t packed(const Rgba& colour, double light) {
   return channel(colour.r) | channel(colour.g) << 8 | channel(colour.b) << 16 | 255u << 24;
 }
 
-// The fraction of its colour that a triangle sends to the eye, both sides alike. Degenerate ones
-// have no normal and are lit from everywhere.
+// The fraction of its colour that a triangle shows to the eye, the same on both sides. Degenerate
+// triangles have no normal and are fully lit.
 double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
@@ -205,7 +205,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_CLAMP);  // what is lifted may leave the range of the scene
+  glEnable(GL_DEPTH_CLAMP);  // lifted triangles may leave the depth range of the scene
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthRange(0, 1);

@@ -48,7 +48,7 @@ inline void blend(Rgba& pixel, const Rgba& colour, double part) {
 /// A triangle of the scene and how it is drawn.
 struct PictureTriangle {
   std::uint32_t triangle = 0;
-  Rgba colour;         // opaque, whatever its `a`
+  Rgba colour;         // drawn opaque; its `a` is ignored
   bool shaded = true;  // Lambert on both sides, and ambient light; false: the colour as it is
   float outline = 0;   // px: its edges are drawn as strips that wide, so that it covers a disc of
                        // this diameter, however small, narrow or degenerate it is

@@ -32,7 +32,7 @@ double units(float got, double head, double tail) {
     const bool right = std::signbit(got) == std::signbit(head) && std::abs(got) >= kLargest;
     return right ? 0 : std::numeric_limits<double>::infinity();
   }
-  // The subtraction is exact where got is anywhere near.
+  // The subtraction is exact if got is anywhere near.
   const double error = std::abs((static_cast<double>(got) - head) - tail);
   if (exact < kSmallest) return error <= kSmallest ? 0 : std::numeric_limits<double>::infinity();
   return error / (exact * kUnit);
@@ -53,7 +53,7 @@ double quotient_units(float got, double a, double b) {
     return std::abs(got) <= 2 * kSmallest ? 0 : std::numeric_limits<double>::infinity();
   if (std::signbit(got) != (std::signbit(a) != std::signbit(b)))
     return std::numeric_limits<double>::infinity();
-  // got * b is exact, and so is its difference from a where got is near.
+  // got * b is exact. Its difference from a is also exact, if got is near a / b.
   return std::abs(static_cast<double>(got) * b - a) / (std::abs(a) * kUnit);
 }
 
@@ -116,7 +116,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step is judged by the device's result of the step before: no rounding mode is assumed.
+    // Each step is judged by the device's result of the previous step: no rounding mode is assumed.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)

@@ -1,8 +1,8 @@
-// Probes of A7, A8 and A10. A7: lost commands are noticed, and the answer after them is right. A8:
-// values that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor
-// repeat an update. A missing or weak barrier shows only on devices that reorder commands, so these
-// probes can refute A8 only on the device that they run on. A10: the driver has no threads that are
-// known to damage memory.
+// Probes of A7, A8 and A10. A7: lost commands are noticed, and the next answer is right. A8: values
+// that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor repeat
+// an update. A missing or weak barrier shows only on devices that reorder commands, so these probes
+// can refute A8 only on the device that they run on. A10: the driver has no threads that are known
+// to damage memory.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -58,7 +58,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
       noticed = true;
     }
     fault.reset();
-    // The pass after the fault must neither fail nor answer with what the fault left behind.
+    // The pass after the fault must neither fail nor return leftovers of the faulty pass.
     bool recovered = false;
     try {
       canvas.begin(window(64, 64), drawables);
@@ -136,7 +136,7 @@ ProbeResult atomics(const ProbeOptions& options) {
                 "bits; one winner of two");
 }
 
-// Each invocation of a dispatch reads what another invocation of the dispatch before wrote.
+// Each invocation of a dispatch reads what another invocation of the previous dispatch wrote.
 ProbeResult dispatches(const ProbeOptions& options) {
   constexpr std::uint32_t kLinks = 48;
   const GlProgram program = step_program(1, false);

@@ -21,9 +21,9 @@ std::vector<Proxy> pixel_proxies(int side) {
   return out;
 }
 
-// Random depths of a layer, one for each pixel: in the range of the canvas's depth map or at its
-// ends, of control items (core/gl/canvas/state.h), any others, and some equal or next to those of
-// the layer `beside`.
+// Random depths of a layer, one for each pixel: in the range of the canvas's depth map, at its
+// ends, at depths of control items (core/gl/canvas/state.h), any others, and some that equal those
+// of the layer `beside` or are next to them.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -295,7 +295,7 @@ ProbeResult area_queries(const std::string& name, const GlContext& context,
     drawables.proxies.push_back(q);
     drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
   };
-  // Stored: a far background, on it pixels so near that what is asked lies behind them.
+  // Stores a far background, and on it pixels so near that the asked solids lie behind them.
   std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
   constexpr double kHalf = 0.5 * kWindow;
   add(box(-kHalf, -kHalf, kHalf, kHalf), 50);

@@ -1,5 +1,5 @@
-// Probes of the device assumptions A1 to A10: each tries to catch this device breaking one, and
-// gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
+// Probes of the device assumptions A1 to A10. Each tries to catch this device breaking one, and
+// reports the worst measured value with the bound that the proofs rely on (docs/budget.md). A
 // probe can refute an assumption, never prove it.
 #pragma once
 
@@ -22,8 +22,8 @@ struct ProbeResult {
   std::string unit;
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
-  std::string note;  // what was tried and seen besides; the error's text where the probe broke off
-  bool broke_off = false;  // an Error ended it: nothing was found out
+  std::string note;           // details of the probe; or the text of the Error that ended it
+  bool broke_off = false;     // an Error ended it: nothing was found out
 };
 
 /// All but the first four are deliberate defects, one for each probe, so that tests can see
@@ -50,9 +50,9 @@ struct ProbeOptions {
   bool one_thread = false;          // A10: the driver draws in a thread of its own
 };
 
-/// Runs the probes in the order of the assumptions; `started`, where given, is called with the
+/// Runs the probes in the order of the assumptions. If `started` is given, it is called with the
 /// assumption before each group. The same device and options give the same results. A probe that
-/// breaks off by an Error fails; others go on. GL state is not kept.
+/// ends with an Error fails; the others go on. GL state is not kept.
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
@@ -76,9 +76,9 @@ inline SolidCase solid_case_at(std::size_t i) {
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
-/// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
-/// programs of the method, in a window this deep (px): 1 if it is seen with flags, with queries and
-/// with queries on 24 bits. Where the two are the same solid and the line hits it, it must be seen.
+/// For each of kSolidCases solids, whether it is seen behind the stored one in its pixel, by the
+/// programs of the method, in a window this deep (px). 1: it is seen with flags, with queries and
+/// with queries on 24 bits. If both are the same solid and the line hits it, it must be seen.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

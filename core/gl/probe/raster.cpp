@@ -267,8 +267,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
   return wrong;
 }
 
-// Points and segments, through pixel centres and elsewhere. Multiples of 1/16 px snap to themselves
-// and upright or level segments keep one coordinate, so all of them have no area when snapped.
+// Points and segments, through pixel centres and elsewhere. Snapping does not change multiples of
+// 1/16 px, and vertical or horizontal segments stay so, so all of them have no area when snapped.
 Worst zero_area(Coverage& coverage, Random& random, bool fat) {
   const int side = coverage.target().width();
   std::vector<Proxy> proxies;

@@ -1,5 +1,5 @@
-// Runs the groups of probes in turn. A group that breaks off fails, and the next one runs. The
-// target that they share draws with the canvas's own vertex program.
+// Runs the groups of probes one after the other. A group that ends with an Error fails, and the
+// next one runs. The render target that they share draws with the canvas's vertex program.
 #include "core/gl/probe/probe.h"
 
 #include <algorithm>

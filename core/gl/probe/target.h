@@ -90,7 +90,7 @@ void on_canvases(const std::string& assumption, const std::string& kind, CanvasP
                  const GlContext& context, const ProbeOptions& options,
                  std::vector<ProbeResult>& out);
 
-/// Corners (px about the target's centre); the solid all 0 but for s0 = (-, -, entry, exit), s4 =
+/// Corners (px about the target's centre). The solid is 0 except s0 = (-, -, entry, exit) and s4 =
 /// (-, fixed, depth, -).
 Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);

@@ -27,8 +27,8 @@ constexpr double kJitter = 0.3;            // largest shift of a blob in its cel
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Makes blobs of kFieldBlob triangles: as many as come nearest to the wanted number of triangles,
-// but at least one.
+// Makes blobs of kFieldBlob triangles. Their number comes nearest to the wanted number of
+// triangles, but is at least one.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -102,8 +102,8 @@ Vec3 in_layer(const Frame& frame, int object, Random& random) {
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// The needles of both objects take the frames in turn. Every eighth needle of the second object is
-// moved so that it crosses a needle of the first.
+// The frames are used for the needles of both objects in turn. Every eighth needle of the second
+// object is moved so that it crosses a needle of the first.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -262,7 +262,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1), where that is an ulp, so every number is
+// All coordinates are multiples of 2^-53 in [1/2, 1), where the ulp is 2^-53, so every number is
 // exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;

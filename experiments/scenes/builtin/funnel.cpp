@@ -1,5 +1,5 @@
-// A cloth that hangs in a funnel in pleats: a smooth surface, which more triangles sample more
-// finely, beside the large triangles of the funnel.
+// A cloth that hangs in a funnel in pleats. More triangles sample its smooth surface more finely;
+// the triangles of the funnel beside it stay large.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -27,7 +27,7 @@ struct SceneParameters {
 
 /// The range of the first number, as in field:1000000.
 struct SceneSize {
-  std::string what;  // what it counts, such as "triangles"
+  std::string what;  // the thing that it counts, such as "triangles"
   std::uint64_t least = 0;
   std::uint64_t most = 0;
   std::uint64_t usual = 0;  // used if the name has no number
@@ -35,7 +35,7 @@ struct SceneSize {
 
 /// The range of the second number, both ends included.
 struct SceneSecond {
-  std::string what;  // what it measures, with its unit, such as "stiffness in N/m"
+  std::string what;  // the thing that it measures, with its unit, such as "stiffness in N/m"
   double least = 0;
   double most = 0;
   double usual = 0;
@@ -101,7 +101,7 @@ Scene transformed(Scene scene, double scale, const Vec3& translate);
 struct SceneSuffix {
   std::string suffix;       // with its @
   std::string description;  // one line
-  /// The change for this scene. All frames get the change of the scene without frames.
+  /// Returns the change, given the scene without frames. The same change applies to all frames.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();

@@ -270,7 +270,7 @@ struct ClothReport {
   double bending = 0;
   double gravitational = 0;  // 0 at the centre of the sphere
   double contact = 0;        // of the sphere's surface; like `elastic`, a trifle below 0
-                             // where all is slack (docs/cloth.md, crimp)
+                             // if everything is slack (docs/cloth.md, crimp)
   double residual = 0;       // largest force on a vertex that the step left unbalanced, N
   double slack = 0;          // work of the unbalanced forces in the step, J: what the total energy
                              // may have gained

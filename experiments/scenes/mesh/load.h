@@ -31,7 +31,7 @@ struct Mesh {
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded = {};  // faces of the file that are folded (below), ascending
-  std::vector<std::string> notes = {};     // what the reader passed over, a sentence each
+  std::vector<std::string> notes = {};     // things that the reader passed over, a sentence each
 };
 
 /// Triangles with vertices of their own.
@@ -106,9 +106,9 @@ class MeshCache {
   /// Frees the meshes of names without numbers.
   void clear() { meshes_.clear(); }
 
-  /// The mesh of the path, or of standard input for "-", welded if that is said; valid until the
+  /// The mesh of the path, or of standard input for "-", welded if that is set; valid until the
   /// same path is asked for in another frame. Throws Error as load_mesh, and without frames for a
-  /// numbered name that is no file. The meshes of two frames may differ in their triangles.
+  /// numbered name that is not a file. The meshes of two frames may differ in their triangles.
   const Mesh& get(const std::string& path);
 
   /// The numbered names that get() was called with.
@@ -176,7 +176,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// Whether the bytes are as long as the header of a binary STL file says.
+/// True if the length of the bytes is the one that the header of a binary STL file gives.
 bool is_binary_stl(std::string_view bytes);
 
 /// The sign of the area of the triangle a, b, c in the plane of the coordinates u and v: 1 if it

@@ -10,7 +10,7 @@
 namespace farcull {
 
 std::uint32_t NearPoints::number(const Vec3& p, std::uint32_t own) {
-  // A tolerance of 0 has no cells: each position is one.
+  // With a tolerance of 0 each position is a cell of its own.
   const Cell centre = cell_of(p);
   const int reach = tolerance_ > 0 ? 1 : 0;
   double best = tolerance_;
@@ -40,7 +40,7 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // no -0.0
-    // Beyond 2^53 cells neighbours are no other cells, and doubles are farther apart than one.
+    // Beyond 2^53 a neighbouring cell is the same double, and doubles are more than one cell apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }

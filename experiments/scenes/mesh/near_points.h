@@ -1,4 +1,4 @@
-// Points that nearly coincide, and the hint that a mesh would be closed if such corners were one.
+// Points that nearly coincide, and the hint that merging such corners would close a mesh.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct PositionHash {
   }
 };
 
-/// Numbers for points, of which near ones share one.
+/// Numbers points so that near points share a number.
 class NearPoints {
  public:
   /// tolerance: finite, >= 0.

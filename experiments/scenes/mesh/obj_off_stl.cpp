@@ -67,8 +67,8 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
-// A CR alone is a blank beside lines that end with LF, so that all after it would belong to its
-// line: a comment or a vertex would swallow what follows.
+// If lines end with LF, a lone CR would be a blank, and the text after it would belong to the same
+// line: a comment or a vertex would swallow that text.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -342,7 +342,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Moves to the next word and checks it and those after it. They may stand on any lines.
+// Moves to the next word, and checks it and the words after it. They may be on several lines.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -355,8 +355,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line, but not the word `stop`, if it is there with `after` among the few
-// words behind it: then the whole file may stand on one line.
+// Reads the rest of the line, but stops before the word `stop` if `after` is among the few words
+// behind it: the whole file is then on one line.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

@@ -1,6 +1,6 @@
 // Reads PLY, ASCII and binary of either byte order. Skips elements and properties other than the
 // position of `vertex` and the index list of `face`; their declared types give their lengths. Reads
-// ASCII one element per line, as the format says.
+// ASCII one element per line, as the format requires.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -208,7 +208,7 @@ void TextReader::skip_blanks() {
 }
 
 bool TextReader::next_line() {
-  // Reads the tokens that are left, since a continued line goes on in the lines that follow.
+  // Reads the remaining tokens, since a line with a continuation includes the next lines.
   if (started_ && rules_.continuation) {
     while (!token().empty()) {
     }

@@ -9,7 +9,7 @@ namespace farcull {
 
 struct Mesh;
 
-/// How far apart vertices may be that become one.
+/// The largest distance of vertices that are merged.
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // to the diagonal of the mesh's box
@@ -18,9 +18,9 @@ struct WeldTolerance {
 WeldTolerance parse_weld(const std::string& text);
 
 /// Merges vertices that triangles use: each becomes the nearest earlier one that is kept, if its
-/// distance (in double) is at most the tolerance, of equal ones the first. So no vertex moves
-/// farther, and the answer does not depend on anything else. Returns how many were merged.
-/// Triangles stay in their order, those that become segments or points too.
+/// distance (in double) is at most the tolerance; the first of several equally near ones. So no
+/// vertex moves farther, and the answer depends on nothing else. Returns how many were merged.
+/// Triangles stay in their order, also those that become segments or points.
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance);
 
 }  // namespace farcull
