@@ -36,7 +36,7 @@ inline constexpr const char* kNothingToDraw = "nothing left to draw";
 /// Why a method that draws did not, such as kNothingToDraw; empty if it did, and for other methods.
 std::string not_drawn_text(const Record& record);
 /// The line that names a faster method, for a method that promises and draws on the cores of a CPU;
-/// empty for others (docs/results/stages.md).
+/// empty for others (docs/methods.md).
 std::string faster_line(const RunOptions& options);
 
 /// "298 pairs", or with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62 of
