@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # A real cluster on one machine. It starts Debian's Slurm with three nodes (munged, slurmctld and three
-# slurmd, as processes of this user, with ports on the loopback), submits experiments/shards.sbatch as an
+# slurmd, as processes of this user, with ports on the loopback), submits experiments/jobs.sbatch as an
 # array job, and makes three tasks fail in the middle:
 #   lost node      every process of a node is killed; Slurm gives its task to another node
 #   lost daemon    only the daemon of a node is killed and its task lives on; Slurm starts the task a
 #                  second time, which has to be refused, since the first one still writes the file
 #   killed task    its program is killed; it is put back in the queue by hand
 # Then the shards are merged, and the rows have to be equal to those of an undisturbed run. At last
-# experiments/tiles.sbatch is submitted, the program of a tile is killed and put back, and the merged list
+# experiments/jobs.sbatch is submitted, the program of a tile is killed and put back, and the merged list
 # of pairs has to be that of one run. It is no part of CI.
 #   bash tests/cluster.sh                                 the study radius, --quick: some minutes
 #   STUDY=accuracy bash tests/cluster.sh --device native  another study and other options
@@ -234,7 +234,7 @@ start_slurm() {
 }
 submit() { # OUT: prints the number of the job
   sbatch --parsable --array=1-$tasks --output="$farcull_root/$folder/slurm-%A-%a.log" \
-    experiments/shards.sbatch "$folder/$1" "${options[@]}"
+    experiments/jobs.sbatch "$folder/$1" "${options[@]}"
 }
 # state JOB TASK: such as RUNNING, COMPLETED, NODE_FAIL
 state() { squeue -h -r -t all -j "$1_$2" -o %T 2>/dev/null; }
@@ -337,7 +337,7 @@ tiles() {
   say "tiles of $tile_scene"
   waited build/farcull run "$tile_scene" --no-verify --pairs "$folder/one-run.csv" >"$folder/one-run.txt"
   job=$(SCENE=$tile_scene sbatch --parsable --array=1-$tasks --output="$farcull_root/$folder/tiles-%A-%a.log" \
-    experiments/tiles.sbatch "$folder/tiles" --no-verify)
+    experiments/jobs.sbatch "$folder/tiles" --no-verify)
   say "tiles: job $job, $tasks tasks"
   until_true 120 hold_tile 2 || give_up "tile 2 does not start: $(states "$job")"
   check "tiles: task 2 has no record when it is killed" not test -e "$folder/tiles/tile-2.json"
