@@ -1,4 +1,4 @@
-#include "experiments/picture/clash_page.h"
+#include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include "embedded/clash_html.h"
 #include "embedded/clash_js.h"
 #include "experiments/picture/page_parts.h"
-#include "experiments/picture/picture.h"
 #include "experiments/record/clash.h"
 
 namespace farcull {
