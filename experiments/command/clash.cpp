@@ -14,7 +14,7 @@
 #include "experiments/method/clash.h"
 #include "experiments/method/run.h"
 #include "experiments/picture/picture.h"
-#include "experiments/record/clash.h"
+#include "experiments/record/output.h"
 #include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"

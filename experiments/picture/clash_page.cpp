@@ -8,7 +8,7 @@
 #include "embedded/clash_html.h"
 #include "embedded/clash_js.h"
 #include "experiments/picture/page_parts.h"
-#include "experiments/record/clash.h"
+#include "experiments/record/output.h"
 
 namespace farcull {
 namespace {

@@ -24,13 +24,11 @@
 #include "experiments/picture/picture.h"
 #include "experiments/python/arrays.h"
 #include "experiments/record/check.h"
-#include "experiments/record/clash.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/mesh/weld.h"
 #include "experiments/scenes/scene_file.h"
 #include "verify/certificate/certificate.h"
 

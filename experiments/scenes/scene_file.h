@@ -27,7 +27,7 @@ struct SceneArguments {
   SceneArguments(std::initializer_list<std::string> of) : names(of) {}
 
   std::vector<std::string> names;     // of files, or of a built-in scene
-  std::optional<std::string> weld;    // as parse_weld() takes it (weld.h)
+  std::optional<std::string> weld;    // as parse_weld() takes it (load.h)
   std::optional<std::string> format;  // of the mesh file "-", standard input: named_format()
   std::optional<std::string> ignore;  // as parse_ignored() takes it
 
