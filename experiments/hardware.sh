@@ -2,7 +2,7 @@
 # Everything that this machine can say of its GPU, in one command and within two hours: the probes, missed
 # pairs, times beside other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of
 # reliability, all studies and their report. The most telling parts come first. It installs what is missing
-# and builds; experiments/pack.sh makes a folder for a machine without network and compilers.
+# and builds.
 #   bash experiments/hardware.sh
 #     --minutes N      how long measuring may take (default 120). What was left out or cut off is named
 #     --device DEVICE  default hardware; software (Mesa's) or native for a trial
@@ -149,11 +149,7 @@ for size in 10000 30000 100000 300000 1000000 3000000 10000000; do
     --peers none --methods boxes --json "$out/field-$size.json"
 done
 mapfile -t moving < <(moving_scenes)
-if [[ -e packed ]]; then
-  missing+=("suite (the test suite): left out, it is not in a packed folder")
-else
-  step suite 2 "the test suite" env -u FARCULL_BUILT bash tests/run.sh
-fi
+step suite 2 "the test suite" env -u FARCULL_BUILT bash tests/run.sh
 for scene in two-bunnies armadillo-elephant dragon-bunny near-copy bunnies-far-apart; do
   step "reliability-$scene" 3 "missed pairs of $scene, and of its copies" bash experiments/reliability.sh "$scene"
 done
@@ -236,7 +232,7 @@ section() {
     sed '1s/^# .*/## The studies/; 2,$s/^#/##/; /^!\[/d' "$out/results/report/results.md"
   fi
 } >"$out/$name.md"
-if [[ $device == hardware && ! -e packed ]]; then
+if [[ $device == hardware ]]; then
   mkdir -p docs/results
   cp "$out/$name.md" docs/results/
   say "made docs/results/$name.md"

@@ -76,9 +76,8 @@ farcull_install() {
   farcull_apt_get install --yes --no-install-recommends "$@"
 }
 
-# Whether nothing is to be installed or built: in a folder that experiments/pack.sh made, or if the calling
-# script has built (FARCULL_BUILT).
-farcull_is_built() { [[ -n ${FARCULL_BUILT-} || -e $farcull_root/packed ]]; }
+# Whether nothing is to be installed or built, since the calling script has built (FARCULL_BUILT).
+farcull_is_built() { [[ -n ${FARCULL_BUILT-} ]]; }
 
 # Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
 # returns 2. A script that needs more packages appends them to farcull_packages first.

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # A real cluster on one machine. It starts Debian's Slurm with two nodes (munged, slurmctld and two slurmd,
-# as processes of this user, with ports on the loopback), submits experiments/shards.sbatch as an array job,
+# as processes of this user, with ports on the loopback), submits experiments/jobs.sbatch as an array job,
 # kills the program of a task in the middle, and puts the task back in the queue. Then the shards are merged,
 # and the rows have to be equal to those of an undisturbed run. At last the same is done with
-# experiments/tiles.sbatch, whose merged list of pairs has to be that of one run. It is no part of CI.
+# experiments/jobs.sbatch, whose merged list of pairs has to be that of one run. It is no part of CI.
 #   bash tests/cluster.sh                                 the study radius, --quick: some minutes
 #   STUDY=accuracy bash tests/cluster.sh --device native  another study and other options
 # It installs what is missing and builds. The log and those of the daemons are in build/cluster/.
@@ -213,7 +213,7 @@ tiles() {
   say "tiles of $tile_scene"
   waited build/farcull run "$tile_scene" --no-verify --pairs "$folder/one-run.csv" >"$folder/one-run.txt"
   job=$(SCENE=$tile_scene sbatch --parsable --array=1-$tasks --output="$farcull_root/$folder/tiles-%A-%a.log" \
-    experiments/tiles.sbatch "$folder/tiles" --no-verify)
+    experiments/jobs.sbatch "$folder/tiles" --no-verify)
   say "tiles: job $job, $tasks tasks"
   until_true 120 hold 2 || give_up "tile 2 does not start: $(states "$job")"
   check "tiles: task 2 has no record when it is killed" not test -e "$folder/tiles/tile-2.json"

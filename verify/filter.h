@@ -38,7 +38,7 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// Sets answers[i] to the answer of filter_planes() about the triangles a and b of pairs[i] and the
-/// clearance. The answers are the same on every instruction set (core/native/lanes.h). Fast if
+/// clearance. The answers are the same on every instruction set (core/native/canvas.h). Fast if
 /// successive pairs have the same a. Preconditions: those at the top of this file; as many answers
 /// as pairs; every index is in range.
 void filter_pairs(const Scene& scene, std::span<const TrianglePair> pairs, double clearance,

@@ -1,6 +1,6 @@
 // The canvas on the cores of the CPU: no device and no driver. Every thread draws all steps of a
 // pass, in order, on its rows of the window, so any number of threads gives the same bits. Every
-// instruction set (core/native/lanes.h) does too, since each operation is rounded once on all.
+// instruction set (lane_targets()) does too, since each operation is rounded once on all.
 //
 // For proxies it guarantees more than OpenGL does (docs/budget.md, "The canvas on the CPU"):
 // samples lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles
@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/canvas/canvas.h"
@@ -121,5 +122,16 @@ class NativeCanvas final : public Canvas {
   int stride_ = 0;
   std::vector<float> depth_;
 };
+
+// The instruction sets that the native canvas can use on this processor (lanes.cpp).
+
+/// Best first, such as "AVX3", "AVX2", "SSE4", "SCALAR" or "EMU128"; the last is plain C++.
+std::vector<std::string> lane_targets();
+/// The instruction set in use.
+std::string lane_target();
+/// Uses another one of lane_targets() from now on, in all threads; "": the best. No bit of an
+/// answer depends on it. Must not be called while something is drawn. Throws Error for an
+/// instruction set that this processor lacks.
+void use_lane_target(const std::string& name);
 
 }  // namespace farcull

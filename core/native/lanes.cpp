@@ -1,5 +1,5 @@
 // Tells Highway's table of functions which entry to use.
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 
 #include <hwy/highway.h>
 #include <hwy/targets.h>

@@ -23,7 +23,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/method/untested.h"
+#include "experiments/method/run.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"

@@ -349,4 +349,18 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
+// What the program tells its user besides an answer (hints.cpp). Each function looks at the meshes
+// anew.
+
+/// The objects of which two triangles collide with each other, ascending.
+std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
+
+/// Lines about these objects that are not closed, and that --weld would close: at which tolerance,
+/// and where; at most three. Empty for objects of more than 4 million triangles together.
+std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
+
+/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
+/// surfaces do not meet. Empty if there are none, or more than a million pairs of boxes to look at.
+std::string nested_line(const Scene& scene, const Record& record);
+
 }  // namespace farcull

@@ -13,7 +13,6 @@
 #include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
-#include "experiments/command/hints.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/output.h"

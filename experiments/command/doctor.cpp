@@ -18,7 +18,6 @@
 #include "core/gl/canvas/canvas.h"
 #include "core/gl/probe/probe.h"
 #include "core/native/canvas.h"
-#include "core/native/lanes.h"
 #include "experiments/command/command.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/device_verdict.h"

@@ -1,6 +1,6 @@
 // Looks for what a user should know besides the answer: meshes that a tolerance would close, and
 // objects that may lie inside others.
-#include "experiments/command/hints.h"
+#include "experiments/command/command.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "experiments/command/command.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"

@@ -11,7 +11,6 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/scenes/write_scene.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 

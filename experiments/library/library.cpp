@@ -10,7 +10,6 @@
 #include "experiments/library/input.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
-#include "experiments/method/untested.h"
 #include "experiments/record/stage_words.h"
 
 namespace farcull {

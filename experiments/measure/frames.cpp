@@ -12,7 +12,6 @@
 #include "core/scene/scene.h"
 #include "core/view/view.h"
 #include "experiments/method/run.h"
-#include "experiments/method/untested.h"
 #include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"

@@ -7,7 +7,7 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/boxes/meetings.h"
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 #include "offsets/offsets.h"

@@ -10,7 +10,9 @@
 #include <thread>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/base/text.h"
 #include "core/boxes/join.h"
 #include "core/scene/pair_sort.h"
 #include "core/scene/scene.h"
@@ -368,6 +370,22 @@ std::vector<TrianglePair> pairs_left(const Record& record) {
 bool broken(const Record& record, bool strict) {
   return (strict || guaranteed(record.options)) && record.verification &&
          record.verification->false_negatives > 0;
+}
+
+void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
+                   const std::string& where, const std::string& otherwise) {
+  const std::uint64_t pairs = objects * (objects - 1) / 2;
+  if (objects < 2 || self || ignored < pairs) return;
+  throw Error(where,
+              "nothing to test: all " + counted(pairs, "pair", "pairs") + " of objects are ignored",
+              otherwise.empty() ? "ignore fewer pairs" : "ignore fewer pairs, or " + otherwise);
+}
+
+void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
+                   const std::string& otherwise) {
+  ignored.insert(ignored.end(), scene.ignored.begin(), scene.ignored.end());
+  require_asked(scene.objects.size(), has_self(scene), in_order(std::move(ignored)).size(), where,
+                otherwise);
 }
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-#include "experiments/picture/clash_page.h"
+#include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,7 @@
 #include "embedded/clash_html.h"
 #include "embedded/clash_js.h"
 #include "experiments/picture/page_parts.h"
-#include "experiments/picture/picture.h"
-#include "experiments/record/clash.h"
+#include "experiments/record/output.h"
 
 namespace farcull {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
+#include "experiments/method/clash.h"
 #include "experiments/picture/panel.h"
 #include "experiments/scenes/frames.h"
 
@@ -101,5 +102,14 @@ void require_three();
 /// Throws Error naming --html if the scene of the page has more triangles or objects than a page
 /// holds. Called before any run. Throws as open_scene() does.
 void require_page_size(const PageArguments& arguments, MeasurementContext& lab);
+
+// `farcull clash --html` (clash_page.cpp): one file with the parts, the list of pairs that are not
+// clear, and the curves in which surfaces cross.
+
+/// unit: of the lengths; empty: not said. Throws Error as require_three() and require_page_size().
+std::string clash_page(const Scene& scene, const ClashRecord& record, const std::string& unit);
+
+/// Throws Error naming --html if no page can show the scene. To be called before the work.
+void require_clash_page(const Scene& scene);
 
 }  // namespace farcull

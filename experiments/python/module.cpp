@@ -136,10 +136,9 @@ std::string parameter_of(const std::string& where) {
 void set(const std::string& where, const std::string& reason, const std::string& remedy,
          bool input) {
   const bool missing = reason == "the file does not exist";
-  const py::object type = py::module_::import("farcull._errors")
-                              .attr(missing ? "MissingFileError"
-                                    : input ? "InputError"
-                                            : "Error");
+  const py::object type = py::module_::import("farcull").attr(missing ? "MissingFileError"
+                                                              : input ? "InputError"
+                                                                      : "Error");
   const py::object made = type(where, reason, remedy);
   PyErr_SetObject(type.ptr(), made.ptr());
 }

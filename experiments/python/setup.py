@@ -77,7 +77,7 @@ setup(
     version=VERSION,
     description="Collision culling that never misses",
     packages=["farcull"],
-    package_data={"farcull": ["py.typed", "*.pyi"]},
+    package_data={"farcull": ["py.typed"]},
     python_requires=">=3.9",
     install_requires=["numpy"],
     cmdclass={"build_py": Build},

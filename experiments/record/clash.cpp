@@ -1,4 +1,4 @@
-#include "experiments/record/clash.h"
+#include "experiments/record/output.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 
 #include "commit.h"
 #include "core/base/text.h"
-#include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/fields.h"
+#include "experiments/method/clash.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/miss_model.h"
 #include "experiments/method/plan.h"
@@ -167,5 +168,28 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record);
 std::string verdict_text(const DistanceAccounting& accounting);
 /// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
+
+struct ClashTable {
+  std::vector<ClashVerdict> failing = {};  // with touch, pairs that touch are listed, too
+  std::string unit = {};                   // of the lengths, such as "mm"; empty: not said
+};
+
+/// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
+/// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
+std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
+
+/// What a row says beyond its verdict, such as the kinds of contact.
+std::string clash_words(const Scene& scene, const ClashRow& row);
+
+/// Whether no pair is a clash, contained, unknown or one of `failing`, and every pair that was
+/// asked for was examined.
+bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
+
+/// A row for each pair that is not clear; numbers with all digits.
+std::string clash_csv(const Scene& scene, const ClashRecord& record);
+
+nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
+                                  const std::string& unit,
+                                  const std::vector<ClashVerdict>& failing = {});
 
 }  // namespace farcull

@@ -113,7 +113,7 @@ class Reporter:
         self.others, notes = other_devices(arguments.folder, store)
         self.notes += notes
         now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
-        self.page = pages.Page(store.path, arguments.folder, context["commit"], now, store.runs)
+        self.page = pages.Page(arguments.folder, context["commit"], now, store.runs)
         self.terminal = sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb"
 
     def say(self, what=""):

@@ -7,7 +7,6 @@ in grey too. A name that begins with a method has the method's colour in every f
 import html
 import io
 import math
-import os
 import re
 from dataclasses import dataclass
 
@@ -19,7 +18,17 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 from estimates import grouped, sentence  # noqa: E402
 
-pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
+# Figures as a journal prints them: text of 8 pt at the width at which they are made. Files are the same for the same numbers.
+matplotlib.rcParams.update({
+    "font.family": "DejaVu Sans", "text.parse_math": False, "axes.unicode_minus": True, "lines.solid_capstyle": "butt",
+    **dict.fromkeys(("font.size", "axes.titlesize", "axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 8),
+    **dict.fromkeys(("axes.linewidth", "xtick.major.width", "ytick.major.width"), 0.6), "grid.linewidth": 0.5,
+    **dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), "#444444"), "grid.color": "#e4e4e4",
+    **dict.fromkeys(("xtick.labelcolor", "ytick.labelcolor"), "#222222"), "axes.grid": True, "axes.axisbelow": True,
+    "axes.spines.top": False, "axes.spines.right": False,
+    **{f"{axis}tick.{name}": value for axis in "xy" for name, value in (
+        ("major.size", 2.5), ("minor.size", 1.2), ("major.pad", 2))},
+    "svg.hashsalt": "farcull", "svg.fonttype": "none", "pdf.fonttype": 42})
 
 DOUBLE, SINGLE = 504.0, 244.0  # points: the widths of two columns of a journal and of one, 178 and 86 mm
 LINE = 11.0         # points: distance of lines of text

@@ -1,16 +1,15 @@
-"""The report as one self-contained page of HTML, and as results.md: broken promises first, then a section for each
-chapter. section() writes a chapter in both forms."""
+"""The report as results.md, broken promises first, then a section for each chapter; and the same as one self-contained
+page of HTML, which page_html() makes from it."""
 import base64
 import collections
-import os
+import html
 import re
 import shlex
 from dataclasses import dataclass, field
 
 from draw import inline_svg
-from estimates import counted, grouped, listed, of_all, sentence
+from estimates import grouped, of_all, sentence
 from frame import Table, columns
-from tables import html_prose, html_text, table_html
 
 MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
 
@@ -37,7 +36,6 @@ class Drawn:
 
 @dataclass
 class Page:
-    store: str
     folder: str
     commit: str
     written: str
@@ -68,55 +66,7 @@ def runs_table(page):
         for run in page.runs.itertuples() if run.run in rows])
 
 
-# ---- the parts of a section in each form
-
-class Html:
-    @staticmethod
-    def opening(number, chapter):
-        return (f'<section id="{chapter.study}" class="study">\n<h2>{number}. {html_text(chapter.title)}</h2>\n<p '
-                f'class="question">{html_prose(chapter.question)}</p>\n')
-
-    @staticmethod
-    def warning(text):
-        return f'<p class="warning" role="note"><strong>Incomplete.</strong> {html_prose(text)}</p>\n'
-
-    @staticmethod
-    def items(title, sentences):
-        items = "".join(f"<li>{html_prose(sentence(text))}</li>\n" for text in sentences)
-        return f"<h3>{title}</h3>\n<ul>\n{items}</ul>\n" if items else ""
-
-    @staticmethod
-    def left_out(text):
-        return f'<p class="note" role="note">{html_prose(text)}</p>\n'
-
-    @staticmethod
-    def picture(label, drawn, caption):
-        name = drawn.picture.name
-        return (f'<figure id="pic-{name}">\n<img src="data:image/png;base64,{base64.b64encode(drawn.png).decode()}" '
-                f'alt="{html_text(drawn.picture.title)}">\n<figcaption><strong>{label}</strong> {html_prose(caption)} '
-                f'<span class="files"><a href="pictures/{name}.png">PNG</a></span></figcaption>\n</figure>\n')
-
-    @staticmethod
-    def figure(label, figure, svg, caption):
-        name = figure.name
-        links = " ".join(f'<a href="figures/{name}.{kind}">{kind.upper()}</a>' for kind in ("svg", "pdf", "csv"))
-        return (f'<figure id="fig-{name}">\n<div class="drawing{" narrow" if figure.narrow else ""}" role="img" '
-                f'aria-label="{html_text(figure.title)}" tabindex="0">{inline_svg(svg, name + "-")}</div>\n<figcaption>'
-                f'<strong>{html_text(label)}</strong> {html_prose(caption)} <span class="files">{links}</span>'
-                '</figcaption>\n</figure>\n')
-
-    @staticmethod
-    def table(label, table):
-        links = " ".join(f'<a href="tables/{table.name}.{kind}">{name}</a>' for kind, name in (
-            ("csv", "CSV"), ("tex", "LaTeX")))
-        return (f'<figure id="tab-{table.name}" class="table">\n<figcaption><strong>{label}</strong> '
-                f'{html_prose(sentence(table.caption))} <span class="files">{links}</span></figcaption>\n<div class="cells" '
-                f'tabindex="0" role="region" aria-label="{label}">\n{table_html(table)}</div>\n</figure>\n')
-
-    @staticmethod
-    def closing(again, rows):
-        return f'<p class="again">{html_prose(again)} Every row: <a href="tables/{rows}">{rows}</a>.</p>\n</section>\n'
-
+# ---- Markdown
 
 def markdown_prose(text):
     """Escapes signs of Markdown, except in code; a bar is escaped in code too, where it also ends a cell."""
@@ -138,125 +88,35 @@ def markdown_table(table):
     return line(name for name, _ in table.columns) + f"|{sides}\n" + "".join(map(line, table.rows)) + "\n"
 
 
-class Markdown:
-    @staticmethod
-    def opening(number, chapter):
-        return f"## {number}. {markdown_prose(chapter.title)}\n\n{markdown_prose(chapter.question)}\n\n"
-
-    @staticmethod
-    def warning(text):
-        return bullets(["Incomplete: " + text])
-
-    @staticmethod
-    def items(title, sentences):
-        return f"{title}:\n\n{bullets(sentences)}" if sentences else ""
-
-    @staticmethod
-    def left_out(text):
-        return markdown_prose(text) + "\n\n"
-
-    @staticmethod
-    def picture(label, drawn, caption):
-        alt, name = markdown_prose(drawn.picture.title), drawn.picture.name
-        return f"![{alt}](pictures/{name}.png)\n\n**{label}** {markdown_prose(caption)}\n\n"
-
-    @staticmethod
-    def figure(label, figure, _, caption):
-        return (f"![{markdown_prose(figure.title)}](figures/{figure.name}.svg)\n\n**{markdown_prose(label)}** "
-                f"{markdown_prose(caption)}\n\n")
-
-    @staticmethod
-    def table(label, table):
-        return f"**{label}** {markdown_prose(sentence(table.caption))}\n\n{markdown_table(table)}"
-
-    @staticmethod
-    def closing(again, _):
-        return markdown_prose(again) + "\n\n"
-
-
-def section(form, number, drawn, count):
+def section(number, drawn, count):
     """A chapter. count: how many figures and tables the page has so far."""
     def label(kind, title=""):
         count[kind] += 1
-        return f"{kind} {count[kind]}.{title and ' ' + sentence(title)}"
+        return f"**{markdown_prose(f'{kind} {count[kind]}.{title and chr(32) + sentence(title)}')}**"
+
+    def items(title, sentences):
+        return f"{title}:\n\n{bullets(sentences)}" if sentences else ""
 
     chapter, study = drawn.chapter, drawn.study
-    out = form.opening(number, chapter)
+    out = f"## {number}. {markdown_prose(chapter.title)}\n\n{markdown_prose(chapter.question)}\n\n"
+    points = f"{of_all(len(study.all_rows), len(study.points))} points"
     if not study.complete:
-        out += form.warning(f"{of_all(len(study.all_rows), len(study.points))} points have a row; findings, figures and "
-                            "tables are of these.")
-    out += form.items("What it shows", [printed(finding) for finding in chapter.findings])
+        out += bullets([f"Incomplete: {points} have a row; findings, figures and tables are of these."])
+    out += items("What it shows", [printed(finding) for finding in chapter.findings])
     for p in drawn.pictures:
-        caption = f"{sentence(p.picture.caption)} Drawn by `{p.command}`."
-        out += (form.picture(label("Figure", p.picture.title), p, caption) if p.png else
-                form.left_out(sentence(f"A picture (`{p.command}`) is left out: {p.left_out}")))
-    for f, svg in zip(chapter.figures, drawn.svgs):
-        out += form.figure(label("Figure", f.title), f, svg, f"{sentence(f.caption)} Measured by `{chapter.command}`.")
+        picture = p.picture
+        out += (f"![{markdown_prose(picture.title)}](pictures/{picture.name}.png)\n\n{label('Figure', picture.title)} " +
+                markdown_prose(f"{sentence(picture.caption)} Drawn by `{p.command}`.") if p.png else
+                markdown_prose(sentence(f"A picture (`{p.command}`) is left out: {p.left_out}"))) + "\n\n"
+    for f in chapter.figures:
+        out += (f"![{markdown_prose(f.title)}](figures/{f.name}.svg)\n\n{label('Figure', f.title)} " +
+                markdown_prose(f"{sentence(f.caption)} Measured by `{chapter.command}`.") + "\n\n")
     for t in chapter.tables:
-        out += form.table(label("Table"), t)
-    out += form.items("What it does not show", chapter.limits)
-    return out + form.closing(
-        f"Measured by `{chapter.command}` ({'quick' if study.quick else 'full'} grid, seed {study.seed}, "
-        f"{of_all(len(study.all_rows), len(study.points))} points), drawn by `farcull report`.", study.name + "-rows.csv")
-
-
-# ---- the pages
-
-def linked_items(kind, pairs):
-    """A list of sentences that lead to the section of their chapter."""
-    items = "".join(f'<li><a href="#{chapter.study}">{html_text(chapter.title)}</a>: '
-                    f'{html_prose(printed(finding))}</li>\n' for chapter, finding in pairs)
-    return f'<ul class="{kind}">\n{items}</ul>\n' if items else ""
-
-
-def summary_html(page):
-    studies = [d.study for d in page.chapters]
-    rows, points = (sum(len(getattr(study, of)) for study in studies) for of in ("all_rows", "points"))
-    missing, out = [study.name for study in studies if not study.complete], ""
-    if missing:
-        out += Html.warning(f"{of_all(rows, points)} points have a row; rows are missing in {listed(missing)}. What follows "
-                            "is of the rows that are there. `farcull experiment NAME --resume` measures the others.")
-    out += '<section id="summary">\n<h2>Summary</h2>\n'
-    # The claim of the rows, or none.
-    claim = ("FAR culls with graphics hardware and never misses a pair that collides; CULLIDE, "
-             "from which it comes, can.")
-    if broken(page):
-        claim = "FAR and CULLIDE cull with graphics hardware."
-        out += ('<p class="warning" role="note"><strong>Broken.</strong> What must never happen has happened:</p>\n' +
-                linked_items("broken", broken(page)))
-    grids = {study.quick for study in studies}
-    kind = ("quick grids and full ones" if len(grids) > 1 else "of quick grids, which are made for a first look" if
-            True in grids else "of full grids")
-    runs = page.runs[page.runs.run.isin(list(rows_of_runs(page)))]
-    machines = dict.fromkeys(f"{run.gl_renderer} on {run.cpu} ({run.cores} cores)" for run in runs.itertuples())
-    firsts = [(d.chapter, next((f for f in d.chapter.findings if not f[0]), None)) for d in page.chapters]
-    return (f"{out}<p>{claim} This page reports {counted(len(studies), 'study', 'studies')} on "
-            f"{html_text(listed(machines))}: {counted(rows, 'row', 'rows')}, {kind}. All its numbers come from "
-            f"<code>{html_text(page.store)}</code>. Counts are the same, bit for bit, on the same device and CPU features; "
-            f"times are of this machine.</p>\n{linked_items('findings', [pair for pair in firsts if pair[1]])}</section>\n")
-
-
-def page_html(page):
-    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "page.css"), encoding="utf-8") as file:
-        css = file.read()
-    count = collections.Counter()
-    contents = "".join(f'<li><a href="#{d.study.name}">{html_text(d.chapter.title)}</a></li>\n' for d in page.chapters)
-    # A browser looks for an icon beside a page without its own.
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'{MARK}\n<title>Reliable collision culling: results</title>\n'
-        f'<link rel="icon" href="data:,">\n<style>\n{css}</style>\n</head>\n<body>\n<main>\n'
-        '<header>\n<h1>Reliable collision culling: results</h1>\n'
-        f'<p class="by">farcull {html_text(page.commit[:12] or "of no commit")}, written {html_text(page.written)}</p>\n'
-        f'</header>\n{summary_html(page)}<nav aria-label="Contents">\n<h2>Contents</h2>\n<ol>\n{contents}'
-        '<li><a href="#machine">Where it was measured</a></li>\n</ol>\n</nav>\n'
-        + "".join(section(Html, i + 1, drawn, count) for i, drawn in enumerate(page.chapters)) +
-        '<section id="machine">\n<h2>Where it was measured</h2>\n<div class="cells" tabindex="0" role="region" '
-        f'aria-label="Runs">\n{table_html(runs_table(page))}</div>\n<p>This page was made by <code>farcull report</code> '
-        f'from {html_text(page.store)}; figures with their numbers, tables as CSV and LaTeX lie beside it in '
-        '<code>figures/</code> and <code>tables/</code>. The page itself needs none of them.</p>\n</section>\n'
-        '</main>\n</body>\n</html>\n')
+        out += f"{label('Table')} {markdown_prose(sentence(t.caption))}\n\n{markdown_table(t)}"
+    out += items("What it does not show", chapter.limits)
+    return out + markdown_prose(
+        f"Measured by `{chapter.command}` ({'quick' if study.quick else 'full'} grid, seed {study.seed}, {points}), drawn by "
+        "`farcull report`.") + "\n\n"
 
 
 def page_markdown(page):
@@ -268,5 +128,81 @@ def page_markdown(page):
             "tables and sentences: no number was typed. A single study is measured again by the command that "
             "stands below it. Counts are the same, bit for bit, on the same device and CPU "
             "features; times are of the machine that stands [at the end](#where-it-was-measured).\n\n")
-    out += "".join(section(Markdown, i + 1, drawn, count) for i, drawn in enumerate(page.chapters))
+    out += "".join(section(i + 1, drawn, count) for i, drawn in enumerate(page.chapters))
     return out + "## Where it was measured\n\n" + markdown_table(runs_table(page)).rstrip("\n") + "\n"
+
+
+# ---- HTML
+
+STYLE = """:root { color-scheme: light dark; }
+body { max-width: 48rem; margin: 0 auto; padding: 3rem 1.25rem; line-height: 1.5; font-family: Georgia, "Liberation Serif", serif; }
+h1, h2, .cells, nav { font-family: Helvetica, Arial, "DejaVu Sans", sans-serif; }
+h2 { margin-top: 3rem; border-top: 1px solid #999; padding-top: 1rem; }
+code { font-size: .84em; overflow-wrap: anywhere; }
+figure, .cells { margin: 2rem 0 .6rem; overflow-x: auto; }
+svg { display: block; width: 100%; min-width: 42rem; height: auto; background: #fff; }
+.narrow svg { width: 50%; min-width: 20.4rem; margin: 0 auto; }
+img { display: block; max-width: 100%; margin: 0 auto; }
+table { border-collapse: collapse; font-size: .84rem; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; padding: .28rem .9rem .28rem 0; vertical-align: top; }
+thead th { border-bottom: 1px solid; vertical-align: bottom; }
+.r { text-align: right; }
+@media print { body { padding: 0; font-size: 10pt; } svg { min-width: 0; } figure, tr { break-inside: avoid; } }
+"""
+INLINE = re.compile(r"\\(.)|`([^`]+)`|\*\*((?:\\.|[^\\*])+)\*\*|\[((?:\\.|[^\\\]])*)\]\(([^)]*)\)|([^\\`*\[]+|.)", re.DOTALL)
+
+
+def html_text(text):
+    return html.escape(re.sub(r"[\x00-\x09\x0b-\x1f\x7f]", " ", text)).replace("&#x27;", "&#39;")
+
+
+def html_prose(text):
+    """A line of Markdown, of the signs that this file writes."""
+    def of(match):
+        escaped, code, strong, words, to, plain = match.groups()
+        return (f"<code>{html_text(code.replace(chr(92) + '|', '|'))}</code>" if code else
+                f"<strong>{html_prose(strong)}</strong>" if strong else
+                f'<a href="{html_text(to)}">{html_prose(words)}</a>' if to else html_text(escaped or plain or ""))
+    return INLINE.sub(of, text)
+
+
+def block_html(block, images):
+    """A block of Markdown. images: HTML for the path of each image."""
+    lines = block.split("\n")
+    if heading := re.match("(#+) (.*)", block):
+        name = re.sub("[^a-z0-9]+", "-", re.sub(r"^\d+\. ", "", heading[2]).lower()).strip("-")
+        return f'<h{len(heading[1])} id="{name}">{html_prose(heading[2])}</h{len(heading[1])}>\n'
+    if image := re.fullmatch(r"!\[(.*)\]\((.*)\)", block):
+        title = html_text(re.sub(r"\\(.)", r"\1", image[1]))
+        return f'<figure role="img" aria-label="{title}">\n{images[image[2]]}</figure>\n'
+    if block.startswith("- "):
+        return "<ul>\n" + "".join(f"<li>{html_prose(line[2:])}</li>\n" for line in lines) + "</ul>\n"
+    if block.startswith("| "):
+        head, sides, *rows = [re.split(r"(?<!\\)\|", line)[1:-1] for line in lines]
+        sides = [' class="r"' if side.endswith(":") else "" for side in sides]
+        def row(cells, kind):
+            return "<tr>" + "".join(f"<{kind}{side}>{html_prose(cell.strip())}</{kind}>" for cell, side in zip(cells, sides)) + "</tr>\n"
+        return (f'<div class="cells" tabindex="0">\n<table>\n<thead>{row(head, "th")}</thead>\n<tbody>\n' +
+                "".join(row(cells, "td") for cells in rows) + "</tbody>\n</table>\n</div>\n")
+    return f"<p>{html_prose(' '.join(lines))}</p>\n"
+
+
+def page_html(page):
+    images = {}
+    for drawn in page.chapters:
+        for figure, svg in zip(drawn.chapter.figures, drawn.svgs):
+            links = " ".join(f'<a href="figures/{figure.name}.{kind}">{kind.upper()}</a>' for kind in ("svg", "pdf", "csv"))
+            images[f"figures/{figure.name}.svg"] = (
+                f'<div class="{"narrow" if figure.narrow else "wide"}">{inline_svg(svg, figure.name + "-")}</div>\n{links}')
+        for p in drawn.pictures:
+            images[f"pictures/{p.picture.name}.png"] = (
+                f'<img src="data:image/png;base64,{base64.b64encode(p.png).decode()}" alt="">')
+    body = "".join(block_html(block, images) for block in page_markdown(page).strip("\n").split("\n\n"))
+    contents = "".join(f'<li><a href="#{name}">{title}</a></li>\n' for name, title in re.findall('<h2 id="(.*?)">(.*?)</h2>', body))
+    return (  # a browser looks for an icon beside a page without its own
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n<title>Results of farcull</title>\n'
+        f'<link rel="icon" href="data:,">\n<style>\n{STYLE}</style>\n</head>\n<body>\n'
+        f'<p>farcull {html_text(page.commit[:12] or "of no commit")}, written {html_text(page.written)}. Figures, tables as CSV and '
+        f'LaTeX, and all rows lie beside this page in figures/ and tables/.</p>\n<nav>\n<ul>\n{contents}</ul>\n</nav>\n{body}'
+        '</body>\n</html>\n')

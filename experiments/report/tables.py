@@ -1,9 +1,6 @@
-"""Tables as files: CSV for programs, LaTeX (booktabs) for papers, HTML for the page; and text with
-the escapes of each."""
+"""Tables as files: CSV for programs, LaTeX (booktabs) for papers; and text with its escapes."""
 import csv
-import html
 import io
-import re
 
 # Signs that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
 LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
@@ -13,15 +10,6 @@ LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "�
          "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
          "|": "$|$", "`": ""}
 ROWS_OF_FLOAT = 40  # a float is at most one page
-
-
-def html_text(text):
-    return html.escape(re.sub(r"[\x00-\x09\x0b-\x1f\x7f]", " ", text)).replace("&#x27;", "&#39;")
-
-
-def html_prose(text):
-    """Text between backticks becomes code; a backtick without a partner stays."""
-    return re.sub("`([^`]*)`", r"<code>\1</code>", html_text(text))
 
 
 def latex_text(text):
@@ -36,14 +24,6 @@ def csv_text(lines):
 
 def table_csv(table):
     return csv_text([[name for name, _ in table.columns]] + table.rows)
-
-
-def table_html(table):
-    sides = [' class="r"' if side == "r" else "" for _, side in table.columns]
-    head = "".join(f'<th scope="col"{side}>{html_prose(name)}</th>' for side, (name, _) in zip(sides, table.columns))
-    rows = "".join("<tr>" + "".join(f"<td{side}>{html_prose(cell)}</td>" for side, cell in zip(sides, row)) + "</tr>\n"
-                   for row in table.rows)
-    return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
 
 
 def table_latex(table):

@@ -23,7 +23,6 @@
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/mesh/weld.h"
 
 namespace farcull {
 namespace {

@@ -27,7 +27,7 @@ struct SceneArguments {
   SceneArguments(std::initializer_list<std::string> of) : names(of) {}
 
   std::vector<std::string> names;     // of files, or of a built-in scene
-  std::optional<std::string> weld;    // as parse_weld() takes it (weld.h)
+  std::optional<std::string> weld;    // as parse_weld() takes it (load.h)
   std::optional<std::string> format;  // of the mesh file "-", standard input: named_format()
   std::optional<std::string> ignore;  // as parse_ignored() takes it
 
@@ -108,5 +108,23 @@ using TakePart = std::function<void(Scene& part)>;
 /// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
 /// perhaps after some parts, and what take() throws. Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
+
+// Scenes as files (write_scene.cpp): meshes with 17 significant digits, so that every double is
+// read back unchanged, and the scene file that puts them together again.
+
+/// The files that one call has written.
+struct WrittenScene {
+  std::string scene_file;  // FOLDER/scene.json
+  std::uint64_t files = 0;
+  std::uint64_t bytes = 0;
+};
+
+/// Writes each object as OFF, NAME.off, with the vertices that it uses and 17 significant digits,
+/// and scene.json, whose scene has the same scene_hash(). NAME is the object's name with everything
+/// but letters, digits, '.' and '-' replaced, and with a number if two would be the same. Creates
+/// the last part of `folder` if it does not exist; replaces existing files, as other outputs do;
+/// writes scene.json last. Throws Error naming a path that the system refuses, and then removes the
+/// files that are new. Precondition: every object has a triangle.
+WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

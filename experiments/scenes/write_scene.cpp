@@ -1,5 +1,5 @@
 // Writes a mesh for each object, and a scene file that names the meshes.
-#include "experiments/scenes/write_scene.h"
+#include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

@@ -17,7 +17,7 @@
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "experiments/method/session.h"
 #include "experiments/studies/counts.h"
 #include "experiments/system/machine.h"

@@ -8,13 +8,13 @@ set -uo pipefail
 source "$(dirname -- "${BASH_SOURCE[0]}")/script_lab.sh" hardware_test flock awk tar
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# A packed folder, in which nothing is installed or built. Its program writes down how it was called.
+# A folder in which nothing is installed or built (FARCULL_BUILT). Its program writes down how it was called.
 # FAKE_FAIL, FAKE_REFUSE, FAKE_SLEEP: a word of the calls that end with 1, with 2, or take 30 seconds.
 tree=$work/tree
-mkdir -p "$tree/experiments" "$tree/build" "$work/bin"
+mkdir -p "$tree/experiments" "$tree/tests" "$tree/build" "$work/bin"
 cp "$root"/experiments/{setup,hardware,reliability}.sh "$tree/experiments/"
 echo 'exit 0' >"$tree/experiments/meshes.sh"
-echo test >"$tree/packed"
+echo 'exit 0' >"$tree/tests/run.sh"
 cat >"$tree/build/farcull" <<'FAKE'
 #!/usr/bin/env bash
 said=" $* "
@@ -44,7 +44,7 @@ FAKE
 # The report needs a Python with its packages to be there.
 printf '#!/bin/sh\n' >"$work/bin/python"
 chmod +x "$tree/build/farcull" "$work/bin/python"
-export CALLS=$work/calls PATH=$work/bin:$PATH LC_ALL=C FARCULL_PYTHON=$work/bin/python
+export FARCULL_BUILT=yes CALLS=$work/calls PATH=$work/bin:$PATH LC_ALL=C FARCULL_PYTHON=$work/bin/python
 out=$work/out
 script=$tree/experiments/hardware.sh
 measure() { # OPTIONS...: sets $status; what is said is in $work/said
@@ -103,8 +103,7 @@ holds "goes on" "$work/said" 'FAILED: reliability-dragon-bunny'
 holds "goes on" "$work/said" 'bench-funnel-[0-9]+ .*: status 2: farcull: no'
 holds "goes on" "$page" '[1-9] failed: .*reliability-dragon-bunny'
 holds "goes on" "$page" '^# A Device \(R\) 1.0$'
-holds "goes on" "$page" 'suite \(the test suite\): left out'
-for part in doctor misses bench-two-bunnies field-10000000 reliability-near-copy motion-one \
+for part in doctor misses suite bench-two-bunnies field-10000000 reliability-near-copy motion-one \
   bench-spheres studies report; do
   compgen -G "$out/steps/$part*" >/dev/null || fail "goes on: $part is not done"
 done

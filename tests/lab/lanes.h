@@ -1,7 +1,7 @@
 // Tests on each instruction set that this processor has.
 #pragma once
 
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

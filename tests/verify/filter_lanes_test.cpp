@@ -2,7 +2,7 @@
 // decide() answers as the predicates on two triangles do.
 #include "verify/filter.h"
 
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"

@@ -15,14 +15,42 @@ MemoryError where there is no memory; a file that is missing, :class:`MissingFil
 FileNotFoundError too. There is no answer then.
 """
 
+import errno
 import os
 
 # Mesa's llvmpipe draws without threads: they may damage the memory of this process. Mesa reads the
 # variable when a display is opened. A value set by the caller stays, and reports name it.
 os.environ.setdefault("LP_NUM_THREADS", "0")
-del os
 
-from ._errors import Error, InputError, MissingFileError
+
+class Error(Exception):
+    """What farcull raises where it has no answer.
+
+    Attributes: ``where``, the parameter, file or step of a device; ``reason``, what is wrong there;
+    ``remedy``, what to do next.
+    """
+
+    def __init__(self, where: str, reason: str, remedy: str) -> None:
+        super().__init__(where, reason, remedy)
+        self.where = where
+        self.reason = reason
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.reason}; {self.remedy}"
+
+
+class InputError(Error, ValueError):
+    """An argument is wrong; ``where`` names it."""
+
+
+class MissingFileError(Error, FileNotFoundError):
+    """A file does not exist; ``where`` and ``filename`` name it."""
+
+    def __init__(self, where: str, reason: str, remedy: str) -> None:
+        Error.__init__(self, where, reason, remedy)
+        self.errno, self.strerror, self.filename = errno.ENOENT, reason, where
+
 
 try:
     from . import _farcull
@@ -50,4 +78,4 @@ __all__ = [
     "picture", "show",
 ]
 
-del _farcull
+del os, _farcull

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ._errors import InputError
+from . import InputError
 
 
 def read(name: str, given: Any, remedy: str) -> np.ndarray:

@@ -11,9 +11,8 @@ from typing import Any, Dict, List, Optional, Union
 
 import numpy as np
 
-from . import _arguments, _farcull
+from . import Error, InputError, _arguments, _farcull
 from ._collide import Result, pandas
-from ._errors import Error, InputError
 from ._runs import Record, picture, scene_of
 from ._scenes import Scene
 

@@ -8,8 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _farcull
-from ._errors import Error, InputError
+from . import Error, InputError, _arguments, _farcull
 
 KINDS: Tuple[str, ...] = _farcull.kinds
 """How two triangles A and B meet: the first that is true.
@@ -107,7 +106,7 @@ def pandas() -> Any:
 def _question(
     self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
     contacts: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
-) -> _farcull.Question:
+) -> Dict[str, Any]:
     """What a collider is asked, checked."""
     all_objects, each = _arguments.selves(self)
     return {

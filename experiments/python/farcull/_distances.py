@@ -8,9 +8,8 @@ from typing import Any, Dict, Iterator, Literal, Optional, Sequence, Tuple, Unio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _farcull
+from . import InputError, _arguments, _farcull
 from ._collide import ends, pandas
-from ._errors import InputError
 
 Kind = Literal["objects", "nearest", "all"]
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Un
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _farcull
-from ._errors import InputError
+from . import InputError, _arguments, _farcull
 
 if TYPE_CHECKING:
     from ._scenes import Scene

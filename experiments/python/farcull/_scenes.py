@@ -9,8 +9,7 @@ from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _farcull
-from ._errors import InputError
+from . import InputError, _arguments, _farcull
 
 
 def _names(names: Tuple[Any, ...]) -> List[str]:

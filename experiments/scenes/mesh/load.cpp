@@ -19,7 +19,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/mesh/weld.h"
 
 namespace farcull {
 

@@ -7,7 +7,6 @@
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/near_points.h"
-#include "experiments/scenes/mesh/weld.h"
 
 namespace farcull {
 

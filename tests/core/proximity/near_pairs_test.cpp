@@ -2,7 +2,7 @@
 // comparing all with all exactly. Each property has a twin that must fail.
 #include "core/proximity/near_pairs.h"
 
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "core/proximity/scene_trees.h"
 #include "tests/lab/grid_distance.h"
 #include "tests/lab/rational.h"

@@ -2,7 +2,7 @@
 // GL is drawn with where it is asked for: gl_methods_test.cpp.
 #include <nlohmann/json.hpp>
 
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"

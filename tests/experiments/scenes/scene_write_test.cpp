@@ -5,7 +5,6 @@
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/scenes/write_scene.h"
 #include "tests/lab/moving.h"
 
 namespace farcull {

@@ -7,7 +7,7 @@
 //     --threads LIST     numbers of threads, by commas; 0: as many as there are cores; default 0
 // Exit status: 0; 1 counts differ; 2 they could not be measured.
 #include "core/base/text.h"
-#include "core/native/lanes.h"
+#include "core/native/canvas.h"
 #include "tests/experiments/studies/native_counts.h"
 
 namespace farcull::native_counts {
@@ -18,8 +18,7 @@ constexpr const char* kHeader =
     "of the\n"
     "# commit, the same on every machine. docs/experiments.md, \"The same counts on every "
     "machine\".\n"
-    "# Made by `bash experiments/native_counts.sh --renew`; compared by the same without --renew, "
-    "and by\n"
+    "# Made by `farcull_native_counts renew`; compared by `farcull_native_counts check`, and by\n"
     "# `ctest -R native-counts`. The format: tests/experiments/studies/native_counts.h.\n";
 
 struct Arguments {
@@ -95,7 +94,7 @@ int check(const Arguments& arguments) {
           ++different;
           const std::string study = name.substr(0, name.find(';'));
           std::printf(
-              "%s: other counts than in %s. The rows: bash experiments/native_counts.sh --rows "
+              "%s: other counts than in %s. The rows: farcull_native_counts rows FILE "
               "--study %s --part %s >rows.txt, here and at a commit that agrees; diff shows which "
               "differ\n",
               name.c_str(), arguments.file.c_str(), study.c_str(), kParts[part]);
