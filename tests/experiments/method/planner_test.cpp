@@ -59,7 +59,7 @@ TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
   const Record record = run(scene, on_cpu(Method::boxes));
   EXPECT_FALSE(record.found.device.cpu);
   EXPECT_FALSE(record.found.device.gl);
-  EXPECT_FALSE(record.found.device.note.empty());
+  EXPECT_FALSE(no_device_reason(record.trace).empty());
 }
 
 // FAR draws on every scene whose objects' boxes overlap, without a flag. Where none do, it says so.
