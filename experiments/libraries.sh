@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Asks the libraries that Debian has, textbook tests and farcull's own methods about a
+# Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
 # labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
 # program and the contestants, runs the study and prints where the tables are.
 #   bash experiments/libraries.sh --quick [DIR]   the small suite; contestants are asked side by side, so
@@ -25,11 +25,19 @@ if [[ ${1-} == --quick || ${1-} == --keep ]]; then
   shift
 fi
 farcull_packages+=(libccd-dev libgts-dev)
+if ! command -v npm >/dev/null; then farcull_packages+=(nodejs npm); fi
 if ((${#quick[@]} == 0)); then farcull_packages+=(libvtk9-dev libopen3d-dev); fi
 farcull_setup
 # CMake finds libraries that were installed since the last time only if it looks again.
 [[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
+
+# Without these packages of npm their contestants are named as missing.
+mkdir -p build/contestants
+npm_packages=(three@0.187.0 three-mesh-bvh@0.9.17 @dimforge/rapier3d-compat@0.21.0 cannon-es@0.20.0
+  manifold-3d@3.5.4 jolt-physics@1.1.0)
+(cd build/contestants && npm install --no-audit --no-fund "${npm_packages[@]}") ||
+  echo "libraries: npm did not install its packages, which are left out" >&2
 
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)

@@ -26,6 +26,7 @@ std::vector<KnownContestant> make_list() {
                        const Names& names) {
     for (const char* name : names) all.push_back({name, program, package, answers});
   };
+  constexpr const char* kNode = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
   add("ours", "", "pair mesh", {"boxes"});
   add("ours", "", "pair mesh distance self inside clash", {"exact"});
   add("ours", "", "pair mesh", {"far", "i-collide", "far-at-0.9"});
@@ -44,6 +45,11 @@ std::vector<KnownContestant> make_list() {
   add("vtk", "libvtk9-dev", "pair mesh", {"vtk-collision"});
   add("vtk", "libvtk9-dev", "pair", {"vtk-triangle", "vtk-intersection"});
   add("open3d", "libopen3d-dev", "pair mesh", {"open3d"});
+  add("node", kNode, "pair mesh distance", {"three-mesh-bvh"});
+  add("node", kNode, "pair distance inside", {"rapier3d"});
+  add("node", kNode, "pair", {"cannon-es"});
+  add("node", kNode, "clash", {"manifold-3d"});
+  add("node", kNode, "inside", {"jolt-physics"});
   add("textbook", "", "pair",
       {"moeller-double", "moeller-double-0", "moeller-float", "guigue-devillers-double",
        "guigue-devillers-float", "edge-face-double"});
