@@ -18,7 +18,6 @@
 #include <new>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "core/base/error.h"
 
@@ -82,7 +81,7 @@ Error too_large(const std::string& path, std::uint64_t max_bytes) {
 
 void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
               std::string& bytes) {
-  std::vector<char> chunk(1 << 16);  // not on the stack, which may be that small
+  std::array<char, 4096> chunk;  // a stack may be as small as 64 KiB
   while (const std::size_t n = std::fread(chunk.data(), 1, chunk.size(), file)) {
     bytes.append(chunk.data(), n);
     if (bytes.size() > max_bytes) throw too_large(path, max_bytes);
