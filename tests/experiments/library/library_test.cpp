@@ -107,7 +107,7 @@ TEST(LibraryInput, SaysWhichVerticesAreNew) {
   TakenInput taken;
   const auto change = [&] {
     FrameChange out;
-    take(flat.input(), false, {}, taken, &out);
+    load_input(flat.input(), false, {}, taken, &out);
     return out;
   };
   EXPECT_FALSE(change().same);
