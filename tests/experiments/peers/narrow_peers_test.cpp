@@ -86,7 +86,7 @@ std::string fault_of(const Scene& scene, const std::vector<TrianglePair>& pairs)
 TEST_F(NarrowPeers, EndOnDegenerateTrianglesAndWhatOnlyFloatsMakeDegenerate) {
   for (const char* name : {"degenerate", "needles", "crowd@far", "crowd@tiny", "crowd@huge"}) {
     const Scene scene = make_builtin_scene(name);
-    const Truth truth{truth_of(scene), 0, 0};
+    const TruePairs truth{truth_of(scene), 0, 0};
     for (const char* peer : {"fcl-float", "fcl-double"}) {
       const std::vector<TrianglePair> pairs = found(peer, scene);
       EXPECT_EQ(fault_of(scene, pairs), "") << peer << " on " << name;
