@@ -120,8 +120,8 @@ inline Trace run_by(const PassRule& rule, const Scene& scene, const Drawing& dra
                     CullSettings settings) {
   Trace run;
   settings.watch = [&](const CullStep& s) {
-    const std::string name = fmt::format("level {}, {}, round {}, {} pass", s.level, s.view, s.round,
-                                         s.first_pass ? "first" : "second");
+    const std::string name = fmt::format("level {}, {}, round {}, {} pass", s.level, s.view,
+                                         s.round, s.first_pass ? "first" : "second");
     run.steps.push_back({name, s.bits, s.draws, s.queries, s.draws_saved, s.queries_saved});
   };
   run.result =

@@ -177,8 +177,7 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(),
-                                        {.canvas = "gl", .scenes = trials(60, 12)});
+  lab::expect_far_survives_all_families(canvases(), {.canvas = "gl", .scenes = trials(60, 12)});
 }
 
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {

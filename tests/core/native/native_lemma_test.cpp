@@ -116,8 +116,7 @@ TEST(NativeLemma, Theorem1IntersectingTrianglesSeeEachOther) {
 TEST(NativeLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 40); }
 
 TEST(NativeFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(),
-                                        {.canvas = "native", .scenes = trials(90, 12)});
+  lab::expect_far_survives_all_families(canvases(), {.canvas = "native", .scenes = trials(90, 12)});
 }
 TEST(NativeFarProperty, NorOn24BitDepth) {
   lab::expect_far_survives_all_families(canvases({.depth_bits = 24}),

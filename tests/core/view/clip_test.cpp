@@ -1,5 +1,5 @@
-// Clipping to the region: what it leaves out, and what it charges for a cut. clip_fan_test.cpp has the
-// claim of core/view/view.h itself.
+// Clipping to the region: what it leaves out, and what it charges for a cut. clip_fan_test.cpp has
+// the claim of core/view/view.h itself.
 #include "core/view/view.h"
 
 #include "tests/core/view/clip_cases.h"
