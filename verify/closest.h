@@ -24,6 +24,8 @@ class SquaredDistance {
   SquaredDistance();  // 0
   struct Value;       // verify/squared_distance.h, for verify alone
   explicit SquaredDistance(std::shared_ptr<const Value> value);
+  /// The square of this distance. Precondition: finite, >= 0.
+  static SquaredDistance of(double distance);
 
   /// The distance: the root, rounded to the nearest double (to the even one of two equally near
   /// ones); infinity beyond the largest double, as IEEE 754 rounds.

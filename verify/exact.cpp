@@ -25,6 +25,7 @@
 
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
+#include "verify/closest.h"
 #include "verify/within.h"
 
 namespace farcull {
@@ -131,7 +132,7 @@ Shape shape(const std::array<Vec3, 3>& corners) {
 bool within_unfiltered(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                        double clearance) {
   if (hulls_meet(hull(a), hull(b))) return true;
-  return clearance > 0 && disjoint_within(a, b, clearance);
+  return clearance > 0 && squared_distance(a, b) <= SquaredDistance::of(clearance);
 }
 
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {

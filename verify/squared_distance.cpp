@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+#include "verify/scaled.h"
+
 namespace farcull {
 namespace {
 
@@ -97,6 +99,16 @@ double rounded_root(const mpz_class& num, const mpz_class& den, long exponent) {
 SquaredDistance::SquaredDistance() : value_(std::make_shared<const Value>()) {}
 
 SquaredDistance::SquaredDistance(std::shared_ptr<const Value> value) : value_(std::move(value)) {}
+
+SquaredDistance SquaredDistance::of(double distance) {
+  if (distance == 0) return {};
+  const int exponent = lowest_bit(distance);
+  auto value = std::make_shared<Value>();
+  value->num = integer_of(distance, exponent);
+  value->num *= value->num;
+  value->exponent = 2L * exponent;
+  return SquaredDistance(std::move(value));
+}
 
 double SquaredDistance::root() const {
   return rounded_root(value_->num, value_->den, value_->exponent);

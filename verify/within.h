@@ -41,10 +41,4 @@ inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
                                    : triage == Triage::yes;
 }
 
-/// True iff the distance of two disjoint triangles is at most `clearance` (world units, finite, >=
-/// 0). Compares squared distances of rational points with the square of the clearance; nothing is
-/// rounded. Precondition: the triangles share no point. (Edges are not compared with faces that
-/// they cross, so crossing triangles could get a wrong answer.)
-bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
-
 }  // namespace farcull
