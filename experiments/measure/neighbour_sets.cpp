@@ -3,6 +3,7 @@
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <new>
 #include <optional>
@@ -164,17 +165,8 @@ std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& 
 }
 
 std::string to_string(NeighbourMethod method) {
-  switch (method) {
-    case NeighbourMethod::boxes:
-      return "boxes";
-    case NeighbourMethod::trees:
-      return "trees";
-    case NeighbourMethod::voronoi:
-      return "voronoi";
-    case NeighbourMethod::voronoi_reliable:
-      return "voronoi-reliable";
-  }
-  throw std::logic_error("to_string: no method");
+  constexpr std::array kNames = {"boxes", "trees", "voronoi", "voronoi-reliable"};
+  return kNames.at(static_cast<std::size_t>(method));
 }
 
 bool has_cells(NeighbourMethod method) {

@@ -1,5 +1,7 @@
-// A switch over the kinds, the reasons and the steps.
+// A table of the kinds, and switches over the reasons and the steps.
 #include "experiments/record/stage_words.h"
+
+#include <array>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -15,62 +17,35 @@ std::string triangles_left(std::uint64_t n) {
   return counted(n, "triangle is left", "triangles are left");
 }
 
-// "fatten" of "fatten x, round 2".
-std::string verb_of(StageKind kind) {
-  switch (kind) {
-    case StageKind::boxes:
-      return "boxes";
-    case StageKind::blocks:
-      return "blocks";
-    case StageKind::setup:
-      return "setup";
-    case StageKind::draw:
-      return "draw";
-    case StageKind::patches:
-      return "patches";
-    case StageKind::objects:
-      return "object level";
-    case StageKind::clusters:
-      return "sub-object level";
-    case StageKind::view:
-      return "view";
-    case StageKind::fatten:
-      return "fatten";
-    case StageKind::cull:
-      return "cull";
-    case StageKind::agreement:
-      return "agree";
-    case StageKind::further_views:
-      return "further views";
-    case StageKind::further_rounds:
-      return "further rounds";
-    case StageKind::offset:
-      return "offset";
-    case StageKind::sweep:
-      return "sweep";
-    case StageKind::join:
-      return "join";
-    case StageKind::exact:
-      return "exact";
-    case StageKind::near:
-      return "near pairs";
-    case StageKind::closest:
-      return "closest points";
-    case StageKind::inside:
-      return "inside";
-    case StageKind::verify:
-      return "verify";
-    case StageKind::read:
-      return "read";
-    case StageKind::contacts:
-      return "kinds of contact";
-    case StageKind::touch:
-      return "touch";
-    case StageKind::depth:
-      return "depth";
-  }
-  return "";
-}
+// "fatten" of "fatten x, round 2", in the order of StageKind.
+constexpr std::array kVerbs = {"boxes",
+                               "blocks",
+                               "setup",
+                               "draw",
+                               "patches",
+                               "object level",
+                               "sub-object level",
+                               "view",
+                               "fatten",
+                               "cull",
+                               "agree",
+                               "further views",
+                               "further rounds",
+                               "offset",
+                               "sweep",
+                               "join",
+                               "exact",
+                               "near pairs",
+                               "closest points",
+                               "inside",
+                               "verify",
+                               "read",
+                               "kinds of contact",
+                               "touch",
+                               "depth"};
+static_assert(kVerbs.size() == static_cast<std::size_t>(StageKind::depth) + 1);
+
+std::string verb_of(StageKind kind) { return kVerbs.at(static_cast<std::size_t>(kind)); }
 
 std::string at_most_rounds(const Stage& stage) {
   return stage.m > 0 ? "; at most " + number(stage.m) + " rounds" : "";
@@ -79,15 +54,8 @@ std::string at_most_rounds(const Stage& stage) {
 }  // namespace
 
 std::string to_string(Unit unit) {
-  switch (unit) {
-    case Unit::none:
-      return "";
-    case Unit::triangles:
-      return "triangles";
-    case Unit::pairs:
-      return "pairs";
-  }
-  return "";
+  constexpr std::array kUnits = {"", "triangles", "pairs"};
+  return kUnits.at(static_cast<std::size_t>(unit));
 }
 
 std::string level_name(std::uint32_t level) {
