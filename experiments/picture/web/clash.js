@@ -1,21 +1,12 @@
 // The list of pairs, and what is shown of the chosen one: its two parts in two colours, the curve
 // in which they cross, and the other parts as ghosts. The address holds the chosen pair.
 
-const byId = (id) => document.getElementById(id);
-const about = JSON.parse(byId("data").textContent);
-const digits = new Intl.NumberFormat("en");
 const MOST_LISTED = 1000;
 const state = { row: -1, search: "", ghosts: true, through: false };
 let view = null, curves = null, ends = null;
 
 const nameOf = (object) => about.frame.objects[object][0];
 const length = (x) => `${Number(x.toPrecision(6))}${about.unit ? " " + about.unit : ""}`;
-
-function element(tag, text, properties) {
-  const out = Object.assign(document.createElement(tag), properties);
-  if (text !== undefined) out.textContent = text;
-  return out;
-}
 
 // ---- the list -----------------------------------------------------------------------------------
 
@@ -67,7 +58,6 @@ function showLegend() {
     item.append(box, text);
     return item;
   };
-  const css = (c) => `rgb(${c.join(", ")})`;
   const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown"), line(css(about.colours.objects[0]), "the other parts")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
   if (row && row.curve > 0) items.push(line("#dc005a", "the surfaces cross"));
   byId("legend").replaceChildren(...items);
@@ -182,14 +172,7 @@ function standIn(why) {
   view = null;
 }
 
-const KEYS = {
-  n: () => go(1), p: () => go(-1), Escape: () => chooseRow(-1), 0: () => resetView(),
-  ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
-  ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
-  ArrowUp: (shift) => (shift ? view.move(0, 0.05) : view.turn(0, 0.1)),
-  ArrowDown: (shift) => (shift ? view.move(0, -0.05) : view.turn(0, -0.1)),
-  "+": () => view.zoom(1.2), "=": () => view.zoom(1.2), "-": () => view.zoom(1 / 1.2)
-};
+const KEYS = { ...VIEW_KEYS, n: () => go(1), p: () => go(-1), Escape: () => chooseRow(-1) };
 
 function onKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "INPUT") return;
@@ -235,10 +218,7 @@ async function start() {
     resetView();
     showParts();
     readAddress();
-    view.onDraw = () => {
-      view.onDraw = () => {};
-      document.documentElement.dataset.ready = String(Math.round(performance.now()));
-    };
+    view.onDraw = markReady;
   } catch (error) {
     standIn(`${error.message}`);
     document.documentElement.dataset.ready = "0";

@@ -1,8 +1,5 @@
 // The controls of the page: the answer, the visible parts of the scene, and the clicked triangle.
 
-const byId = (id) => document.getElementById(id);
-const about = JSON.parse(byId("data").textContent);
-const digits = new Intl.NumberFormat("en");
 
 // ---- state --------------------------------------------------------------------------------------
 
@@ -30,14 +27,6 @@ function nameOf(triangle) {
 }
 
 function counted(n, one, more) { return `${digits.format(n)} ${n === 1 ? one : more}`; }
-
-function css(colour) { return `rgb(${colour.join(", ")})`; }
-
-function element(tag, text, properties) {
-  const out = Object.assign(document.createElement(tag), properties);
-  if (text !== undefined) out.textContent = text;
-  return out;
-}
 
 function showLegend() {
   const step = answer.step, c = about.colours;
@@ -262,13 +251,6 @@ const KEYS = {
   Escape: () => choose(-1),
   "?": () => byId("keys").showModal()
 };
-const VIEW_KEYS = {
-  ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
-  ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
-  ArrowUp: (shift) => (shift ? view.move(0, 0.05) : view.turn(0, 0.1)),
-  ArrowDown: (shift) => (shift ? view.move(0, -0.05) : view.turn(0, -0.1)),
-  "+": () => view.zoom(1.2), "=": () => view.zoom(1.2), "-": () => view.zoom(1 / 1.2), 0: resetView
-};
 
 function onKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
@@ -318,12 +300,9 @@ async function start() {
   if (view) {
     connectCanvas();
     resetView();
-    view.onDraw = () => {
-      view.onDraw = () => {};
-      document.documentElement.dataset.ready = String(Math.round(performance.now()));
-    };
+    view.onDraw = markReady;
   } else {
-    document.documentElement.dataset.ready = String(Math.round(performance.now()));
+    markReady();
   }
 }
 

@@ -3,6 +3,18 @@
 // of state per triangle, and a place per object. The unit of length is half the largest extent of
 // the scene's box; the middle of the box is the origin.
 
+const byId = (id) => document.getElementById(id);
+const about = JSON.parse(byId("data").textContent);
+const digits = new Intl.NumberFormat("en");
+
+function element(tag, text, properties) {
+  const out = Object.assign(document.createElement(tag), properties);
+  if (text !== undefined) out.textContent = text;
+  return out;
+}
+
+function css(colour) { return `rgb(${colour.join(", ")})`; }
+
 const REST = 0, IDLE = 1, COLLIDES = 2, MISSED = 4, CHOSEN = 8, PARTNER = 16;
 const STATE_WIDTH = 2048, OBJECT_WIDTH = 256;
 
@@ -412,6 +424,15 @@ function resetView() {
   fitted = cameraText();
 }
 
+// The keys of the camera, on every page.
+const VIEW_KEYS = {
+  ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
+  ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
+  ArrowUp: (shift) => (shift ? view.move(0, 0.05) : view.turn(0, 0.1)),
+  ArrowDown: (shift) => (shift ? view.move(0, -0.05) : view.turn(0, -0.1)),
+  "+": () => view.zoom(1.2), "=": () => view.zoom(1.2), "-": () => view.zoom(1 / 1.2), 0: resetView
+};
+
 function onResize() {
   if (!view) return;
   if (cameraText() === fitted) resetView(); else view.resize();
@@ -444,6 +465,12 @@ function connectCanvas() {
   new ResizeObserver(onResize).observe(byId("stage"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showPaper);
   showPaper();
+}
+
+// Notes when the page was first drawn, for tests.
+function markReady() {
+  if (view) view.onDraw = () => {};
+  document.documentElement.dataset.ready = String(Math.round(performance.now()));
 }
 
 // The background of the scene is that of the page, light or dark.
