@@ -1,6 +1,7 @@
 // Finds two closest points of two features (corner, edge or face of a triangle): the points whose
 // difference is perpendicular to both features. In integers, so nothing is rounded. For
-// verify/closest_points.cpp alone, which derives the answer for triangles from this.
+// verify/closest_points.cpp, which derives the answer for triangles from this; the vectors also for
+// other sources of verify.
 //
 // Corners are integers of one scale. A point of a feature is a corner plus multiples of the edges
 // from that corner. The multiples of both points are fractions with one denominator (Found::below).

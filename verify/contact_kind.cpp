@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "verify/closest_features.h"
 #include "verify/contact_meeting.h"
 #include "verify/exact.h"
 #include "verify/scaled.h"
@@ -16,23 +17,14 @@
 namespace farcull {
 namespace {
 
+using closest::cross;
+using closest::dot;
+using closest::minus;
 using Corners = std::array<Vec3, 3>;
 using Integers = std::array<mpz_class, 3>;
 
 constexpr std::array<std::string_view, kContactKinds.size()> kNames = {
     "apart", "equal", "touch-vertex", "touch-edge", "coplanar", "crossing", "touch-face"};
-
-mpz_class dot(const Integers& u, const Integers& v) {
-  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
-Integers minus(const Integers& u, const Integers& v) {
-  return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-}
-
-Integers cross(const Integers& u, const Integers& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
 
 // ---- points ----
 

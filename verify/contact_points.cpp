@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "verify/closest_features.h"
 #include "verify/contact_meeting.h"
 #include "verify/scaled.h"
 #include "verify/squared_distance.h"
@@ -17,25 +18,12 @@ namespace {
 using Triangle = std::array<Vec3, 3>;
 using Wide = wide::Number<wide::Bounds>;
 
-template <class N>
-using Vector = std::array<N, 3>;
+using closest::cross;
+using closest::dot;
+using closest::minus;
+using closest::Vector;
 template <class N>
 using SixCorners = std::array<Vector<N>, 6>;
-
-template <class N>
-Vector<N> minus(const Vector<N>& p, const Vector<N>& q) {
-  return {N(p[0] - q[0]), N(p[1] - q[1]), N(p[2] - q[2])};
-}
-
-template <class N>
-N dot(const Vector<N>& p, const Vector<N>& q) {
-  return N(p[0] * q[0] + p[1] * q[1] + p[2] * q[2]);
-}
-
-template <class N>
-Vector<N> cross(const Vector<N>& p, const Vector<N>& q) {
-  return {N(p[1] * q[2] - p[2] * q[1]), N(p[2] * q[0] - p[0] * q[2]), N(p[0] * q[1] - p[1] * q[0])};
-}
 
 /// A normal of the plane of three corners; or, given an axis, of the plane along it through the
 /// first two.

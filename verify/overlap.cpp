@@ -18,6 +18,7 @@
 namespace farcull {
 namespace {
 
+using rational::cross;
 using rational::dot;
 using rational::exact;
 using rational::minus;
@@ -29,10 +30,6 @@ constexpr std::size_t kMostPlanes = 64;    // at most this many are tried as div
 constexpr std::size_t kMostPieces = 2048;  // of a triangle
 // Tests of a piece with a triangle of the objects, about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
-
-Q3 cross(const Q3& a, const Q3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// The points p with normal . p = offset.
 struct Plane {

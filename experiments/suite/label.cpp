@@ -23,6 +23,7 @@ namespace farcull {
 namespace {
 
 using rational::between;
+using rational::cross;
 using rational::dot;
 using rational::minus;
 using rational::Q;
@@ -35,10 +36,6 @@ constexpr std::array<const char*, 10> kKinds = {
     "coplanar", "equal",        "neighbours-meet", "neighbours-apart", "?"};
 
 constexpr const char* kReport = "one of the oracles is wrong; report the pair";
-
-Q3 cross(const Q3& u, const Q3& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
 
 bool is_zero(const Q3& u) { return sgn(u[0]) == 0 && sgn(u[1]) == 0 && sgn(u[2]) == 0; }
 
