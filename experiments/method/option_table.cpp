@@ -49,12 +49,29 @@ bool take_number_from(T least, const std::string& text, T& value) {
   return true;
 }
 
-// Reads one of two words.
-template <class Out, class Value>
-bool take_word(const std::string& text, const char* first, Value of_first, const char* second,
-               Value of_second, Out& value) {
-  if (text != first && text != second) return false;
-  value = text == first ? of_first : of_second;
+// The two values of an option, and their words.
+template <class Value>
+struct Choice {
+  const char* first;
+  Value of_first;
+  const char* second;
+  Value of_second;
+
+  const char* word(Value value) const { return value == of_first ? first : second; }
+};
+constexpr Choice<DepthMode> kDepths = {"fragment", DepthMode::fragment, "fixed", DepthMode::fixed};
+constexpr Choice<DepthFormat> kFormats = {"32f", DepthFormat::float32, "24", DepthFormat::fixed24};
+constexpr Choice<QueryMode> kQueries = {"flags", QueryMode::flags, "occlusion",
+                                        QueryMode::occlusion};
+constexpr Choice<BroadPhase> kBroadPhases = {"objects", BroadPhase::objects, "triangles",
+                                             BroadPhase::triangles};
+constexpr Choice<ClearRule> kClearRules = {"any", ClearRule::any, "all", ClearRule::all};
+constexpr Choice<bool> kLevels = {"objects", true, "triangles", false};
+
+template <const auto& Words, auto Member>
+bool take_choice(const std::string& text, RunOptions& options) {
+  if (text != Words.first && text != Words.second) return false;
+  options.*Member = text == Words.first ? Words.of_first : Words.of_second;
   return true;
 }
 
@@ -160,11 +177,7 @@ const Option kOptions[] = {
              "(reliable), or fixed function as published;\n"
              "default fragment for far, fixed for the others",
      .serves = fattening,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "fragment", DepthMode::fragment, "fixed", DepthMode::fixed,
-                            o.depth);
-         },
+     .take = take_choice<kDepths, &RunOptions::depth>,
      .kind = "choice",
      .remedy = "give fixed or fragment",
      .unusual =
@@ -175,44 +188,26 @@ const Option kOptions[] = {
          [](const Traits& t) {
            return t.draws ? "draws the triangles themselves, by fixed function" : "";
          },
-     .value =
-         [](Run o) {
-           return text_if(draws(o.method),
-                          depth_of(o) == DepthMode::fragment ? "fragment" : "fixed");
-         },
+     .value = [](Run o) { return text_if(draws(o.method), kDepths.word(depth_of(o))); },
      .of_drawing = true},
     {.name = "depth_format",
      .type = "32f|24",
      .help = "of the depth buffer; default 32f",
      .serves = drawing,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "32f", DepthFormat::float32, "24", DepthFormat::fixed24,
-                            o.depth_format);
-         },
+     .take = take_choice<kFormats, &RunOptions::depth_format>,
      .kind = "choice",
      .remedy = "give 24 or 32f",
-     .value =
-         [](Run o) {
-           return text_if(draws(o.method), o.depth_format == DepthFormat::float32 ? "32f" : "24");
-         },
+     .value = [](Run o) { return text_if(draws(o.method), kFormats.word(o.depth_format)); },
      .of_drawing = true},
     {.name = "query",
      .type = "flags|occlusion",
      .help = "how visibility is asked; default flags, but occlusion\n"
              "with {depth_format} 24 and for s-cullide",
      .serves = drawing,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "flags", QueryMode::flags, "occlusion", QueryMode::occlusion,
-                            o.query);
-         },
+     .take = take_choice<kQueries, &RunOptions::query>,
      .kind = "choice",
      .remedy = "give flags or occlusion",
-     .value =
-         [](Run o) {
-           return text_if(draws(o.method), query_of(o) == QueryMode::flags ? "flags" : "occlusion");
-         },
+     .value = [](Run o) { return text_if(draws(o.method), kQueries.word(query_of(o))); },
      .of_drawing = true},
     {.name = "broad_phase",
      .type = "objects|triangles",
@@ -221,19 +216,14 @@ const Option kOptions[] = {
              "object, as published; triangles: if it meets the box of\n"
              "a triangle of another object; default objects",
      .serves = drawing_levels,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "objects", BroadPhase::objects, "triangles",
-                            BroadPhase::triangles, o.broad_phase);
-         },
+     .take = take_choice<kBroadPhases, &RunOptions::broad_phase>,
      .kind = "choice",
      .remedy = "give objects or triangles",
      .unusual = [](Run o) { return only_if(o.broad_phase == BroadPhase::triangles, "triangles"); },
      .copy = copy_value<&RunOptions::broad_phase>,
      .value =
          [](Run o) {
-           return text_if(drawing_levels(traits(o.method)),
-                          o.broad_phase == BroadPhase::objects ? "objects" : "triangles");
+           return text_if(drawing_levels(traits(o.method)), kBroadPhases.word(o.broad_phase));
          }},
     {.name = "clusters",
      .type = "LIST|none",
@@ -270,17 +260,13 @@ const Option kOptions[] = {
      .help = "how many views have to clear a triangle before it is\n"
              "culled, for methods that draw; default any",
      .serves = drawing,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "any", ClearRule::any, "all", ClearRule::all, o.clear);
-         },
+     .take = take_choice<kClearRules, &RunOptions::clear>,
      .kind = "choice",
      .remedy = "give any or all",
      .unusual = [](Run o) { return only_if(o.clear == ClearRule::all, "all"); },
      .why_not = [](const Traits&) { return "clears nothing view by view"; },
      .copy = copy_value<&RunOptions::clear>,
-     .value =
-         [](Run o) { return text_if(draws(o.method), o.clear == ClearRule::all ? "all" : "any"); },
+     .value = [](Run o) { return text_if(draws(o.method), kClearRules.word(o.clear)); },
      .of_drawing = true},
     {.name = "level",
      .type = "objects|triangles",
@@ -288,10 +274,7 @@ const Option kOptions[] = {
              "are not; for far, cullide and quick-cullide;\n"
              "default triangles, which comes after objects",
      .serves = drawing_levels,
-     .take =
-         [](Given text, RunOptions& o) {
-           return take_word(text, "objects", true, "triangles", false, o.objects_alone);
-         },
+     .take = take_choice<kLevels, &RunOptions::objects_alone>,
      .kind = "choice",
      .remedy = "give objects or triangles",
      .unusual = [](Run o) { return only_if(o.objects_alone, "objects"); },
@@ -303,8 +286,7 @@ const Option kOptions[] = {
      .copy = copy_value<&RunOptions::objects_alone>,
      .value =
          [](Run o) {
-           return text_if(drawing_levels(traits(o.method)),
-                          o.objects_alone ? "objects" : "triangles");
+           return text_if(drawing_levels(traits(o.method)), kLevels.word(o.objects_alone));
          },
      .of_drawing = true},
     {.name = "conservative",
