@@ -35,15 +35,6 @@ constexpr std::string_view take_field_name(std::string_view& names) {
   return name;
 }
 
-/// The names of all fields of a struct.
-template <class T>
-std::vector<std::string> field_names() {
-  std::vector<std::string> out;
-  for (std::string_view rest = T::kFieldNames; !rest.empty();)
-    out.emplace_back(take_field_name(rest));
-  return out;
-}
-
 template <class T>
 concept HasFields = requires(const T& value) {
   value.fields([](std::string_view, const auto&) {});

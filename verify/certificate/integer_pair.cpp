@@ -133,14 +133,6 @@ bool IntegerPair::only_shared_by(int direction) {
   return parts_at_shared(s, pair.a, pair.b, direction, shared_[0], shared_[1]);
 }
 
-bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return !IntegerPair(a, b).separating_direction().has_value();
-}
-
-bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
-  return !IntegerPair(a, b, clearance).separating_direction().has_value();
-}
-
 bool IntegerPair::has_common_point() {
   thread_local PointSearch search;
   const Big& pair = big();

@@ -80,13 +80,6 @@ class IntegerPair {
   std::unique_ptr<Big> big_;
 };
 
-/// True iff the closed convex hulls share a point: iff none of the 38 directions separates them.
-bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
-
-/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff no
-/// gap along one of the 38 directions is longer than the clearance.
-bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
-
 /// Guesses in doubles which of the 38 directions separates two triangles most clearly: the first,
 /// in order of degree, whose gap beyond the clearance is far above rounding errors; else the one
 /// with the widest gap in proportion to the pair's extent. Doubles may overflow: it is only a

@@ -46,7 +46,6 @@ TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
         ASSERT_EQ(pair.separating_direction().has_value(), !expected)
             << generator.name << ": " << text(a, b, d);
         ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b, d);
-        ASSERT_EQ(integer_within(a, b, d), expected);
       }
     }
     EXPECT_GT(inside, 5) << generator.name;

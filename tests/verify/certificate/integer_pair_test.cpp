@@ -137,12 +137,13 @@ TEST(IntegerPair, TheWholeRangeOfDoubles) {
   constexpr double kMost = std::numeric_limits<double>::max();
   constexpr double kLeast = std::numeric_limits<double>::denorm_min();
   const Triangle plate = {Vec3(-kMost, -kMost, 0), Vec3(kMost, -kMost, -0.0), Vec3(0, kMost, 0)};
-  EXPECT_TRUE(integer_intersects(plate, {Vec3(0, 0, 0), Vec3(0, 1, kMost), Vec3(1, 0, kMost)}));
+  const Triangle through = {Vec3(0, 0, 0), Vec3(0, 1, kMost), Vec3(1, 0, kMost)};
+  EXPECT_FALSE(IntegerPair(plate, through).separating_direction());
   const Triangle above = {Vec3(0, 0, kLeast), Vec3(0, 1, kMost), Vec3(1, 0, kMost)};
-  EXPECT_FALSE(integer_intersects(plate, above));
+  EXPECT_TRUE(IntegerPair(plate, above).separating_direction());
   EXPECT_FALSE(IntegerPair(plate, above).has_common_point());
   const Triangle zero = {Vec3(0, 0, 0), Vec3(-0.0, 0, 0), Vec3(0, -0.0, 0)};
-  EXPECT_TRUE(integer_intersects(zero, zero));
+  EXPECT_FALSE(IntegerPair(zero, zero).separating_direction());
   EXPECT_TRUE(IntegerPair(zero, plate).has_common_point());
 }
 
