@@ -203,29 +203,12 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   places.erase(std::unique(places.begin(), places.end()), places.end());
   for (const auto& p : places) corners_.emplace_back(p[0], p[1], p[2]);
   largest_ = std::max(box_.lo.cwiseAbs().maxCoeff(), box_.hi.cwiseAbs().maxCoeff());
-  add_node(0, o.triangle_count);
+  tree_ = BoundsTree(triangles_);
+  tree_.add(0, o.triangle_count);
+  std::vector<Corners> ordered;
+  for (const std::uint32_t t : tree_.order) ordered.push_back(triangles_[t]);
+  triangles_ = std::move(ordered);
   find_convex();
-}
-
-std::uint32_t ClosedObject::add_node(std::uint32_t first, std::uint32_t count) {
-  constexpr std::uint32_t kLeaf = 4;
-  const auto at = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({separation::empty_bounds(), first, count, 0});
-  const auto of = std::span(triangles_).subspan(first, count);
-  for (const Corners& t : of) separation::include(nodes_[at].box, separation::bounds_of(t));
-  if (count <= kLeaf) return at;
-  const separation::Bounds& box = nodes_[at].box;
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
-  }
-  std::ranges::nth_element(of, of.begin() + count / 2, {},
-                           [&](const Corners& t) { return t[0][axis] + t[1][axis] + t[2][axis]; });
-  nodes_[at].count = 0;
-  add_node(first, count / 2);
-  const std::uint32_t second = add_node(first + count / 2, count - count / 2);
-  nodes_[at].second = second;
-  return at;
 }
 
 bool ClosedObject::has(const Vec3& point) const {
@@ -233,10 +216,11 @@ bool ClosedObject::has(const Vec3& point) const {
 }
 
 Vec3 ClosedObject::nearest(const Vec3& point) const {
-  const auto squared_to = [&](const Node& node) {
+  const auto squared_to = [&](std::uint32_t node) {
+    const BoundsTree::Bounds& box = tree_.nodes[node].bounds;
     double out = 0;
     for (int k = 0; k < 3; ++k) {
-      const double gap = std::max({node.box.lo[k] - point[k], point[k] - node.box.hi[k], 0.0});
+      const double gap = std::max({box.lo[k] - point[k], point[k] - box.hi[k], 0.0});
       out += gap * gap;
     }
     return out;
@@ -248,14 +232,16 @@ Vec3 ClosedObject::nearest(const Vec3& point) const {
     const auto [squared, at] = stack.back();
     stack.pop_back();
     if (squared >= least) continue;
-    const Node& node = nodes_[at];
-    for (std::uint32_t k = 0; k < node.count; ++k) {
-      const Vec3 p = nearest_on(triangles_[node.first + k], point);
-      if (const double to = (p - point).squaredNorm(); to < least) least = to, out = p;
+    if (tree_.is_leaf(at)) {
+      const BoundsTree::Node& node = tree_.nodes[at];
+      for (std::uint32_t k = 0; k < node.count; ++k) {
+        const Vec3 p = nearest_on(triangles_[node.first + k], point);
+        if (const double to = (p - point).squaredNorm(); to < least) least = to, out = p;
+      }
+      continue;
     }
-    if (node.count > 0) continue;
-    stack.emplace_back(squared_to(nodes_[at + 1]), at + 1);
-    stack.emplace_back(squared_to(nodes_[node.second]), node.second);
+    for (const std::uint32_t child : {tree_.left(at), tree_.right(at)})
+      stack.emplace_back(squared_to(child), child);
     if (stack.back() > stack[stack.size() - 2]) std::swap(stack.back(), stack[stack.size() - 2]);
   }
   return out;
@@ -287,23 +273,24 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
   constexpr std::array kPulls = {0.0, 0.05, 0.15, 0.3};
   constexpr double kWork = 1e6;  // triangles that are examined
   std::vector<Corners> near;
-  std::vector<std::uint32_t> stack = {0};
-  const auto meets_region = [&](const separation::Bounds& box) {
+  const BoundsTree& tree = solid.tree();
+  const auto meets_region = [&](const BoundsTree::Bounds& box) {
     for (int k = 0; k < 3; ++k) {
       if (box.lo[k] > region.hi[k] || box.hi[k] < region.lo[k]) return false;
     }
     return true;
   };
-  while (!stack.empty()) {
-    const std::uint32_t at = stack.back();
-    const ClosedObject::Node& node = solid.nodes()[at];
-    stack.pop_back();
-    if (!meets_region(node.box)) continue;
-    for (std::uint32_t k = 0; k < node.count; ++k) {
-      const Corners& t = solid.triangles()[node.first + k];
-      if (meets_region(separation::bounds_of(t))) near.push_back(t);
+  for (std::uint32_t at = 0; at < tree.nodes.size();) {
+    const BoundsTree::Node& node = tree.nodes[at];
+    if (!meets_region(node.bounds)) {
+      at = node.after;
+      continue;
     }
-    if (node.count == 0) stack.push_back(at + 1), stack.push_back(node.second);
+    for (std::uint32_t k = 0; tree.is_leaf(at) && k < node.count; ++k) {
+      const Corners& t = solid.triangles()[node.first + k];
+      if (meets_region(BoundsTree::bounds_of(t))) near.push_back(t);
+    }
+    ++at;
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
   // Tries points close to the middle of the region's part of a triangle, on both sides of it, at

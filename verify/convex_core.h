@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/box_pairs.h"
 #include "verify/inside.h"
 #include "verify/separation.h"
 
@@ -22,21 +23,16 @@ namespace farcull {
 class ClosedObject {
  public:
   using Corners = std::array<Vec3, 3>;
-  struct Node {
-    separation::Bounds box;
-    std::uint32_t first, count;  // triangles; count 0: the children are the next node and `second`
-    std::uint32_t second;
-  };
 
   /// surface: by doubted_surface_of(), not open. pieces: a corner of each piece of the object that
   /// hangs together. Precondition: the object has triangles. The scene has to outlive this.
   ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
                std::span<const Vec3> pieces);
 
-  const std::vector<Corners>& triangles() const { return triangles_; }
-  const std::vector<Vec3>& corners() const { return corners_; }  // each once
+  const std::vector<Corners>& triangles() const { return triangles_; }  // in the tree's order
+  const std::vector<Vec3>& corners() const { return corners_; }         // each once
   const std::vector<Vec3>& pieces() const { return pieces_; }
-  const std::vector<Node>& nodes() const { return nodes_; }
+  const BoundsTree& tree() const { return tree_; }
   const Box& box() const { return box_; }
   double largest() const { return largest_; }  // coordinate, by magnitude
   /// The whole object as a core, if it is convex: all corners, moved inward a little.
@@ -47,7 +43,6 @@ class ClosedObject {
   bool has_not(const Vec3& point) const;
 
  private:
-  std::uint32_t add_node(std::uint32_t first, std::uint32_t count);
   void find_convex();
 
   const Scene& scene_;
@@ -55,7 +50,7 @@ class ClosedObject {
   Surface surface_;
   std::vector<Corners> triangles_;
   std::vector<Vec3> corners_, pieces_, convex_;
-  std::vector<Node> nodes_;
+  BoundsTree tree_{std::span<const Corners>()};
   Box box_ = Box::empty();
   double largest_ = 0;
 };

@@ -49,35 +49,35 @@ bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t
 
 /// Whether the surfaces are apart by more than `margin`, if a is moved.
 bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
-  const auto moved = [&](separation::Bounds box) {
+  const auto moved = [&](BoundsTree::Bounds box) {
     for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
     return box;
   };
-  const auto extent = [](const ClosedObject::Node& node) {
-    return std::max({node.box.hi[0] - node.box.lo[0], node.box.hi[1] - node.box.lo[1],
-                     node.box.hi[2] - node.box.lo[2]});
+  const auto extent = [](const BoundsTree::Bounds& box) {
+    return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
   };
+  const BoundsTree &of_a = a.tree(), &of_b = b.tree();
   std::vector<std::array<std::uint32_t, 2>> stack = {{0, 0}};
   while (!stack.empty()) {
     const auto [i, j] = stack.back();
     stack.pop_back();
-    const ClosedObject::Node &of_a = a.nodes()[i], &of_b = b.nodes()[j];
-    if (separation::farther(moved(of_a.box), of_b.box, margin)) continue;
-    if (of_a.count == 0 && (of_b.count > 0 || extent(of_a) > extent(of_b))) {
-      stack.push_back({i + 1, j}), stack.push_back({of_a.second, j});
+    const BoundsTree::Node &m = of_a.nodes[i], &n = of_b.nodes[j];
+    if (separation::farther(moved(m.bounds), n.bounds, margin)) continue;
+    if (!of_a.is_leaf(i) && (of_b.is_leaf(j) || extent(m.bounds) > extent(n.bounds))) {
+      stack.push_back({of_a.left(i), j}), stack.push_back({of_a.right(i), j});
       continue;
     }
-    if (of_b.count == 0) {
-      stack.push_back({i, j + 1}), stack.push_back({i, of_b.second});
+    if (!of_b.is_leaf(j)) {
+      stack.push_back({i, of_b.left(j)}), stack.push_back({i, of_b.right(j)});
       continue;
     }
-    for (std::uint32_t p = 0; p < of_a.count; ++p) {
-      Corners s = a.triangles()[of_a.first + p];
+    for (std::uint32_t p = 0; p < m.count; ++p) {
+      Corners s = a.triangles()[m.first + p];
       for (Vec3& corner : s) corner += t;
-      const separation::Bounds box = separation::bounds_of(s);
-      for (std::uint32_t q = 0; q < of_b.count; ++q) {
-        const Corners& other = b.triangles()[of_b.first + q];
-        if (!separation::farther(box, separation::bounds_of(other), margin) &&
+      const BoundsTree::Bounds box = BoundsTree::bounds_of(s);
+      for (std::uint32_t q = 0; q < n.count; ++q) {
+        const Corners& other = b.triangles()[n.first + q];
+        if (!separation::farther(box, BoundsTree::bounds_of(other), margin) &&
             is_within(s, other, margin))
           return false;
       }

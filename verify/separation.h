@@ -20,27 +20,6 @@ inline constexpr double kU = 0x1p-53;
 
 using Bounds = BoundsTree::Bounds;
 
-inline Bounds empty_bounds() {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
-}
-
-inline void include(Bounds& bounds, const Bounds& other) {
-  for (int axis = 0; axis < 3; ++axis) {
-    bounds.lo[axis] = std::min(bounds.lo[axis], other.lo[axis]);
-    bounds.hi[axis] = std::max(bounds.hi[axis], other.hi[axis]);
-  }
-}
-
-inline Bounds bounds_of(const std::array<Vec3, 3>& corners) {
-  Bounds out = empty_bounds();
-  for (const Vec3& p : corners) {
-    const std::array<double, 3> at = {p.x(), p.y(), p.z()};
-    include(out, {at, at});
-  }
-  return out;
-}
-
 /// True only if all points of the two boxes are farther apart than `limit` (>= 0, finite).
 ///
 /// A gap along an axis is one rounded difference. Rounding is monotone, so a gap above the limit is

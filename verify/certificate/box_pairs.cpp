@@ -8,19 +8,23 @@ namespace farcull {
 
 // The tree divides at the median of the centres, along the axis in which they spread most.
 
-BoundsTree::BoundsTree(const Scene& scene) {
-  const auto count = static_cast<std::uint32_t>(scene.triangles.size());
-  bounds.reserve(count);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const std::array<Vec3, 3> p = scene.corners(t);
-    Bounds box;
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min({p[0][k], p[1][k], p[2][k]});
-      box.hi[k] = std::max({p[0][k], p[1][k], p[2][k]});
-    }
-    bounds.push_back(box);
+BoundsTree::Bounds BoundsTree::bounds_of(const std::array<Vec3, 3>& corners) {
+  Bounds out;
+  for (int k = 0; k < 3; ++k) {
+    out.lo[k] = std::min({corners[0][k], corners[1][k], corners[2][k]});
+    out.hi[k] = std::max({corners[0][k], corners[1][k], corners[2][k]});
   }
-  order.resize(count);
+  return out;
+}
+
+BoundsTree::BoundsTree(std::span<const std::array<Vec3, 3>> triangles) : order(triangles.size()) {
+  for (const std::array<Vec3, 3>& t : triangles) bounds.push_back(bounds_of(t));
+  std::iota(order.begin(), order.end(), 0u);
+}
+
+BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
+  bounds.reserve(order.size());
+  for (std::uint32_t t = 0; t < order.size(); ++t) bounds.push_back(bounds_of(scene.corners(t)));
   std::iota(order.begin(), order.end(), 0u);
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,8 +35,12 @@ struct BoundsTree {
     std::uint32_t after = 0;  // the first node that is not below it
   };
 
-  /// The boxes of all triangles of the scene, and no nodes. Precondition: validate() accepts it.
+  /// The boxes of these triangles, or of all triangles of the scene, and no nodes. Precondition:
+  /// validate() accepts the scene.
+  explicit BoundsTree(std::span<const std::array<Vec3, 3>> triangles);
   explicit BoundsTree(const Scene& scene);
+
+  static Bounds bounds_of(const std::array<Vec3, 3>& corners);
 
   /// Appends the nodes of a binary tree over the triangles first .. first + count - 1, count > 0.
   void add(std::uint32_t first, std::uint32_t count);
