@@ -98,6 +98,22 @@ inline bool share_index(const std::array<std::uint32_t, 3>& a,
   return shared;
 }
 
+/// The range of vertices that an object with triangles uses. Objects seldom share a range.
+struct VertexRange {
+  std::uint32_t first = 0, last = 0;
+};
+inline VertexRange vertices_of(const Scene& scene, const Object& object) {
+  VertexRange out{scene.triangles[object.first_triangle][0],
+                  scene.triangles[object.first_triangle][0]};
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+      out.first = std::min(out.first, v);
+      out.last = std::max(out.last, v);
+    }
+  }
+  return out;
+}
+
 /// Throws Error naming `where` unless every index is in range, every coordinate finite and the
 /// ranges gapless.
 void validate(const Scene& scene, const std::string& where);

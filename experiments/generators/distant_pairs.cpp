@@ -129,8 +129,7 @@ MadePair mixed_scales(RandomDraws& draws, double ratio) {
 
 MadePair random_pair(RandomDraws& draws, double) {
   MadePair out;
-  for (Vec3& p : out.a) p = draws.point();
-  for (Vec3& p : out.b) p = draws.point();
+  each_corner(out, [&](Vec3& p) { p = draws.point(); });
   return out;
 }
 

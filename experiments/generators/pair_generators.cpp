@@ -67,17 +67,6 @@ Corners whole_triangle(RandomDraws& random, double extent) {
   return {random.whole_point(extent), random.whole_point(extent), random.whole_point(extent)};
 }
 
-/// Applies a function to every coordinate.
-template <class Function>
-DrawnPair mapped(DrawnPair pair, const Function& function) {
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) {
-      for (int k = 0; k < 3; ++k) p[k] = function(p[k]);
-    }
-  }
-  return pair;
-}
-
 double nudged(RandomDraws& random, double x) {
   constexpr double kMost = std::numeric_limits<double>::max();
   return std::nextafter(x, random.chance(2) ? kMost : -kMost);
@@ -90,8 +79,7 @@ DrawnPair small_grid(RandomDraws& random) {
 
 DrawnPair random_pair(RandomDraws& random) {
   DrawnPair pair;
-  for (Vec3& p : pair.a) p = random.point();
-  for (Vec3& p : pair.b) p = random.point();
+  each_corner(pair, [&](Vec3& p) { p = random.point(); });
   return pair;
 }
 
@@ -147,8 +135,7 @@ DrawnPair coplanar(RandomDraws& random) {
     return Vec3(origin + i * u + j * v);
   };
   DrawnPair pair;
-  for (Vec3& p : pair.a) p = corner();
-  for (Vec3& p : pair.b) p = corner();
+  each_corner(pair, [&](Vec3& p) { p = corner(); });
   if (random.chance(4)) {  // b is a copy of a, moved in the plane
     const Vec3 move = random.whole(-3, 3) * u + random.whole(-3, 3) * v;
     for (int i = 0; i < 3; ++i) pair.b[i] = pair.a[i] + move;
@@ -241,9 +228,12 @@ DrawnPair magnitudes(RandomDraws& random) {
 DrawnPair denormals(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? contact(random) : small_grid(random);
   const int exponent = random.whole(-1074, -1030);
-  if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
-  const int axis = random.below(3);
-  each_corner(pair, [&](Vec3& p) { p[axis] = std::ldexp(p[axis], exponent); });
+  const int axis = random.chance(2) ? -1 : random.below(3);  // -1: all
+  each_corner(pair, [&](Vec3& p) {
+    for (int k = 0; k < 3; ++k) {
+      if (axis < 0 || k == axis) p[k] = std::ldexp(p[k], exponent);
+    }
+  });
   return pair;
 }
 

@@ -9,7 +9,9 @@
 #include "core/boxes/meetings.h"
 #include "core/native/canvas.h"
 #include "core/scene/scene.h"
-#include "experiments/method/methods.h"
+#include "experiments/method/plan.h"
+#include "experiments/method/record.h"
+#include "experiments/method/session.h"
 #include "offsets/offsets.h"
 // The header of a new offset goes here.
 

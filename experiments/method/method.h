@@ -78,4 +78,8 @@ inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }
 inline bool takes_clearance(Method method) { return traits(method).takes_clearance; }
 
+PlanFunction plan_drawing, plan_sweep, plan_by_boxes, plan_exact;
+FindFunction find_by_drawing, find_by_sweep, find_by_boxes, find_exact;
+// The functions of a new method go here.
+
 }  // namespace farcull

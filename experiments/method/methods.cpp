@@ -1,6 +1,6 @@
 // The table of methods, and the methods that draw nothing on a canvas; cullide.cpp has the other
 // methods.
-#include "experiments/method/methods.h"
+#include "experiments/method/method.h"
 
 #include <array>
 #include <vector>
@@ -10,6 +10,9 @@
 #include "core/base/text.h"
 #include "core/boxes/search.h"
 #include "core/scene/scene.h"
+#include "experiments/method/plan.h"
+#include "experiments/method/record.h"
+#include "experiments/method/session.h"
 
 namespace farcull {
 

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 namespace {
@@ -68,15 +69,9 @@ SuitePair read_pair(const Fields& fields) {
 
 void add_mesh(const std::string& path, bool self, Scene& out) {
   const Mesh mesh = load_mesh(path);
-  const auto first = static_cast<std::uint32_t>(out.vertices.size());
-  out.objects.push_back({.name = std::to_string(out.objects.size()),
-                         .first_triangle = static_cast<std::uint32_t>(out.triangles.size()),
-                         .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()),
-                         .self = self});
-  out.vertices.insert(out.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-  for (const auto& [a, b, c] : mesh.triangles)
-    out.triangles.push_back({first + a, first + b, first + c});
-  out.source_face.insert(out.source_face.end(), mesh.source_face.begin(), mesh.source_face.end());
+  append_object(std::to_string(out.objects.size()), mesh.vertices, mesh.triangles, mesh.source_face,
+                out);
+  out.objects.back().self = self;
 }
 
 /// The OBJ files of the fields from `first` to before `end` as objects.
@@ -287,12 +282,10 @@ void leave_out_untested(const Scene& scene, std::vector<TrianglePair>& pairs) {
 Scene two_objects(const SuitePair& pair) {
   Scene out;
   out.name = "pair";
-  out.vertices.assign(pair.a.begin(), pair.a.end());
-  out.vertices.insert(out.vertices.end(), pair.b.begin(), pair.b.end());
-  out.triangles = {{0, 1, 2}, {3, 4, 5}};
-  out.source_face = {0, 0};
-  out.objects = {{.name = "0", .first_triangle = 0, .triangle_count = 1},
-                 {.name = "1", .first_triangle = 1, .triangle_count = 1}};
+  const std::array<std::array<std::uint32_t, 3>, 1> triangle = {{{0, 1, 2}}};
+  const std::array<std::uint32_t, 1> face = {0};
+  append_object("0", pair.a, triangle, face, out);
+  append_object("1", pair.b, triangle, face, out);
   return out;
 }
 

@@ -130,22 +130,6 @@ inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
 /// The numbers of the objects that have triangles, ascending.
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 
-/// The range of vertices that an object with triangles uses. Objects seldom share a range.
-struct VertexRange {
-  std::uint32_t first = 0, last = 0;
-};
-inline VertexRange vertices_of(const Scene& scene, const Object& object) {
-  VertexRange out{scene.triangles[object.first_triangle][0],
-                  scene.triangles[object.first_triangle][0]};
-  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
-      out.first = std::min(out.first, v);
-      out.last = std::max(out.last, v);
-    }
-  }
-  return out;
-}
-
 /// Why a peer does not take a scene: `reason` if it has degenerate triangles, else nothing.
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 

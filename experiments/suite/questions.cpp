@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/generators/pair_generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/closest.h"
@@ -31,19 +34,12 @@ Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bo
   out.name = scene.name;
   for (const std::size_t o : numbers) {
     const Object& object = scene.objects[o];
-    const auto first = static_cast<std::uint32_t>(out.triangles.size());
-    out.objects.push_back({.name = object.name,
-                           .first_triangle = first,
-                           .triangle_count = object.triangle_count,
-                           .self = self});
-    const auto shift = static_cast<std::uint32_t>(out.vertices.size());
-    out.vertices.insert(out.vertices.end(), scene.vertices.begin(), scene.vertices.end());
-    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-      auto corners = scene.triangles[object.first_triangle + t];
-      for (std::uint32_t& v : corners) v += shift;
-      out.triangles.push_back(corners);
-      out.source_face.push_back(t);
-    }
+    std::vector<std::uint32_t> faces(object.triangle_count);
+    std::iota(faces.begin(), faces.end(), 0u);
+    append_object(object.name, scene.vertices,
+                  std::span(scene.triangles).subspan(object.first_triangle, object.triangle_count),
+                  faces, out);
+    out.objects.back().self = self;
   }
   return out;
 }
@@ -197,16 +193,10 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
                                 const std::string& where) {
   const Surface surface = surface_of(scene, 0);
   Scene with_points = scene;
-  for (const Vec3& p : points) {
-    const auto v = static_cast<std::uint32_t>(with_points.vertices.size());
-    with_points.objects.push_back(
-        {.name = "point",
-         .first_triangle = static_cast<std::uint32_t>(with_points.triangles.size()),
-         .triangle_count = 1});
-    with_points.vertices.push_back(p);
-    with_points.triangles.push_back({v, v, v});
-    with_points.source_face.push_back(0);
-  }
+  const std::array<std::array<std::uint32_t, 3>, 1> one_vertex{};
+  const std::array<std::uint32_t, 1> face{};
+  for (const Vec3& p : points)
+    append_object("point", std::span(&p, 1), one_vertex, face, with_points);
   const auto before = static_cast<std::uint32_t>(scene.objects.size());
   const IntegerInside integers(with_points);
   std::vector<bool> out;

@@ -40,14 +40,7 @@ std::string mesh_name(const MeshFamily& family, std::size_t index) {
 std::string obj_text(const Scene& scene, const Object& object) {
   std::string out;
   const auto end = object.first_triangle + object.triangle_count;
-  std::uint32_t lo = ~0u;
-  std::uint32_t hi = 0;
-  for (std::uint32_t t = object.first_triangle; t < end; ++t) {
-    for (const std::uint32_t v : scene.triangles[t]) {
-      lo = std::min(lo, v);
-      hi = std::max(hi, v);
-    }
-  }
+  const auto [lo, hi] = vertices_of(scene, object);
   for (std::uint32_t v = lo; v <= hi; ++v) {
     const Vec3& p = scene.vertices[v];
     fmt::format_to(std::back_inserter(out), "v {:.17g} {:.17g} {:.17g}\n", p.x(), p.y(), p.z());

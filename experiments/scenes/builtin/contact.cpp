@@ -187,13 +187,8 @@ std::vector<Ball> heap(std::uint64_t count, Random& random) {
         round < kFalling ? 0.6 * width / kFalling * (1 - 1.0 * round / kFalling) : 0;
     for (Ball& ball : balls) ball.centre.z() -= fall;
     for (const auto& [i, j] : pairs) {
-      const Vec3 d = balls[j].centre - balls[i].centre;
       const double apart = (1 - kDeep) * (balls[i].radius + balls[j].radius);
-      const double distance = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
-      if (distance >= apart || distance == 0) continue;
-      const Vec3 step = 0.5 * (apart / distance - 1) * d;
-      balls[i].centre -= step;
-      balls[j].centre += step;
+      keep_distance(balls[i].centre, balls[j].centre, apart, HUGE_VAL);
     }
     for (Ball& ball : balls) {
       for (int k = 0; k < 2; ++k)
