@@ -28,7 +28,7 @@ json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector
               {"depth", nullptr},
               {"curve", row.curve},
               {"distance", row.squared ? json(row.distance) : json(nullptr)},
-              {"at", {row.witness[0].x(), row.witness[0].y(), row.witness[0].z()}},
+              {"at", point_json(row.witness[0])},
               {"box", quantized(corners, box)},
               {"segments", {first / 2, row.segments.size()}}};
   if (row.depth) out["depth"] = {row.depth->lo, row.depth->hi};

@@ -63,14 +63,10 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
              clash_words(scene, row)});
   }
   if (all == 0) return "";
-  const std::string more =
-      all > kRowsShown
-          ? fmt::format("and {} more (--json and --csv have all)\n", grouped(all - kRowsShown))
-          : "";
   const bool deep = record.count(ClashVerdict::clash) + record.count(ClashVerdict::contained) > 0;
   const std::string hint =
       deep && !record.options.depth ? "depths are not asked for (--depth)\n" : "";
-  return "\n" + out.text() + more + hint;
+  return "\n" + out.text() + more_line(all, kRowsShown) + hint;
 }
 
 std::string counts_text(const ClashRecord& record) {
@@ -98,8 +94,6 @@ std::string time_text(const ClashRecord& record) {
     out += fmt::format("{}{} {:.1f}", out.empty() ? "" : " + ", name, ms);
   return fmt::format("{:.1f} ms = {}", record.ms, out);
 }
-
-Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json row_json(const Scene& scene, const ClashRow& row) {
   Json kinds = Json::object();
@@ -134,17 +128,13 @@ Json row_json(const Scene& scene, const ClashRow& row) {
 }  // namespace
 
 std::string clash_words(const Scene& scene, const ClashRow& row) {
-  switch (row.verdict) {
-    case ClashVerdict::contained:
-      return name_of(scene, *row.inner) + " inside";
-    case ClashVerdict::unknown:
-      return "the one around " + name_of(scene, *row.inner) +
-             " is not closed, or its faces do not all face outward";
-    case ClashVerdict::clash:
-      return row.proved ? kinds_text(row) : "not proved to touch only: " + kinds_text(row);
-    default:
-      return kinds_text(row);
+  if (row.verdict == ClashVerdict::contained) return name_of(scene, *row.inner) + " inside";
+  if (row.verdict == ClashVerdict::unknown) {
+    return "the one around " + name_of(scene, *row.inner) +
+           " is not closed, or its faces do not all face outward";
   }
+  const bool doubtful = row.verdict == ClashVerdict::clash && !row.proved;
+  return (doubtful ? "not proved to touch only: " : "") + kinds_text(row);
 }
 
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing) {

@@ -26,8 +26,6 @@ std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& 
           d.triangles.b - scene.objects[d.objects.b].first_triangle};
 }
 
-Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
 Json pair_json(const Scene& scene, const Distance& d) {
   const Closest& c = d.closest;
   const auto [s, t] = within_objects(scene, d);
@@ -93,11 +91,6 @@ std::string least_line(const Scene& scene, const std::vector<Distance>& distance
                      least->closest.squared.is_zero() ? ", which meet" : "");
 }
 
-std::string more_line(std::size_t all, std::size_t shown) {
-  if (all <= shown) return "";
-  return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
-}
-
 std::string pairs_table(const Scene& scene, const std::vector<Distance>& distances, bool inside) {
   Table table(inside ? "llrlll" : "llrll");
   std::vector<std::string> header{"a", "b", "distance", "triangle of a", "triangle of b"};
@@ -137,17 +130,11 @@ std::string nearest_table(const Scene& scene, const DistanceRecord& record) {
 }
 
 std::string question_text(const DistanceOptions& options) {
-  std::string text;
-  switch (options.pairs) {
-    case DistancePairs::objects:
-      text = "the nearest triangles of every two objects";
-      break;
-    case DistancePairs::nearest:
-      text = options.k == 1 ? "of each object the nearest other one"
-                            : fmt::format("of each object the {} nearest others", options.k);
-      break;
-    case DistancePairs::all:
-      text = "all pairs of triangles";
+  std::string text = "all pairs of triangles";
+  if (options.pairs == DistancePairs::objects) text = "the nearest triangles of every two objects";
+  if (options.pairs == DistancePairs::nearest) {
+    text = options.k == 1 ? "of each object the nearest other one"
+                          : fmt::format("of each object the {} nearest others", options.k);
   }
   if (std::isfinite(options.within)) text += fmt::format(" within {}", options.within);
   return text;
@@ -231,12 +218,7 @@ std::string accounting_sum(const DistanceAccounting& v) {
 }
 
 std::string distances_table(const Scene& scene, const DistanceRecord& record) {
-  std::string out =
-      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
-                  counted(scene.triangles.size(), "triangle", "triangles"));
-  if (record.degenerate_triangles > 0)
-    out += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
-  out += folded_text(scene);
+  std::string out = scene_text(scene, record.degenerate_triangles);
   out += "\nasked      " + question_text(record.options) + "\n";
   if (!scene.ignored.empty())
     out +=

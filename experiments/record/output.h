@@ -78,6 +78,8 @@ inline nlohmann::ordered_json text_json(const std::string& text) {
   return json_if(!text.empty(), text);
 }
 
+inline nlohmann::ordered_json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
 // ---- records ----
 
 /// The record as JSON. Keys keep their order, so that the same run gives the same text.

@@ -37,12 +37,7 @@ std::string wrapped(const std::string& text) {
 }
 
 std::string scene_line(const Scene& scene, const Record& record) {
-  std::string line =
-      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
-                  counted(scene.triangles.size(), "triangle", "triangles"));
-  if (record.degenerate_triangles > 0)
-    line += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
-  line += folded_text(scene);
+  std::string line = scene_text(scene, record.degenerate_triangles);
   if (record.options.seed) line += fmt::format(", seed {}", *record.options.seed);
   return line + "\n";
 }
@@ -79,6 +74,20 @@ std::string folded_text(const Scene& scene) {
         fmt::format("{} face {} of {}", k == 0 ? ":" : ",", f.face, scene.objects[f.object].name);
   }
   return out + (shown < scene.folded.size() ? ", ..." : "");
+}
+
+std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles) {
+  std::string out =
+      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  if (degenerate_triangles > 0)
+    out += fmt::format(", {} of them degenerate", grouped(degenerate_triangles));
+  return out + folded_text(scene);
+}
+
+std::string more_line(std::size_t all, std::size_t shown) {
+  if (all <= shown) return "";
+  return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
 }
 
 namespace {

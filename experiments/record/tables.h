@@ -53,6 +53,10 @@ std::string not_asked_line(const Scene& scene, const std::string& options = "--s
 /// ", 2 polygons folded: face 7 of fin, face 9 of fin": polygons of a file that are not simple;
 /// empty if there are none.
 std::string folded_text(const Scene& scene);
+/// The name of the scene, and how many objects and triangles it has.
+std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles);
+/// Says how many rows of a table are not shown; empty if all are.
+std::string more_line(std::size_t all, std::size_t shown);
 
 /// The lines that say what was run, on which device, and what was not tested.
 std::string run_heading(const Scene& scene, const Record& record);
