@@ -165,17 +165,11 @@ bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec
     in_a[count] = i;
     in_b[count++] = static_cast<int>(at - b.begin());
   }
-  switch (count) {
-    case 0:
-      return intersects(a, b);
-    case 1:
-      return meet_beyond_vertex(a, in_a[0], b, in_b[0]);
-    case 2:
-      return meet_beyond_edge(a[in_a[0]], a[in_a[1]], a[3 - in_a[0] - in_a[1]],
-                              b[3 - in_b[0] - in_b[1]]);
-    default:
-      return shape(a) == Shape::triangle;
-  }
+  if (count == 0) return intersects(a, b);
+  if (count == 1) return meet_beyond_vertex(a, in_a[0], b, in_b[0]);
+  if (count == 3) return shape(a) == Shape::triangle;
+  return meet_beyond_edge(a[in_a[0]], a[in_a[1]], a[3 - in_a[0] - in_a[1]],
+                          b[3 - in_b[0] - in_b[1]]);
 }
 
 std::uint64_t degenerate_triangles(const Scene& scene) {

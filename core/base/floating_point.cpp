@@ -55,19 +55,9 @@ void find_flushing(FloatingPoint& found) {
 }  // namespace
 
 std::string to_string(Rounding rounding) {
-  switch (rounding) {
-    case Rounding::to_nearest:
-      return "to nearest";
-    case Rounding::upward:
-      return "upward";
-    case Rounding::downward:
-      return "downward";
-    case Rounding::toward_zero:
-      return "toward zero";
-    case Rounding::unknown:
-      break;
-  }
-  return "in no known way";
+  constexpr std::array kWords = {"to nearest", "upward", "downward", "toward zero",
+                                 "in no known way"};
+  return kWords.at(static_cast<std::size_t>(rounding));
 }
 
 std::string to_string(const FloatingPoint& floating_point) {

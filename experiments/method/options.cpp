@@ -88,16 +88,10 @@ QueryMode query_of(const RunOptions& options) {
 }
 
 bool guaranteed(const RunOptions& options) {
-  switch (traits(options.method).promises) {
-    case Promises::never:
-      return false;
-    case Promises::always:
-      return true;
-    case Promises::at_budget_radius:
-      return depth_of(options) == DepthMode::fragment && !options.radius.published &&
-             options.radius.factor >= 1;
-  }
-  return false;
+  const Promises promises = traits(options.method).promises;
+  if (promises != Promises::at_budget_radius) return promises == Promises::always;
+  return depth_of(options) == DepthMode::fragment && !options.radius.published &&
+         options.radius.factor >= 1;
 }
 
 std::string form_text(const RunOptions& options) {

@@ -70,20 +70,15 @@ void put(Image& sheet, const Image& picture, int left, int top) {
 }
 
 void draw_sign(Image& sheet, const LegendEntry& entry, int left, int top, int size) {
-  switch (entry.sign) {
-    case LegendEntry::Sign::box:
-      fill(sheet, left, top, left + size, top + size, entry.colour);
-      break;
-    case LegendEntry::Sign::ring:
-      draw_ring(sheet, left + 0.5 * size, top + 0.5 * size, 0.42 * size, 0.14 * size, entry.colour);
-      break;
-    case LegendEntry::Sign::ramp:
-      for (int x = 0; x < size; ++x) {
-        Rgba colour = entry.light;
-        blend(colour, entry.colour, (x + 0.5) / size);
-        fill(sheet, left + x, top, left + x + 1, top + size, colour);
-      }
-      break;
+  using enum LegendEntry::Sign;
+  if (entry.sign == box) fill(sheet, left, top, left + size, top + size, entry.colour);
+  if (entry.sign == ring)
+    draw_ring(sheet, left + 0.5 * size, top + 0.5 * size, 0.42 * size, 0.14 * size, entry.colour);
+  if (entry.sign != ramp) return;
+  for (int x = 0; x < size; ++x) {
+    Rgba colour = entry.light;
+    blend(colour, entry.colour, (x + 0.5) / size);
+    fill(sheet, left + x, top, left + x + 1, top + size, colour);
   }
 }
 

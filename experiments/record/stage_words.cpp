@@ -2,6 +2,8 @@
 #include "experiments/record/stage_words.h"
 
 #include <array>
+#include <map>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -212,28 +214,15 @@ std::string no_device_reason(const std::vector<Stage>& trace) {
 
 std::string text_of(const ProgressStep& step) {
   if (!step.text.empty()) return step.text;
-  switch (step.kind) {
-    case StageKind::setup:
-      return "opening the device";
-    case StageKind::blocks:
-      return "comparing boxes of blocks";
-    case StageKind::join:
-      return "joining boxes";
-    case StageKind::sweep:
-      return "sweep and prune";
-    case StageKind::cull:
-      return "culling along " + step.subject + ", round " + number(step.round);
-    case StageKind::exact:
-      return "exact tests";
-    case StageKind::verify:
-      return "accounting for every pair";
-    case StageKind::touch:
-      return "touching or clashing";
-    case StageKind::depth:
-      return "depths";
-    default:
-      return verb_of(step.kind);
-  }
+  if (step.kind == StageKind::cull)
+    return "culling along " + step.subject + ", round " + number(step.round);
+  static const std::map<StageKind, std::string> kWords = {
+      {StageKind::setup, "opening the device"},   {StageKind::blocks, "comparing boxes of blocks"},
+      {StageKind::join, "joining boxes"},         {StageKind::sweep, "sweep and prune"},
+      {StageKind::exact, "exact tests"},          {StageKind::verify, "accounting for every pair"},
+      {StageKind::touch, "touching or clashing"}, {StageKind::depth, "depths"}};
+  const auto words = kWords.find(step.kind);
+  return words == kWords.end() ? verb_of(step.kind) : words->second;
 }
 
 }  // namespace farcull

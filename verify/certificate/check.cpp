@@ -1,5 +1,6 @@
 // The checker. Only box_pairs, integer_pair, pair_list and this file have to be right.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -258,15 +259,8 @@ std::string other_scene(const Certificate::SceneKey& claimed, const Certificate:
 }  // namespace
 
 std::string to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::proved:
-      return "proved";
-    case Verdict::refuted:
-      return "refuted";
-    case Verdict::not_proved:
-      break;
-  }
-  return "not proved";
+  constexpr std::array kWords = {"proved", "refuted", "not proved"};
+  return kWords.at(static_cast<std::size_t>(verdict));
 }
 
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene,
