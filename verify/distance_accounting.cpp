@@ -223,7 +223,8 @@ class Undecided {
   }
 
  private:
-  enum class Class : std::uint8_t { planes, neighbours, exact, nearer, earlier };
+  /// The count of a class of pairs.
+  using Class = std::uint64_t DistanceAccounting::*;
   struct Asked {
     Threshold threshold;
     bool self = false;
@@ -239,13 +240,13 @@ class Undecided {
     const std::array<Vec3, 3> s = scene_.corners(pair.pair.a), t = scene_.corners(pair.pair.b);
     if (length && std::isfinite(length->above) &&
         separation::farther_by_planes(s, t, length->above))
-      return Class::planes;
-    if (pair.asked->self && share_position(s, t)) return Class::neighbours;
-    if (!length) return Class::nearer;
+      return &DistanceAccounting::farther_by_planes;
+    if (pair.asked->self && share_position(s, t)) return &DistanceAccounting::neighbours;
+    if (!length) return &DistanceAccounting::nearer;
     // Pairs before the answer must be farther than the answer, pairs after it at least as far.
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
-    if (is_beyond(s, t, *length, or_as_far)) return Class::exact;
+    if (is_beyond(s, t, *length, or_as_far)) return &DistanceAccounting::farther_by_exact;
     // No direction shows that the pair is far enough, so its nearest points have to show that it is
     // not.
     const auto order = integer_distance(s, t).squared <=> length->squared;
@@ -254,30 +255,15 @@ class Undecided {
           "account_distances: neither does a direction show that two triangles are far apart, nor "
           "are their nearest points near");
     }
-    return order == 0 && before ? Class::earlier : Class::nearer;
+    return order == 0 && before ? &DistanceAccounting::earlier : &DistanceAccounting::nearer;
   }
 
   void count(const TrianglePair& pair, Class of) {
-    switch (of) {
-      case Class::planes:
-        ++result_.farther_by_planes;
-        return;
-      case Class::neighbours:
-        ++result_.neighbours;
-        return;
-      case Class::exact:
-        ++result_.farther_by_exact;
-        return;
-      case Class::earlier:
-        ++result_.earlier;
-        return;
-      case Class::nearer:
-        ++result_.nearer;
-        std::vector<TrianglePair>& examples = result_.examples;
-        examples.insert(std::ranges::upper_bound(examples, pair), pair);
-        if (examples.size() > kExamples) examples.pop_back();
-        return;
-    }
+    ++(result_.*of);
+    if (of != &DistanceAccounting::nearer) return;
+    std::vector<TrianglePair>& examples = result_.examples;
+    examples.insert(std::ranges::upper_bound(examples, pair), pair);
+    if (examples.size() > kExamples) examples.pop_back();
   }
 
   const Scene& scene_;
