@@ -104,16 +104,11 @@ inline double random_radius(Draws& random) {
 }
 
 inline Weights random_weights(Draws& random) {
-  switch (random.below(4)) {
-    case 0:
-      return minkowski_line::on_edge(random.below(3), random.below(2));
-    case 1:
-      return minkowski_line::on_edge(random.below(3), random.uniform(0, 1));
-    default: {
-      const double a = random.uniform(0, 1), b = random.uniform(0, 1);
-      return minkowski_line::weights(std::min(a, b), std::abs(a - b));
-    }
-  }
+  const int pick = random.below(4);
+  if (pick == 0) return minkowski_line::on_edge(random.below(3), random.below(2));
+  if (pick == 1) return minkowski_line::on_edge(random.below(3), random.uniform(0, 1));
+  const double a = random.uniform(0, 1), b = random.uniform(0, 1);
+  return minkowski_line::weights(std::min(a, b), std::abs(a - b));
 }
 
 /// A triangle and the centre of a pixel near it. The centre is inside the triangle's image,
@@ -160,28 +155,14 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   s[1][3] = random.below(6) == 0 ? 0 : number(random.below(20) == 0 ? 0x1p20 : radius);
   for (int i = 1; i <= 3; ++i) {
     for (int k = 0; k < 3; ++k) s[i][k] = number(reach * random.uniform(-1, 1));
-    switch (random.below(9)) {
-      case 0:
-        s[i][random.below(3)] = 0;
-        break;
-      case 1:
-        s[i][random.below(3)] = number(random.scaled(-149, -30));
-        break;
-      case 2:
-        s[i] = {s[1][0], s[1][1], s[i][2], s[i][3]};
-        break;
-      case 3:  // about 1e-6 px beside the first corner
-        s[i] = {number(s[1][0] + random.scaled(-22, -18)), s[1][1], s[i][2], s[i][3]};
-        break;
-      case 4:
-        s[i][2] = s[1][2];
-        break;
-      case 5:
-        s[i][2] = number(random.uniform(-far, far));
-        break;
-      default:
-        break;
-    }
+    const int change = random.below(9);
+    if (change == 0) s[i][random.below(3)] = 0;
+    if (change == 1) s[i][random.below(3)] = number(random.scaled(-149, -30));
+    if (change == 2) s[i] = {s[1][0], s[1][1], s[i][2], s[i][3]};
+    if (change == 3)  // about 1e-6 px beside the first corner
+      s[i] = {number(s[1][0] + random.scaled(-22, -18)), s[1][1], s[i][2], s[i][3]};
+    if (change == 4) s[i][2] = s[1][2];
+    if (change == 5) s[i][2] = number(random.uniform(-far, far));
   }
   // Places the line at about the radius from a point of the triangle.
   const Weights w = random_weights(random);

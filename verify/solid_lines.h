@@ -82,28 +82,13 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   for (int i = 1; i <= 3; ++i) {
     const Vec3 a = random.cube(1).normalized();
     for (int k = 0; k < 3; ++k) s[i][k] = number(a[k]);
-    switch (random.below(8)) {
-      case 0:
-        s[i][2] = 0;
-        break;
-      case 1:
-        s[i][2] = number(random.sign() * 0x1p-20 * random.uniform(0.99, 1.01));
-        break;
-      case 2:
-        s[i][2] = std::nextafter(0x1p-20f, random.coin() ? 0.f : 1.f);
-        break;
-      case 3:
-        s[i][2] = number(random.scaled(-149, -18));
-        break;
-      case 4:
-        s[i][random.below(3)] = number(random.scaled(-149, -100));
-        break;
-      case 5:
-        s[i][random.below(2)] = 0;
-        break;
-      default:
-        break;
-    }
+    const int change = random.below(8);
+    if (change == 0) s[i][2] = 0;
+    if (change == 1) s[i][2] = number(random.sign() * 0x1p-20 * random.uniform(0.99, 1.01));
+    if (change == 2) s[i][2] = std::nextafter(0x1p-20f, random.coin() ? 0.f : 1.f);
+    if (change == 3) s[i][2] = number(random.scaled(-149, -18));
+    if (change == 4) s[i][random.below(3)] = number(random.scaled(-149, -100));
+    if (change == 5) s[i][random.below(2)] = 0;
     // Puts the border of the slab close to the line, at a random depth.
     const double at =
         double(s[i][0]) * (double(cx) - s[0][0]) + double(s[i][1]) * (double(cy) - s[0][1]);

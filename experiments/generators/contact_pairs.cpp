@@ -124,20 +124,16 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   };
   Corners a = {drawn(), drawn(), drawn()};
   Corners b = {drawn(), drawn(), drawn()};
-  switch (draws.below(4)) {
-    case 0:  // both have an edge in common
-      b[0] = a[0];
-      b[1] = a[1];
-      break;
-    case 1: {  // b is a copy of a, moved in the plane
-      const double i = draws.whole(-2, 2);
-      const double j = draws.whole(-2, 2);
-      const Vec3 move = i * u + j * v;
-      for (int c = 0; c < 3; ++c) b[c] = a[c] + move;
-      break;
-    }
-    default:
-      break;
+  const int way = draws.below(4);
+  if (way == 0) {  // both have an edge in common
+    b[0] = a[0];
+    b[1] = a[1];
+  }
+  if (way == 1) {  // b is a copy of a, moved in the plane
+    const double i = draws.whole(-2, 2);
+    const double j = draws.whole(-2, 2);
+    const Vec3 move = i * u + j * v;
+    for (int c = 0; c < 3; ++c) b[c] = a[c] + move;
   }
   return finished(draws, bits, a, b);
 }

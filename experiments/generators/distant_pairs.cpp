@@ -69,19 +69,14 @@ MadePair gap_edge(RandomDraws& draws, double gap) {
 MadePair near_pair(RandomDraws& draws) {
   const double side = draws.sign();
   const double gap = std::ldexp(side, -draws.below(12));
-  switch (draws.below(3)) {
-    case 0:
-      return gap_face(draws, gap);
-    case 1:
-      return gap_edge(draws, gap);
-    default: {
-      MadePair out;
-      const Vec3 centre = draws.point() / 2;
-      for (Vec3& p : out.a) p = draws.point();
-      for (Vec3& p : out.b) p = centre + draws.point();
-      return out;
-    }
-  }
+  const int kind = draws.below(3);
+  if (kind == 0) return gap_face(draws, gap);
+  if (kind == 1) return gap_edge(draws, gap);
+  MadePair out;
+  const Vec3 centre = draws.point() / 2;
+  for (Vec3& p : out.a) p = draws.point();
+  for (Vec3& p : out.b) p = centre + draws.point();
+  return out;
 }
 
 /// A pair moved away from the origin, so that coordinates lose their last bits.
@@ -163,26 +158,14 @@ Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double ext
   if (dimension == 0) return {at, at, at};
   const Vec3 u = draws.whole_point(extent);
   if (dimension == 1) {
-    switch (draws.below(4)) {
-      case 0:
-        return {at, at + u, at + u};  // the point is an end, and two corners are equal
-      case 1:
-        return {at - u, at + u, at - u};
-      case 2:
-        return {at - u, at + 2 * u, at + u};  // three corners on a line
-      default:
-        return {at - u, at, at + u};
-    }
+    const int way = draws.below(4);
+    if (way == 0) return {at, at + u, at + u};  // the point is an end, and two corners are equal
+    if (way == 1) return {at - u, at + u, at - u};
+    if (way == 2) return {at - u, at + 2 * u, at + u};  // three corners on a line
+    return {at - u, at, at + u};
   }
   const Vec3 v = draws.whole_point(extent);
-  switch (draws.below(3)) {
-    case 0:
-      return {at, at + u, at + v};
-    case 1:
-      return {at - u, at + u, at + v};
-    default:
-      return {at - u - v, at + u, at + v};
-  }
+  return with_point(draws.below(3), at, u, v);
 }
 
 /// The step that moves b: up to one unit along each axis every third time, else none.

@@ -57,16 +57,9 @@ Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
   const double s = 2 * t / (1 + t * t);
-  switch (i / per_quarter % 4) {
-    case 0:
-      return {c, s, 0};
-    case 1:
-      return {-s, c, 0};
-    case 2:
-      return {-c, -s, 0};
-    default:
-      return {s, -c, 0};
-  }
+  const std::array<Vec3, 4> turned = {Vec3(c, s, 0), Vec3(-s, c, 0), Vec3(-c, -s, 0),
+                                      Vec3(s, -c, 0)};
+  return turned[i / per_quarter % 4];
 }
 
 /// A tube that winds three times around; windings are one pitch (in diameters) above each other.
@@ -112,18 +105,13 @@ Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   });
   for (auto& [i, j, k] : out.triangles) {
     if (!draws.chance(static_cast<int>(one_in))) continue;
-    switch (draws.below(3)) {
-      case 0:
-        k = i;
-        break;
-      case 1:
-        j = k = i;
-        break;
-      default: {  // the middle of an edge: three corners on a line
-        const Vec3 middle = (out.vertices[i] + out.vertices[j]) / 2;
-        out.vertices.push_back(middle);
-        k = index(out.vertices.size() - 1);
-      }
+    const int way = draws.below(3);
+    if (way < 2) k = i;
+    if (way == 1) j = i;
+    if (way == 2) {  // the middle of an edge: three corners on a line
+      const Vec3 middle = (out.vertices[i] + out.vertices[j]) / 2;
+      out.vertices.push_back(middle);
+      k = index(out.vertices.size() - 1);
     }
   }
   return {std::move(out)};

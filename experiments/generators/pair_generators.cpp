@@ -91,32 +91,20 @@ DrawnPair contact(RandomDraws& random) {
   DrawnPair pair;
   for (Vec3& p : pair.a) p = 4 * random.whole_point(kExtent);
   Vec3 at = pair.a[0];
-  switch (random.below(3)) {
-    case 0:
-      break;
-    case 1: {
-      const int weight = random.whole(1, 3);
-      at = (weight * pair.a[0] + (4 - weight) * pair.a[1]) / 4;
-      break;
-    }
-    default:
-      at = (2 * pair.a[0] + pair.a[1] + pair.a[2]) / 4;
+  const int where = random.below(3);
+  if (where == 1) {
+    const int weight = random.whole(1, 3);
+    at = (weight * pair.a[0] + (4 - weight) * pair.a[1]) / 4;
   }
+  if (where == 2) at = (2 * pair.a[0] + pair.a[1] + pair.a[2]) / 4;
   const Vec3 u = random.whole_point(kExtent);
   const Vec3 v = random.whole_point(kExtent);
-  switch (random.below(4)) {
-    case 0:
-      pair.b = {at, at + u, at + v};
-      break;
-    case 1:
-      pair.b = {at - u, at + random.whole(1, 3) * u, at + v};
-      break;
-    case 2:
-      pair.b = {at - u - v, at + u, at + v};
-      break;
-    default:  // an edge of b along an edge of a
-      pair.b = {pair.a[0], pair.a[1], at + v};
-      if (random.chance(2)) pair.b[1] = at - (pair.a[1] - pair.a[0]) / 4;
+  const int way = random.below(4);
+  if (way < 3) pair.b = with_point(way, at, u, v);
+  if (way == 1) pair.b[1] = at + random.whole(1, 3) * u;
+  if (way == 3) {  // an edge of b along an edge of a
+    pair.b = {pair.a[0], pair.a[1], at + v};
+    if (random.chance(2)) pair.b[1] = at - (pair.a[1] - pair.a[0]) / 4;
   }
   if (random.chance(3)) {
     const Vec3 step = random.whole_point(1);
@@ -153,23 +141,18 @@ DrawnPair one_ulp(RandomDraws& random) {
   const Vec3 at = pair.a[0] + s * (pair.a[1] - pair.a[0]) + t * (pair.a[2] - pair.a[0]);
   const Vec3 u = random.point();
   const Vec3 v = random.point();
-  switch (random.below(4)) {
-    case 0:
-      pair.b = {at, at + u, at + v};
-      break;
-    case 1:
-      pair.b = {at - u, at + u, at + v};
-      break;
-    case 2:  // coplanar except for the rounding
-      pair.b = {at, at + (at - pair.a[1]) * random.between(-1, 2),
-                at + (at - pair.a[2]) * random.between(-1, 2)};
-      break;
-    default:  // both in one plane of equal z, except a corner of b
-      for (int i = 0; i < 3; ++i) {
-        pair.a[i].z() = at.z();
-        pair.b[i] = {random.point().x(), random.point().y(), at.z()};
-      }
-      pair.b[0].z() = at.z() + random.unit();
+  const int way = random.below(4);
+  if (way < 2) pair.b = with_point(way, at, u, v);
+  if (way == 2) {  // coplanar except for the rounding
+    pair.b = {at, at + (at - pair.a[1]) * random.between(-1, 2),
+              at + (at - pair.a[2]) * random.between(-1, 2)};
+  }
+  if (way == 3) {  // both in one plane of equal z, except a corner of b
+    for (int i = 0; i < 3; ++i) {
+      pair.a[i].z() = at.z();
+      pair.b[i] = {random.point().x(), random.point().y(), at.z()};
+    }
+    pair.b[0].z() = at.z() + random.unit();
   }
   for (Vec3& p : pair.b) {
     for (int k = 0; k < 3; ++k) {
@@ -256,16 +239,7 @@ DrawnPair huge_beside_tiny(RandomDraws& random) {
   const Vec3 at = random.whole_point(8);
   const Vec3 u = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitX()) : random.point());
   const Vec3 v = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitY()) : random.point());
-  switch (random.below(3)) {
-    case 0:
-      pair.a = {at, at + u, at + v};
-      break;
-    case 1:
-      pair.a = {at - u, at + u, at + v};
-      break;
-    default:
-      pair.a = {at - u - v, at + u, at + v};
-  }
+  pair.a = with_point(random.below(3), at, u, v);
   for (Vec3& p : pair.b) p = at + random.whole_point(2);
   if (random.chance(2)) pair.b[0] = at;
   if (random.chance(3)) pair.b[1] = pair.b[0];

@@ -60,6 +60,12 @@ void each_corner(DrawnPair& pair, const Function& function) {
     for (Vec3& p : *t) function(p);
   }
 }
+/// A triangle along u and v that has the point `at` as a corner, on an edge or in its inside;
+/// where: 0, 1 or 2.
+inline std::array<Vec3, 3> with_point(int where, const Vec3& at, const Vec3& u, const Vec3& v) {
+  if (where == 0) return {at, at + u, at + v};
+  return {where == 1 ? Vec3(at - u) : Vec3(at - u - v), at + u, at + v};
+}
 /// Shuffles the corners of each triangle, and exchanges a and b half of the time, since predicates
 /// branch on their order.
 void shuffle(RandomDraws& draws, DrawnPair& pair);
