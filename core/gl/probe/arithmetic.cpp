@@ -171,10 +171,9 @@ ProbeResult transport(const ProbeOptions& options) {
   Random random(options.seed + 5);
   Target target(kSide, kSide);
   const GlProgram program = proxy_program("transport", {embedded::probe_frag});
-  std::vector<Proxy> proxies;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    proxies.push_back(pixel_box(i, kSide));
-    for (auto& row : proxies.back().solid) {
+  std::vector<Proxy> proxies = pixel_proxies(kSide);
+  for (Proxy& proxy : proxies) {
+    for (auto& row : proxy.solid) {
       for (float& value : row) value = random.below(16) ? random.normal(-126, 127) : -0.0f;
     }
   }
@@ -222,11 +221,9 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
         z.push_back(neighbour(base, k));  // neighbours
     }
     std::sort(z.begin(), z.end());
-    std::vector<Proxy> proxies;
-    for (int i = 0; i < kSide * kSide; ++i) {
-      proxies.push_back(pixel_box(i, kSide));
-      proxies.back().solid[0][2] = proxies.back().solid[0][3] = z[static_cast<std::size_t>(i)];
-    }
+    std::vector<Proxy> proxies = pixel_proxies(kSide);
+    for (std::size_t i = 0; i < kPixels; ++i)
+      proxies[i].solid[0][2] = proxies[i].solid[0][3] = z[i];
     target.upload(proxies);
     const auto depths = [&](GLuint program) {
       target.start();

@@ -13,14 +13,6 @@ namespace {
 constexpr int kSide = 160;
 constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
-// One proxy per pixel of a square target or window, in rows.
-std::vector<Proxy> pixel_proxies(int side) {
-  std::vector<Proxy> out;
-  out.reserve(static_cast<std::size_t>(side) * side);
-  for (int i = 0; i < side * side; ++i) out.push_back(pixel_box(i, side));
-  return out;
-}
-
 // Random depths of a layer, one for each pixel: in the range of the canvas's depth map, at its
 // ends, at depths of control items (core/gl/canvas/state.h), any others, and some that equal those
 // of the layer `beside` or are next to them.
@@ -142,17 +134,16 @@ ProbeResult texels(const ProbeOptions& options) {
   const GlProgram store = proxy_program("depth", {embedded::probe_frag}, {"FAR_DEPTH"});
   const GlProgram read = gl_program("probe texels", {"FAR_STEP 3"},
                                     {{GL_COMPUTE_SHADER, {embedded::probe_memory_comp}}});
-  std::vector<Proxy> proxies;
+  std::vector<Proxy> proxies = pixel_proxies(kSide);
   std::vector<float> depths;
   for (std::uint32_t i = 0; i < kPixels; ++i) {
-    proxies.push_back(pixel_box(static_cast<int>(i), kSide));
     // Depths in the range of the depth map, near its ends, of control items, and small ones.
     float d = random.in_float(0.25, 0.75);
     if (i % 4 == 1) d = neighbour(random.below(2) ? 0.25f : 0.75f, random.below(9) - 4);
     if (i % 4 == 2) d = random.in_float(0, 1);
     if (i % 64 == 3) d = random.below(2) ? 0.0f : 1.0f;
     depths.push_back(d);
-    proxies.back().solid[4][2] = d;
+    proxies[i].solid[4][2] = d;
   }
   target.upload(proxies);
   target.start();

@@ -50,19 +50,10 @@ float Random::normal(int lowest, int highest) {
   const int exponent = lowest + below(highest - lowest + 1);
   std::uint32_t mantissa = static_cast<std::uint32_t>(r) & 0x7fffff;
   // Mantissas at the ends of a binade and with few bits are where roundings go wrong.
-  switch (r >> 40 & 7) {
-    case 0:
-      mantissa &= 3;
-      break;
-    case 1:
-      mantissa |= 0x7ffffc;
-      break;
-    case 2:
-      mantissa &= 0x7ff000;
-      break;
-    default:
-      break;
-  }
+  const std::uint64_t way = r >> 40 & 7;
+  if (way == 0) mantissa &= 3;
+  if (way == 1) mantissa |= 0x7ffffc;
+  if (way == 2) mantissa &= 0x7ff000;
   const std::uint32_t sign = static_cast<std::uint32_t>(r >> 63) << 31;
   return std::bit_cast<float>(sign | static_cast<std::uint32_t>(exponent + 127) << 23 | mantissa);
 }
@@ -118,6 +109,13 @@ Proxy pixel_box(int i, int side) {
   const int row = i / side, column = i % side;
   const double x = column - 0.5 * side, y = row - 0.5 * side;
   return box(x, y, x + 1, y + 1);
+}
+
+std::vector<Proxy> pixel_proxies(int side) {
+  std::vector<Proxy> out;
+  out.reserve(static_cast<std::size_t>(side) * side);
+  for (int i = 0; i < side * side; ++i) out.push_back(pixel_box(i, side));
+  return out;
 }
 
 Target::Target(int width, int height, DepthBuffer depth)
@@ -199,21 +197,20 @@ void Target::draw(std::size_t first, std::size_t count) const {
 }
 
 std::vector<std::uint32_t> Target::colour() const {
-  std::vector<std::uint32_t> out(pixels());
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, width_, height_, GL_RED_INTEGER, GL_UNSIGNED_INT, out.data());
-  check_gl("probe colours");
-  return out;
+  return read(GL_RED_INTEGER, GL_UNSIGNED_INT, "probe colours");
 }
 
 std::vector<std::uint32_t> Target::depths() const {
+  return read(GL_DEPTH_COMPONENT, format_ == DepthBuffer::float32 ? GL_FLOAT : GL_UNSIGNED_INT,
+              "probe depths");
+}
+
+std::vector<std::uint32_t> Target::read(GLenum what, GLenum type, const char* doing) const {
   std::vector<std::uint32_t> out(pixels());
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT,
-               format_ == DepthBuffer::float32 ? GL_FLOAT : GL_UNSIGNED_INT, out.data());
-  check_gl("probe depths");
+  glReadPixels(0, 0, width_, height_, what, type, out.data());
+  check_gl(doing);
   return out;
 }
 

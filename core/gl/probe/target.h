@@ -96,6 +96,8 @@ Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);
 /// Pixel i, counted in rows, of a square target of this side (px, even).
 Proxy pixel_box(int i, int side);
+/// One proxy per pixel of a square target or window, in rows.
+std::vector<Proxy> pixel_proxies(int side);
 
 enum class DepthBuffer { none, float32, fixed24 };
 
@@ -127,6 +129,8 @@ class Target {
   std::vector<std::uint32_t> depths() const;
 
  private:
+  std::vector<std::uint32_t> read(GLenum what, GLenum type, const char* doing) const;
+
   int width_, height_;
   DepthBuffer format_;
   GlTexture colour_, depth_;
