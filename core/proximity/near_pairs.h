@@ -59,6 +59,11 @@ struct ProximityCounts {
   std::uint64_t box_pairs = 0;       // bounds of boxes that were compared with the upper bound
   std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded
   std::uint64_t kept = 0;            // of these, left to exact arithmetic
+
+  void add_work(const ProximityCounts& other) {
+    box_pairs += other.box_pairs;
+    triangle_pairs += other.triangle_pairs;
+  }
 };
 
 /// Trees of boxes over the objects of a scene, and the questions that they answer. Precondition of

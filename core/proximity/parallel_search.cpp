@@ -94,8 +94,7 @@ void join(Search& part, Search& search) {
   for (const KeptPair& kept : part.kept) {
     if (kept.pair != search.settled) search.kept.push_back(kept);
   }
-  search.counts.box_pairs += part.counts.box_pairs;
-  search.counts.triangle_pairs += part.counts.triangle_pairs;
+  search.counts.add_work(part.counts);
   part = Search();
 }
 

@@ -100,6 +100,13 @@ std::vector<Search> begun_by_hints(const SceneTrees& trees, std::span<const Near
   return out;
 }
 
+void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
+  while (!search.open.empty()) {
+    go_on(trees, kLeafPairsAtOnce, search, memory);
+    require_room(trees, search);
+  }
+}
+
 // The k-th least bound: k other objects are at most that far.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
@@ -168,10 +175,7 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
                 .k = k,
                 .ties = ties};
   Search search = begin_search(trees, object, limit, others, memory);
-  while (!search.open.empty()) {
-    go_on(trees, kLeafPairsAtOnce, search, memory);
-    require_room(trees, search);
-  }
+  finish(trees, search, memory);
   search.filter();
   std::vector<std::uint32_t> out;
   for (const KeptPair& kept : search.kept) {
@@ -181,8 +185,7 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
   std::ranges::sort(out);
   out.erase(std::ranges::unique(out).begin(), out.end());
   limit = search.bound();
-  counts.box_pairs += search.counts.box_pairs;
-  counts.triangle_pairs += search.counts.triangle_pairs;
+  counts.add_work(search.counts);
   return out;
 }
 
@@ -228,13 +231,9 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
     } else {
       search = begin_search(trees, objects, most, nullptr, memory);
     }
-    while (!search.open.empty()) {
-      go_on(trees, kLeafPairsAtOnce, search, memory);
-      require_room(trees, search);
-    }
+    finish(trees, search, memory);
     Found found = {.limit = most, .near = answer(trees, search)};
-    counts.box_pairs += search.counts.box_pairs;
-    counts.triangle_pairs += search.counts.triangle_pairs;
+    counts.add_work(search.counts);
     if (search.kept.empty()) continue;
     found.lower = std::ranges::min_element(search.kept, {}, &KeptPair::lower)->lower;
     found.upper = std::ranges::min_element(search.kept, {}, &KeptPair::upper)->upper;
@@ -278,8 +277,7 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   });
   std::vector<Found> founds;
   for (std::size_t o = 0; o < objects; ++o) {
-    counts.box_pairs += parts[o].box_pairs;
-    counts.triangle_pairs += parts[o].triangle_pairs;
+    counts.add_work(parts[o]);
     std::ranges::move(found[o], std::back_inserter(founds));
   }
   // Two objects may both have found each other; the answer with the larger limit is kept. An answer
@@ -330,8 +328,7 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
     counts.kept += search.kept.size();
     search.kept.clear();
   }
-  counts.box_pairs += search.counts.box_pairs;
-  counts.triangle_pairs += search.counts.triangle_pairs;
+  counts.add_work(search.counts);
 }
 
 // Does ProximityTrees::pairs_within(). limit: scaled. Adds to counts.
@@ -357,8 +354,7 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
   for (std::size_t o = 0; o < objects; ++o) {
     out.insert(out.end(), found[o].begin(), found[o].end());
     found[o] = {};
-    counts.box_pairs += parts[o].box_pairs;
-    counts.triangle_pairs += parts[o].triangle_pairs;
+    counts.add_work(parts[o]);
     counts.kept += parts[o].kept;
   }
   return out;
