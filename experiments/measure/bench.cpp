@@ -31,12 +31,6 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
-std::vector<std::string> names_of(const std::vector<Peer>& peers) {
-  std::vector<std::string> names;
-  for (const Peer& peer : peers) names.push_back(peer.name);
-  return names;
-}
-
 /// The time of the stages of boxes, before candidates are looked for.
 double build_ms_of(const std::vector<Stage>& trace) {
   double ms = 0;
@@ -121,11 +115,8 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
 }
 
 void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
-  const std::vector<Peer> peers = all_peers();
-  const std::vector<std::string> names = chosen_names("--peers", options.peers, names_of(peers));
   const bool by_name = options.peers != "all";
-  for (const Peer& peer : peers) {
-    if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
+  for (const Peer& peer : chosen_peers(options.peers, all_peers())) {
     BenchContestant contestant{.name = peer.name, .peer = true, .library = peer.library};
     contestant.left_out = peer.missing;
     if (contestant.left_out.empty() && peer.refuses) contestant.left_out = peer.refuses(scene);
@@ -223,7 +214,7 @@ std::vector<std::string> chosen_names(const std::string& option, const std::stri
 
 void validate(const BenchOptions& options) {
   chosen_names("--methods", options.methods, kMethods);
-  chosen_names("--peers", options.peers, names_of(all_peers()));
+  chosen_peers(options.peers, all_peers());
   if (options.repeat < 1) {
     throw Error("--repeat", fmt::format("{} is no number of runs", options.repeat),
                 "give 1 or more");

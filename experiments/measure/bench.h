@@ -6,6 +6,7 @@
 // thread pools) comes before and is timed apart. All contestants must find the same pairs.
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -73,6 +74,17 @@ struct BenchResult {
 /// of `known`. Throws Error naming the option.
 std::vector<std::string> chosen_names(const std::string& option, const std::string& text,
                                       const std::vector<std::string>& known);
+/// The peers that the text of --peers asks for.
+template <class AnyPeer>
+std::vector<AnyPeer> chosen_peers(const std::string& text, std::vector<AnyPeer> known) {
+  std::vector<std::string> names;
+  for (const AnyPeer& peer : known) names.push_back(peer.name);
+  names = chosen_names("--peers", text, names);
+  std::erase_if(known, [&](const AnyPeer& peer) {
+    return std::find(names.begin(), names.end(), peer.name) == names.end();
+  });
+  return known;
+}
 
 /// Throws Error naming the option for unknown names, a repeat below 1 or a limit below 0.
 void validate(const BenchOptions& options);

@@ -37,15 +37,8 @@ PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigne
   return answer;
 }
 
-std::vector<DistancePeer> chosen_peers(const std::string& text) {
-  std::vector<DistancePeer> known = distance_peers();
-  std::vector<std::string> names;
-  for (const DistancePeer& peer : known) names.push_back(peer.name);
-  names = chosen_names("--peers", text, names);
-  std::erase_if(known, [&names](const DistancePeer& peer) {
-    return std::find(names.begin(), names.end(), peer.name) == names.end();
-  });
-  return known;
+bool by_objects(const PeerDistance& x, const PeerDistance& y) {
+  return std::tie(x.a, x.b) < std::tie(y.a, y.b);
 }
 
 std::string task_name(const PeerQuestion& question) {
@@ -62,16 +55,14 @@ std::vector<PeerDistance> as_peer(const DistanceRecord& record) {
     out.push_back({a, b, distance.closest.distance});
     if (nearest) out.push_back({b, a, distance.closest.distance});
   }
-  std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
-    return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
-  });
   if (nearest) {  // each object keeps only its nearest one
+    std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
+      return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
+    });
     const auto same = [](const PeerDistance& x, const PeerDistance& y) { return x.a == y.a; };
     out.erase(std::unique(out.begin(), out.end(), same), out.end());
   } else {
-    std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
-      return std::tie(x.a, x.b) < std::tie(y.a, y.b);
-    });
+    std::sort(out.begin(), out.end(), by_objects);
   }
   return out;
 }
@@ -83,15 +74,12 @@ DistancePeer farcull_distances() {
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
   DistanceErrors out{.answers = answer.size()};
-  const auto nearest_by = [](const PeerDistance& x, const PeerDistance& y) {
-    return std::tie(x.a, x.b) < std::tie(y.a, y.b);
-  };
   // With `nearest` each object has one distance, and the other object may differ.
   const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {
     const auto before = [&](const PeerDistance& x) {
-      return one_each ? x.a < truth.a : nearest_by(x, truth);
+      return one_each ? x.a < truth.a : by_objects(x, truth);
     };
     for (; at != answer.end() && before(*at); ++at) ++out.beyond;
     if (at == answer.end() || at->a != truth.a || (!one_each && at->b != truth.b)) {
@@ -122,7 +110,7 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
   if (options.repeat < 1) throw Error("--repeat", "is below 1", "give 1 or more");
   DistanceBenchResult result;
   std::vector<DistancePeer> running = {farcull_distances()};
-  for (DistancePeer& peer : chosen_peers(options.peers)) {
+  for (DistancePeer& peer : chosen_peers(options.peers, distance_peers())) {
     std::string reason = peer.missing;
     if (reason.empty() && peer.refuses) reason = peer.refuses(scene);
     if (reason.empty()) {

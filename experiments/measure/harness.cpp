@@ -112,17 +112,6 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
 
 // ---- the scene cache, and the comparison of answers with the truth ----
 
-namespace {
-
-template <class T>
-std::uint64_t count_lacking(const std::vector<T>& a, const std::vector<T>& b) {
-  std::vector<T> difference;
-  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(difference));
-  return difference.size();
-}
-
-}  // namespace
-
 std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs) {
   std::vector<std::uint32_t> out;
   out.reserve(2 * pairs.size());
@@ -145,13 +134,9 @@ TruePairs without_neighbours(const Scene& scene, const TruePairs& truth) {
   return out;
 }
 
-std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<TrianglePair>& b) {
-  return count_lacking(a, b);
-}
-
 Errors errors_of(const TruePairs& truth, const std::vector<TrianglePair>& pairs) {
   return {.missed = lacking(truth.pairs, pairs),
-          .missed_triangles = count_lacking(members_of(truth.pairs), members_of(pairs)),
+          .missed_triangles = lacking(members_of(truth.pairs), members_of(pairs)),
           .wrong = lacking(pairs, truth.pairs)};
 }
 

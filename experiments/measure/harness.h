@@ -6,8 +6,10 @@
 // shaders, the scene that was read last, and the pairs that truly collide in that scene.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -114,8 +116,13 @@ struct Errors {
 /// pairs: sorted.
 Errors errors_of(const TruePairs& truth, const std::vector<TrianglePair>& pairs);
 
-/// How many pairs of a are not in b. Both are sorted.
-std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<TrianglePair>& b);
+/// How many values of a are not in b. Both are sorted.
+template <class Value>
+std::uint64_t lacking(const std::vector<Value>& a, const std::vector<Value>& b) {
+  std::vector<Value> difference;
+  std::ranges::set_difference(a, b, std::back_inserter(difference));
+  return difference.size();
+}
 
 class MeasurementContext {
  public:

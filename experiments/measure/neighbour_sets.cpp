@@ -123,17 +123,13 @@ void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
   }
 }
 
-struct Sizes {
-  std::uint64_t sum = 0, median = 0, most = 0;
-};
-Sizes sizes_over(std::vector<std::uint64_t> values) {
-  Sizes out;
-  if (values.empty()) return out;
+void sum_up(std::vector<std::uint64_t> values, std::uint64_t& sum, std::uint64_t& median,
+            std::uint64_t& most) {
+  if (values.empty()) return;
   std::sort(values.begin(), values.end());
-  for (const std::uint64_t value : values) out.sum += value;
-  out.median = values[(values.size() - 1) / 2];
-  out.most = values.back();
-  return out;
+  for (const std::uint64_t value : values) sum += value;
+  median = values[(values.size() - 1) / 2];
+  most = values.back();
 }
 
 }  // namespace
@@ -252,14 +248,8 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
     }
     out.missed += !found;
   }
-  const Sizes of_objects = sizes_over(std::move(with_objects));
-  const Sizes of_triangles = sizes_over(std::move(with_triangles));
-  out.set_objects = of_objects.sum;
-  out.median_objects = of_objects.median;
-  out.most_objects = of_objects.most;
-  out.set_triangles = of_triangles.sum;
-  out.median_triangles = of_triangles.median;
-  out.most_triangles = of_triangles.most;
+  sum_up(std::move(with_objects), out.set_objects, out.median_objects, out.most_objects);
+  sum_up(std::move(with_triangles), out.set_triangles, out.median_triangles, out.most_triangles);
   return out;
 }
 

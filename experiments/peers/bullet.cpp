@@ -112,9 +112,7 @@ BenchAnswer collide(const Scene& raw, unsigned threads) {
     tasks.push_back({trees[pair.a].get(), trees[pair.b].get()});
   }
   search_trees(raw, std::move(tasks), threads, candidates);
-  BenchAnswer answer = candidates.finish();
-  answer.build_ms = build_ms;
-  return answer;
+  return candidates.finish(build_ms);
 }
 
 }  // namespace

@@ -212,9 +212,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
     tree->traversal(box, walk);
   };
   if (tree) for_each_taken(count, 256, threads, search);
-  BenchAnswer answer = candidates.finish();
-  answer.build_ms = build_ms;
-  return answer;
+  return candidates.finish(build_ms);
 }
 
 // Distances: the triangles of one object against the AABB_tree of another. The tree's own functions

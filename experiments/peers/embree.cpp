@@ -171,9 +171,7 @@ BenchAnswer collide(Embree& embree, const Scene& raw, unsigned threads) {
   PeerCandidates candidates(raw, threads, threads > 1);
   Found found{scene, boxes, candidates, scene.second};
   if (any) embree.collide(0, scene.two_sides ? 1 : 0, collect, &found);
-  BenchAnswer answer = candidates.finish();
-  answer.build_ms = build_ms;
-  return answer;
+  return candidates.finish(build_ms);
 }
 
 Peer peer(const std::string& name, RTCBuildQuality quality) {

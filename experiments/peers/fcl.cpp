@@ -154,9 +154,7 @@ BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
       trees.size() == 2 ? std::vector<IndexPair>{{0, 1}} : objects.meeting();
   for (const auto& [i, j] : meeting) tasks.push_back({&trees[i], &trees[j]});
   search_trees(scene, std::move(tasks), threads, candidates);
-  BenchAnswer answer = candidates.finish();
-  answer.build_ms = build_ms;
-  return answer;
+  return candidates.finish(build_ms);
 }
 
 /// Sets up FCL's traversal of two hierarchies.

@@ -150,8 +150,8 @@ void PeerCandidates::Part::decide(unsigned threads) {
   exact_ms_ += exact.ms();
 }
 
-BenchAnswer PeerCandidates::finish() {
-  BenchAnswer answer;
+BenchAnswer PeerCandidates::finish(double build_ms) {
+  BenchAnswer answer{.build_ms = build_ms};
   if (parts_.empty()) part();
   Part& all = *parts_.front();
   for (const auto& part : parts_) {

@@ -183,8 +183,8 @@ class PeerCandidates {
   };
   Part& part();
 
-  /// The answer, without build_ms; candidates_ms is the time since construction less exact_ms.
-  BenchAnswer finish();
+  /// The answer; candidates_ms is the time since construction less exact_ms.
+  BenchAnswer finish(double build_ms = 0);
 
  private:
   static constexpr std::size_t kFull = std::size_t{1} << 17;  // 1 MiB of candidates
