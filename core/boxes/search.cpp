@@ -156,9 +156,4 @@ BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* m
   return out;
 }
 
-std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const BoxesSettings& settings,
-                                         unsigned threads) {
-  return find_boxes(scene, plan_boxes(scene, settings, threads)).candidates;
-}
-
 }  // namespace farcull

@@ -65,8 +65,4 @@ struct BoxesResult {
 BoxesResult find_boxes(const Scene& scene, const BoxesPlan& plan, FrameMemory* memory = nullptr,
                        const Progress& progress = {}, const TakePairs& take = {});
 
-/// plan_boxes() and find_boxes() in one call: the candidates.
-std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const BoxesSettings& settings = {},
-                                         unsigned threads = 0);
-
 }  // namespace farcull

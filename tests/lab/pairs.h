@@ -29,6 +29,13 @@ inline std::size_t missed(const std::vector<TrianglePair>& truth,
   }));
 }
 
+/// plan_boxes() and find_boxes() in one call: the candidates.
+inline std::vector<TrianglePair> pairs_by_boxes(const Scene& scene,
+                                                const BoxesSettings& settings = {},
+                                                unsigned threads = 0) {
+  return find_boxes(scene, plan_boxes(scene, settings, threads)).candidates;
+}
+
 inline std::size_t missed(const Scene& scene, const BoxesSettings& settings = {}) {
   const std::vector<TrianglePair> candidates = pairs_by_boxes(scene, settings, 2);
   EXPECT_TRUE(std::ranges::is_sorted(candidates));

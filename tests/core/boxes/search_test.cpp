@@ -12,6 +12,7 @@ namespace farcull {
 namespace {
 
 using lab::missed;
+using lab::pairs_by_boxes;
 using lab::Random;
 using lab::random_scene;
 using lab::truth_of;
