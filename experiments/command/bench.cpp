@@ -141,8 +141,7 @@ int BenchCommand::run() {
   const Outputs outputs = checked(outputs_, scene_files(scene_.names));
   confine_to_cores(options.threads);
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   Scene scene = read_scene(scene_);
   require_asked(scene, {});
   if (options.self) make_self(scene);

@@ -174,8 +174,7 @@ int ClashCommand::run() const {
   if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
   const Outputs outputs = checked(outputs_, inputs);
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   const Stopwatch reading;
   Scene scene = read_parts(files);
   for (Object& object : scene.objects) object.self = false;

@@ -256,10 +256,11 @@ void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored) {
   require_asked(scene, ignored, "SCENE", "test objects against themselves with --self");
 }
 
-Progress TerminalProgress::callback() {
+Progress TerminalProgress::callback(const char* first) {
   const char* const terminal = std::getenv("TERM");
   if (!is_terminal(stderr) || terminal == nullptr || std::string_view(terminal) == "dumb")
     return {};
+  if (first != nullptr) show(std::string(first) + " ...");
   return [this](const ProgressStep& step) { show(text_of(step) + " ..."); };
 }
 

@@ -142,10 +142,6 @@ std::vector<Command> add_studies(CLI::App& experiment);
 /// The folder of results unless --out says otherwise; `farcull report` reads it.
 inline constexpr const char* kResultsFolder = "farcull-results";
 
-}  // namespace farcull
-
-namespace farcull {
-
 // ---- options, files, outputs and progress ----
 
 inline constexpr const char* kVersion = "farcull 0.1";
@@ -202,7 +198,8 @@ std::string command_with(const std::string& command, const SceneArguments& scene
 /// One line on standard error that each update overwrites; on a terminal only.
 class TerminalProgress {
  public:
-  Progress callback();
+  /// first: shown at once.
+  Progress callback(const char* first = nullptr);
   void clear();
   TerminalProgress() = default;
   ~TerminalProgress() { clear(); }

@@ -82,8 +82,7 @@ int CompareCommand::run() const {
   check_scene(scene_.names);
   const Outputs outputs = checked(outputs_, scene_files(scene_.names));
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   Scene scene = read_scene(scene_);
   if (arguments.self) make_self(scene);
   require_pairs(nothing_to_test(scene), command_with("farcull compare", scene_) + " --self");

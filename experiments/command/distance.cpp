@@ -244,8 +244,7 @@ std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& 
 
 int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& outputs) const {
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   Scene scene = read_scene(scene_);
   if (self_) make_self(scene);
   require_question(scene, options);
@@ -264,8 +263,7 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
 int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& outputs,
                                 FrameRange range) const {
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {
     terminal.clear();

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -22,26 +21,16 @@ namespace fs = std::filesystem;
 
 // Reads "900x760", rounded up to even numbers: a window has its middle between two pixels.
 void parse_size(const std::string& text, int& width, int& height) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto bad = [&text] {
-    return Error("--size", "'" + text + "' is no size",
-                 "give the width and height of a panel in px, as in 900x760");
-  };
-  const auto first = std::from_chars(at, end, width);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') throw bad();
-  const auto second = std::from_chars(first.ptr + 1, end, height);
-  if (second.ec != std::errc() || second.ptr != end) throw bad();
-  width += width % 2;
-  height += height % 2;
-}
-
-long parse_frame(const std::string& text) {
-  long frame = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), frame);
-  if (code != std::errc() || end != text.data() + text.size() || frame < 0 || frame > 1'000'000'000)
-    throw Error("--frame", "'" + text + "' is no frame", "give its number, 0 or more");
-  return frame;
+  std::string_view rest = text;
+  const std::optional<int> wide = take_number<int>(rest);
+  const bool by = rest.starts_with('x');
+  const std::optional<int> high = parse_number<int>(rest.substr(by ? 1 : 0));
+  if (!wide || !by || !high) {
+    throw Error("--size", "'" + text + "' is no size",
+                "give the width and height of a panel in px, as in 900x760");
+  }
+  width = *wide + *wide % 2;
+  height = *high + *high % 2;
 }
 
 // Reads "far", or "far:128" with a resolution of its own.
@@ -149,7 +138,10 @@ PictureArguments PictureCommand::arguments() const {
   out.scene = scene_;
   out.self = self_;
   out.zoom = zoom_;
-  if (frame_) out.frame = parse_frame(*frame_);
+  if (frame_) {
+    out.frame =
+        number_of("--frame", *frame_, "no frame", 0L, 1'000'000'000L, "give its number, 0 or more");
+  }
   if (frames_) out.frames = parse_frames(*frames_);
   if (size_) parse_size(*size_, out.width, out.height);
   for (const auto& [option, text] : {std::pair("--view", view_), std::pair("--up", up_)}) {

@@ -318,8 +318,7 @@ int RunCommand::plan(const RunOptions& options) const {
 
 int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) const {
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
+  const Progress progress = terminal.callback("reading the scene");
   Scene scene = read_scene(scene_);
   if (options_.has("self")) make_self(scene);
   require_pairs(nothing_to_test(scene), with_self());
@@ -356,7 +355,7 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
 int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                            FrameRange range) const {
   TerminalProgress terminal;
-  const Progress progress = terminal.callback();
+  const Progress progress = terminal.callback("reading the scene");
   FramesQuestion question{.options = options,
                           .range = range,
                           .self = options_.has("self"),
@@ -371,7 +370,6 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
       return out;
     };
   }
-  if (progress) progress("reading the scene");
   FrameSource source(scene_, range, options_.has("self"));
   if (const std::optional<Error> missing = source.missing()) {
     terminal.clear();
