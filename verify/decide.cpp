@@ -148,9 +148,6 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
-// cache, since successive pairs mostly have the same a.
-constexpr std::size_t kAhead = 8;
 // Pairs of a block: enough work to pay for the shared counter, little enough to balance threads.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with

@@ -92,10 +92,6 @@ using Point = PointOf<kBatch>;
 #include "verify/filter_planes.inl"
 #undef FAR_FILTER
 
-// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
-// cache, since successive pairs mostly have the same a.
-constexpr std::size_t kAhead = 8;
-
 /// Coordinates of pairs: row 3 k + axis is of corner k of a, row 9 + 3 k + axis of corner k of b.
 struct alignas(64) Batch {
   double row[18][kBatch];

@@ -9,12 +9,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "core/scene/scene.h"
 #include "verify/rounding.h"
 
 namespace farcull {
+
+/// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
+/// cache, since successive pairs mostly have the same a.
+inline constexpr std::size_t kAhead = 8;
 
 /// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks at their planes
 /// alone. `yes`: the triangles cross. `no`: one triangle is on one side of the other's plane and
