@@ -257,6 +257,28 @@ ProximityTrees trees_of(const Scene& scene, unsigned threads) {
   });
 }
 
+// questions: pairs of objects; left: pairs of triangles.
+void add_near_stage(std::size_t questions, std::uint64_t left, double ms, DistanceRecord& record) {
+  record.trace.push_back({.kind = StageKind::near,
+                          .ran = true,
+                          .reason = Reason::near_boxes,
+                          .n = questions,
+                          .m = record.counts.box_pairs,
+                          .ms = ms,
+                          .in = record.counts.triangle_pairs,
+                          .out = left,
+                          .unit = Unit::pairs});
+}
+
+void add_closest_stage(std::uint64_t left, double ms, DistanceRecord& record) {
+  record.trace.push_back({.kind = StageKind::closest,
+                          .ran = true,
+                          .ms = ms,
+                          .in = left,
+                          .out = record.distances.size(),
+                          .unit = Unit::pairs});
+}
+
 void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
@@ -278,25 +300,12 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   record.counts = trees.counts();
   std::uint64_t left = 0;
   for (const NearPairs& of : near) left += of.pairs.size();
-  record.trace.push_back({.kind = StageKind::near,
-                          .ran = true,
-                          .reason = Reason::near_boxes,
-                          .n = near.size(),
-                          .m = record.counts.box_pairs,
-                          .ms = watch.ms(),
-                          .in = record.counts.triangle_pairs,
-                          .out = left,
-                          .unit = Unit::pairs});
+  add_near_stage(near.size(), left, watch.ms(), record);
   watch = Stopwatch();
   if (progress) progress(StageKind::closest);
   record.distances = nearest_of(scene, near, options);
   if (options.pairs == DistancePairs::nearest) keep_nearest(scene, options.k, record.distances);
-  record.trace.push_back({.kind = StageKind::closest,
-                          .ran = true,
-                          .ms = watch.ms(),
-                          .in = left,
-                          .out = record.distances.size(),
-                          .unit = Unit::pairs});
+  add_closest_stage(left, watch.ms(), record);
 }
 
 void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& record) {
@@ -332,15 +341,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   const ProximityTrees trees(scene, options.threads);
   const std::vector<TrianglePair> near = trees.pairs_within(options.within, room, progress);
   record.counts = trees.counts();
-  record.trace.push_back({.kind = StageKind::near,
-                          .ran = true,
-                          .reason = Reason::near_boxes,
-                          .n = count_of_questions(scene),
-                          .m = record.counts.box_pairs,
-                          .ms = watch.ms(),
-                          .in = record.counts.triangle_pairs,
-                          .out = near.size(),
-                          .unit = Unit::pairs});
+  add_near_stage(count_of_questions(scene), near.size(), watch.ms(), record);
   watch = Stopwatch();
   if (progress) progress(StageKind::exact);
   const unsigned threads =
@@ -381,12 +382,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   });
   std::ranges::sort(record.distances, {},
                     [](const Distance& d) { return std::pair(d.objects, d.triangles); });
-  record.trace.push_back({.kind = StageKind::closest,
-                          .ran = true,
-                          .ms = watch.ms(),
-                          .in = pairs.size(),
-                          .out = pairs.size(),
-                          .unit = Unit::pairs});
+  add_closest_stage(pairs.size(), watch.ms(), record);
 }
 
 void verify(const Scene& scene, const Progress& progress, DistanceRecord& record) {

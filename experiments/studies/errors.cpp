@@ -21,30 +21,30 @@ namespace {
 
 using enum Method;
 
-struct AccuracyScene {
+struct ErrorScene {
   std::string name;
   bool self = false;   // one object against itself, by S-CULLIDE and boxes
+  bool drawn = false;  // drawn at random
   bool again = false;  // another row has the same scene with another seed
 };
 
-// Scenes of three kinds: smooth surfaces, scans, and randomly drawn scenes, these with several
-// seeds. Their triangles are small or few: at 4096 px, large ones take a software device minutes.
-std::vector<AccuracyScene> accuracy_scenes(bool quick) {
-  std::vector<AccuracyScene> out = {{"two-tori"}};
-  if (!quick) {
-    out.push_back({"two-spheres"});
-    out.push_back({"two-bunnies"});
-    out.push_back({"dragon-bunny"});
-  }
-  out.push_back({"mannequin-devil", true});
-  const std::vector<std::string> drawn =
-      quick ? std::vector<std::string>{"needles:60"}
-            : std::vector<std::string>{"needles:60", "random-soup", "slivers:200:1e6", "field"};
+// Smooth surfaces and scans, and randomly drawn scenes, these with several seeds.
+std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
+                                  const std::vector<std::string>& drawn, bool quick) {
+  std::vector<ErrorScene> out;
+  for (const std::string& name : objects) out.push_back({name, name == "mannequin-devil"});
   for (const std::string& base : drawn) {
     for (const std::string& name : drawn_scenes(base, quick ? 2 : 5))
-      out.push_back({name, false, name != base});
+      out.push_back({name, false, true, name != base});
   }
   return out;
+}
+
+// Their triangles are small or few: at 4096 px, large ones take a software device minutes.
+std::vector<ErrorScene> accuracy_scenes(bool quick) {
+  if (quick) return scenes_of({"two-tori", "mannequin-devil"}, {"needles:60"}, quick);
+  return scenes_of({"two-tori", "two-spheres", "two-bunnies", "dragon-bunny", "mannequin-devil"},
+                   {"needles:60", "random-soup", "slivers:200:1e6", "field"}, quick);
 }
 
 // For forms of CULLIDE, and for FAR at other radii than the budget's. These have no guarantee, so
@@ -53,7 +53,7 @@ constexpr int kMostOfForms = 1024;  // px
 
 // CULLIDE as published, and with its changes one by one and together. A scene that is drawn again
 // gets only the forms that miss little.
-std::vector<CullideForm> forms_of(const AccuracyScene& scene) {
+std::vector<CullideForm> forms_of(const ErrorScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
   const CullideForm strict = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
   if (scene.again) return {kPublishedForm, conservative, strict};
@@ -69,7 +69,7 @@ std::vector<CullideForm> forms_of(const AccuracyScene& scene) {
   return out;
 }
 
-void add_forms(const AccuracyScene& scene, std::vector<Point>& out) {
+void add_forms(const ErrorScene& scene, std::vector<Point>& out) {
   const NamedScene named{scene.name};
   const Method method = scene.self ? s_cullide : cullide;
   const std::vector<CullideForm> forms = forms_of(scene);
@@ -88,7 +88,7 @@ void add_forms(const AccuracyScene& scene, std::vector<Point>& out) {
 
 std::vector<Point> accuracy_grid(const GridChoice& choice) {
   std::vector<Point> out;
-  for (const AccuracyScene& scene : accuracy_scenes(choice.quick)) {
+  for (const ErrorScene& scene : accuracy_scenes(choice.quick)) {
     // S-CULLIDE takes a step per triangle.
     const int most = scene.again || (scene.self && choice.quick) ? 1024 : 4096;
     const NamedScene named{scene.name};
@@ -118,27 +118,10 @@ PointResult measure_accuracy(const Point& point, MeasurementContext& lab) {
   return run.resolution <= kMostOfForms ? measure_with_risk(run, lab) : measure_run(run, lab);
 }
 
-struct TimedScene {
-  std::string name;
-  bool self = false;   // as in AccuracyScene
-  bool drawn = false;  // one of several seeds: 2048 px would take most of the time of the study
-};
-
-// Smooth surfaces, scans, and randomly drawn scenes, these with several seeds.
-std::vector<TimedScene> timed_scenes(bool quick) {
-  std::vector<TimedScene> out = {{"two-spheres"}};
-  if (!quick) {
-    for (const char* name : {"two-tori", "two-bunnies", "dragon-bunny"}) out.push_back({name});
-    out.push_back({"mannequin-devil", true});
-  }
-  const std::vector<std::string> drawn =
-      quick ? std::vector<std::string>{"needles:60"}
-            : std::vector<std::string>{"needles:100", "random-soup", "field"};
-  for (const std::string& base : drawn) {
-    for (const std::string& name : drawn_scenes(base, quick ? 2 : 5))
-      out.push_back({.name = name, .drawn = true});
-  }
-  return out;
+std::vector<ErrorScene> timed_scenes(bool quick) {
+  if (quick) return scenes_of({"two-spheres"}, {"needles:60"}, quick);
+  return scenes_of({"two-spheres", "two-tori", "two-bunnies", "dragon-bunny", "mannequin-devil"},
+                   {"needles:100", "random-soup", "field"}, quick);
 }
 
 // Libraries followed by exact decisions, and FCL and ODE unchanged.
@@ -153,7 +136,7 @@ const std::vector<CullideForm> kForms = {
     {.rounds = 1, .clear = ClearRule::all, .conservative = true}};
 
 // All methods at one resolution.
-void add_drawn(std::vector<Point>& out, const TimedScene& scene, int resolution, int repeat) {
+void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution, int repeat) {
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
   if (scene.self) {
@@ -178,8 +161,9 @@ std::vector<Point> timed_grid(const GridChoice& choice) {
       choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
   const int repeat = choice.quick ? kRounds : 3 * kRounds;
   std::vector<Point> out;
-  for (const TimedScene& scene : timed_scenes(choice.quick)) {
+  for (const ErrorScene& scene : timed_scenes(choice.quick)) {
     for (const int resolution : resolutions) {
+      // At 2048 px the scenes with several seeds would take most of the time of the study.
       if (!scene.drawn || resolution <= 1024) add_drawn(out, scene, resolution, repeat);
     }
     const NamedScene named{scene.name};
@@ -226,8 +210,6 @@ Study error_time_study() {
 // ---- "stability" and "cloth" ----
 
 namespace {
-
-using enum Method;
 
 constexpr const char* kLibrary = "fcl-float";
 constexpr long kFrames = 500;  // of the cloth

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -334,18 +335,15 @@ std::vector<Point> radius_grid(const GridChoice& choice) {
                      .seed = choice.seed};
     // The generator's own window has 16 million pixels.
     if (choice.quick && generator == "pixel corners at the rim") point.side = 1020;
-    for (const DepthMode mode : {DepthMode::fragment, DepthMode::fixed}) {
+    for (const auto& [mode, worst] :
+         {std::pair(DepthMode::fragment, false), std::pair(DepthMode::fixed, false),
+          std::pair(DepthMode::fragment, true)}) {
       point.depth_mode = mode;
+      point.worst = worst;
       for (const RadiusRule& rule : rules) {
         point.radius = rule;
         out.push_back(point);
       }
-    }
-    point.depth_mode = DepthMode::fragment;
-    point.worst = true;
-    for (const RadiusRule& rule : rules) {
-      point.radius = rule;
-      out.push_back(point);
     }
   }
   struct Small {

@@ -54,6 +54,13 @@ class SnappingCanvas final : public Canvas {
   Drawables snapped_;
 };
 
+template <class Patch, class Use>
+void each_point(Patch& patch, const Use& use) {
+  for (auto& corners : patch) {
+    for (auto& p : corners) use(p);
+  }
+}
+
 /// Cuts patches from an object. around: its triangles by vertex.
 class Quarry {
  public:
@@ -112,9 +119,7 @@ class Quarry {
       sum += longest(c) / static_cast<double>(patch.size());
     }
     const double scale = sum > 0 ? side / sum : 0;
-    for (Corners& c : patch) {
-      for (Vec3& p : c) p = (p - middle) * scale;
-    }
+    each_point(patch, [&](Vec3& p) { p = (p - middle) * scale; });
   }
 
   // Rotates by a unit quaternion of four draws: without sines, the result is the same everywhere.
@@ -126,9 +131,7 @@ class Quarry {
     } while (!(q.squaredNorm() <= 1 && q.squaredNorm() > 0.01));
     q.normalize();
     const Eigen::Matrix3d by = q.toRotationMatrix();
-    for (Corners& c : patch) {
-      for (Vec3& p : c) p = by * p;
-    }
+    each_point(patch, [&](Vec3& p) { p = by * p; });
   }
 
   const Scene& scene_;
@@ -146,9 +149,7 @@ Vec3 inner(const Corners& c, Random& random) {
 }
 
 void shift(std::vector<Corners>& patch, const Vec3& by) {
-  for (Corners& c : patch) {
-    for (Vec3& p : c) p += by;
-  }
+  each_point(patch, [&](Vec3& p) { p += by; });
 }
 
 // Moves the second patch so that a random point of it is at a random point of the first patch.
@@ -163,11 +164,9 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
   Vec3 tip = Vec3::Zero();
-  for (const Corners& c : other) {
-    for (const Vec3& p : c) {
-      if (p.squaredNorm() > tip.squaredNorm()) tip = p;
-    }
-  }
+  each_point(other, [&](const Vec3& p) {
+    if (p.squaredNorm() > tip.squaredNorm()) tip = p;
+  });
   if (!(normal.norm() > 0) || !(tip.norm() > 0)) {
     cross(one, other, random);
     return;
@@ -179,9 +178,7 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   const auto reflected = [&](const Vec3& p) -> Vec3 {
     return square > 0 ? Vec3(p - 2 * across.dot(p) / square * across) : p;
   };
-  for (Corners& c : other) {
-    for (Vec3& p : c) p = reflected(p);
-  }
+  each_point(other, [&](Vec3& p) { p = reflected(p); });
   const double depth = std::min(1.0, Quarry::longest(face)) * random.over_octaves(20);
   shift(other, inner(face, random) - reflected(tip) - depth * normal);
 }
@@ -191,9 +188,7 @@ double cell_of(double side) { return std::ceil(10 * side + 6); }
 
 double reach_of(const std::vector<Corners>& patch) {
   double out = 0;
-  for (const Corners& c : patch) {
-    for (const Vec3& p : c) out = std::max(out, p.lpNorm<Eigen::Infinity>());
-  }
+  each_point(patch, [&](const Vec3& p) { out = std::max(out, p.lpNorm<Eigen::Infinity>()); });
   return out;
 }
 

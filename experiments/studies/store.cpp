@@ -121,8 +121,6 @@ bool StoredStudy::complete() const {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kDeviceFolder = "on-";
 
 // The tables of a file of version kStoreVersion; the columns of Provenance and PointKey are in the
@@ -151,6 +149,11 @@ CREATE VIEW results AS
   FROM points JOIN rows USING (study, position) JOIN runs USING (run);
 )";
 
+Error damaged(const std::string& path, const std::string& what) {
+  return Error(path, "is damaged" + what,
+               "restore it from a copy, or start anew in another folder");
+}
+
 // Turns an error of SQLite into an Error with a remedy.
 Error refusal(const std::string& path, const SQLite::Exception& error) {
   const std::string text = error.getErrorStr();
@@ -159,8 +162,7 @@ Error refusal(const std::string& path, const SQLite::Exception& error) {
       return Error(path, "is no store of farcull (" + text + ")",
                    "name another folder, or move the file away");
     case SQLITE_CORRUPT:
-      return Error(path, "is damaged (" + text + ")",
-                   "restore it from a copy, or start anew in another folder");
+      return damaged(path, " (" + text + ")");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return Error(path, "another program is writing it",
@@ -198,10 +200,7 @@ std::int64_t stored(std::uint64_t number, const char* what) {
 
 Json parsed(const std::string& path, const std::string& text) {
   Json out = Json::parse(text, nullptr, false);
-  if (!out.is_object()) {
-    throw Error(path, "is damaged: counts or times of a row are no JSON object",
-                "restore it from a copy, or start anew in another folder");
-  }
+  if (!out.is_object()) throw damaged(path, ": counts or times of a row are no JSON object");
   return out;
 }
 
@@ -322,10 +321,7 @@ Store::Store(const std::string& path, Access access) {
     std::string sound = database.execAndGet("PRAGMA integrity_check(1)").getString();
     if (SQLite::Statement(database, "PRAGMA foreign_key_check").executeStep())
       sound = "rows without their point or run";
-    if (sound != "ok") {
-      throw Error(path, "is damaged (" + sound + ")",
-                  "restore it from a copy, or start anew in another folder");
-    }
+    if (sound != "ok") throw damaged(path, " (" + sound + ")");
   });
 }
 
@@ -380,10 +376,8 @@ std::optional<Declaration> Store::declaration(const std::string& study) const {
                              "SELECT * FROM points WHERE study = ? ORDER BY position");
     points.bind(1, study);
     while (points.executeStep()) {
-      if (points.getColumn(1).getInt64() != static_cast<std::int64_t>(out.points.size())) {
-        throw Error(state_->path, "is damaged: points of " + study + " are missing",
-                    "restore it from a copy, or start anew in another folder");
-      }
+      if (points.getColumn(1).getInt64() != static_cast<std::int64_t>(out.points.size()))
+        throw damaged(state_->path, ": points of " + study + " are missing");
       out.points.push_back(read_fields<PointKey>(points, 2));
     }
     return out;
@@ -486,10 +480,8 @@ StoredStudy Store::study(const std::string& name) const {
     while (select.executeStep()) {
       const auto text = [&](int column) { return select.getColumn(column).getString(); };
       const auto position = static_cast<std::size_t>(select.getColumn(0).getInt64());
-      if (position >= out.declaration.points.size()) {
-        throw Error(state_->path, "is damaged: a row of " + name + " has no point",
-                    "restore it from a copy, or start anew in another folder");
-      }
+      if (position >= out.declaration.points.size())
+        throw damaged(state_->path, ": a row of " + name + " has no point");
       Measurement measurement{.device = text(3), .left_out = text(6)};
       measurement.counts = parsed(state_->path, text(4));
       measurement.times = parsed(state_->path, text(5));

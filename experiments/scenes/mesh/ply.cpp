@@ -27,6 +27,9 @@ std::size_t size_of(Type type) {
 }
 
 bool is_integer(Type type) { return type != Type::kFloat && type != Type::kDouble; }
+bool is_signed(Type type) {
+  return type == Type::kInt8 || type == Type::kInt16 || type == Type::kInt32;
+}
 
 struct Property {
   std::string name;
@@ -193,25 +196,11 @@ class BinaryBody {
       word |= byte << (8 * (big_ ? size - 1 - i : i));
     }
     bytes_.remove_prefix(size);
-    switch (type) {
-      case Type::kInt8:
-        return static_cast<std::int8_t>(word);
-      case Type::kUint8:
-        return static_cast<std::uint8_t>(word);
-      case Type::kInt16:
-        return static_cast<std::int16_t>(word);
-      case Type::kUint16:
-        return static_cast<std::uint16_t>(word);
-      case Type::kInt32:
-        return static_cast<std::int32_t>(word);
-      case Type::kUint32:
-        return static_cast<std::uint32_t>(word);
-      case Type::kFloat:
-        return std::bit_cast<float>(static_cast<std::uint32_t>(word));
-      case Type::kDouble:
-        return std::bit_cast<double>(word);
-    }
-    return 0;
+    if (type == Type::kFloat) return std::bit_cast<float>(static_cast<std::uint32_t>(word));
+    if (type == Type::kDouble) return std::bit_cast<double>(word);
+    if (!is_signed(type)) return static_cast<double>(word);
+    const std::size_t unused = 64 - 8 * size;
+    return static_cast<double>(static_cast<std::int64_t>(word << unused) >> unused);
   }
 
   std::string_view bytes_;

@@ -87,10 +87,6 @@ std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part
   return parts;
 }
 
-}  // namespace
-
-namespace {
-
 bool turns(const Placement::Rotation& rotation) {
   if (!rotation.quaternion) return rotation.angle != 0;
   const auto& [x, y, z, w] = *rotation.quaternion;

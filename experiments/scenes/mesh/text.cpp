@@ -69,10 +69,6 @@ bool underflows(std::string_view digits) {
   return leading + exponent < 0;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr const char* kNameAFile = "name a file that exists and that you may read";
 
 Error too_large(const std::string& path, std::uint64_t max_bytes) {
