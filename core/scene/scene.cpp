@@ -154,7 +154,8 @@ bool has_self(const Scene& scene) {
                      [](const Object& object) { return object.self; });
 }
 
-std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs) {
+std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs, std::span<const ObjectPair> more) {
+  pairs.insert(pairs.end(), more.begin(), more.end());
   for (ObjectPair& pair : pairs) {
     if (pair.a > pair.b) std::swap(pair.a, pair.b);
   }

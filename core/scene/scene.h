@@ -140,8 +140,9 @@ std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> t
 /// Whether an object of the scene is tested against itself.
 bool has_self(const Scene& scene);
 
-/// Pairs of two different objects with a < b in each, sorted, each once.
-std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
+/// Pairs of two different objects, and more of them, with a < b in each, sorted, each once.
+std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs,
+                                 std::span<const ObjectPair> more = {});
 
 /// Removes the pairs of triangles whose objects are an ignored pair (nobody asks about their
 /// triangles or their distance); the others stay in their order. Returns how many were removed.

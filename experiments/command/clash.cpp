@@ -178,9 +178,8 @@ int ClashCommand::run() const {
   const Stopwatch reading;
   Scene scene = read_parts(files);
   for (Object& object : scene.objects) object.self = false;
-  options.ignored = ignored_objects(scene, ignored_names(ignore_, ignore_file_));
-  options.ignored.insert(options.ignored.end(), scene.ignored.begin(), scene.ignored.end());
-  options.ignored = in_order(std::move(options.ignored));
+  options.ignored =
+      in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_)), scene.ignored);
   require_asked(scene, options.ignored, "SCENE", "");
   scene.ignored.clear();
   if (outputs.page) require_clash_page(scene);

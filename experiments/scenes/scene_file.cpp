@@ -480,10 +480,8 @@ std::vector<std::string> SceneArguments::words() const {
 }
 
 void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking) {
-  for (const ObjectPair& pair :
-       ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking))
-    scene.ignored.push_back(pair);
-  scene.ignored = in_order(std::move(scene.ignored));
+  scene.ignored =
+      in_order(ignored_objects(scene, ignored_names(arguments.ignore, {}), lacking), scene.ignored);
 }
 
 void require_meshes(const SceneArguments& arguments) {

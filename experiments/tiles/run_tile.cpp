@@ -328,11 +328,8 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
               .part = {},
               .record = {}};
   out.ignored = out.census.ignored;
-  if (question.ignored) {
-    const std::vector<ObjectPair> asked = question.ignored(names_of(out.census));
-    out.ignored.insert(out.ignored.end(), asked.begin(), asked.end());
-    out.ignored = in_order(std::move(out.ignored));
-  }
+  if (question.ignored)
+    out.ignored = in_order(question.ignored(names_of(out.census)), out.census.ignored);
   out.cuts = choose_cuts(out.census, question.number.n);
   out.tile = tile_of(out.cuts.axis, out.cuts.at, question.number.k - 1);
   if (progress) progress("reading the triangles of the tile");
