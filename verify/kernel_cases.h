@@ -137,12 +137,6 @@ inline Case random_case_at(Draws& random, int kind, float cx, float cy) {
   return out;
 }
 
-inline Case random_case(Draws& random, int kind) {
-  const float cx = static_cast<float>(random.below(1200) - 600 + 0.5);
-  const float cy = static_cast<float>(random.below(1200) - 600 + 0.5);
-  return random_case_at(random, kind, cx, cy);
-}
-
 inline float number(double x) { return static_cast<float>(x); }
 
 /// A solid whose floats are drawn directly, not computed from a triangle. It may have corners with
@@ -185,12 +179,6 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
     s[2][3] = number(4 * far);
   }
   return s;
-}
-
-inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
-  cx = number(random.below(1000) - 500 + 0.5);
-  cy = number(random.below(1000) - 500 + 0.5);
-  s = adversarial_at(random, cx, cy);
 }
 
 }  // namespace farcull::minkowski_cases

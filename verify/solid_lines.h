@@ -108,12 +108,6 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   return s;
 }
 
-inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
-  cx = static_cast<float>(random.below(1200) - 600 + 0.5);
-  cy = static_cast<float>(random.below(1200) - 600 + 0.5);
-  s = adversarial_at(random, cx, cy);
-}
-
 }  // namespace farcull::box_line
 
 namespace farcull::minkowski_line {

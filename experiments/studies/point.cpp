@@ -177,21 +177,6 @@ std::vector<PointKey> keys_of(const std::vector<Point>& points) {
   return out;
 }
 
-std::vector<std::string> axis_values(const PointKey& key) {
-  std::vector<std::string> out;
-  key.fields([&](std::string_view name, const auto& value) {
-    if constexpr (std::is_convertible_v<decltype(value), std::string>) {
-      out.push_back(value);
-    } else if constexpr (requires { value.has_value(); }) {
-      out.push_back(column_text(value));
-    } else {
-      const bool none = std::cmp_equal(value, name == "frame" ? -1 : 0);
-      out.push_back(none ? "" : std::to_string(value));
-    }
-  });
-  return out;
-}
-
 std::string describe(const PointKey& key) {
   std::string out = key.scene;
   const auto add = [&out](const std::string& text) {

@@ -189,8 +189,6 @@ inline bool is_timed(const Point& point) { return runs_of(point) > 1; }
 PointKey key_of(const Point& point);
 std::vector<PointKey> keys_of(const std::vector<Point>& points);
 
-/// The values of a key as text, in the order of its fields; empty if a column does not apply.
-std::vector<std::string> axis_values(const PointKey& key);
 /// In words, for progress and errors: "two-bunnies, cullide, 512 px".
 std::string describe(const PointKey& key);
 std::string describe(const Point& point);

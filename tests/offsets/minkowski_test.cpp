@@ -7,6 +7,7 @@
 #include "offsets/kernel.h"
 #include "offsets/rounding.h"
 #include "tests/lab/rational.h"
+#include "tests/lab/solids.h"
 #include "tests/lab/test.h"
 #include "verify/kernel_cases.h"
 #include "verify/solid_lines.h"

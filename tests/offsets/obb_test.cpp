@@ -6,6 +6,7 @@
 
 #include "core/base/glsl_shim.h"
 #include "tests/lab/rational.h"
+#include "tests/lab/solids.h"
 #include "tests/lab/test.h"
 #include "verify/solid_lines.h"
 

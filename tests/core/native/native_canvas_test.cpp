@@ -6,6 +6,7 @@
 #include "offsets/offsets.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/scenes.h"
+#include "tests/lab/solids.h"
 #include "verify/kernel_cases.h"
 #include "verify/solid_lines.h"
 

@@ -15,6 +15,7 @@
 
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
+#include "tests/lab/points.h"
 
 namespace {
 

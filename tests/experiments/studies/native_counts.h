@@ -25,6 +25,7 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
+#include "tests/lab/points.h"
 
 namespace farcull::native_counts {
 

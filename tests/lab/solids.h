@@ -1,0 +1,31 @@
+// Draws of hard triangles and solids with the centre of a pixel near them.
+#pragma once
+
+#include "verify/kernel_cases.h"
+#include "verify/solid_lines.h"
+
+namespace farcull::box_line {
+
+inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
+  cx = static_cast<float>(random.below(1200) - 600 + 0.5);
+  cy = static_cast<float>(random.below(1200) - 600 + 0.5);
+  s = adversarial_at(random, cx, cy);
+}
+
+}  // namespace farcull::box_line
+
+namespace farcull::minkowski_cases {
+
+inline Case random_case(Draws& random, int kind) {
+  const float cx = static_cast<float>(random.below(1200) - 600 + 0.5);
+  const float cy = static_cast<float>(random.below(1200) - 600 + 0.5);
+  return random_case_at(random, kind, cx, cy);
+}
+
+inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
+  cx = number(random.below(1000) - 500 + 0.5);
+  cy = number(random.below(1000) - 500 + 0.5);
+  s = adversarial_at(random, cx, cy);
+}
+
+}  // namespace farcull::minkowski_cases
