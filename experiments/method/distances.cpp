@@ -24,16 +24,8 @@ namespace {
 // A *part* of an object is a connected component of its triangles, joined where they share a vertex
 // position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
 // path between two of them never crosses the mesh, and the winding number and the parity change
-// only at a crossing. So one
-// vertex of each part decides. Whatever lies inside a closed mesh also lies in the mesh's box, so
-// boxes settle most pairs.
-Box box_of(const Scene& scene, const Object& object) {
-  Box box = Box::empty();
-  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    for (const Vec3& p : scene.corners(object.first_triangle + k)) box.add(p);
-  }
-  return box;
-}
+// only at a crossing. So one vertex of each part decides. Whatever lies inside a closed mesh also
+// lies in the mesh's box, so boxes settle most pairs.
 
 bool lies_within(const Box& inner, const Box& outer) {
   return (inner.lo.array() >= outer.lo.array()).all() &&
@@ -81,9 +73,8 @@ struct Insides::OfObject {
 };
 
 Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scene.objects.size()]) {
-  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    objects_[o].box = box_of(scene, scene.objects[o]);
-  }
+  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+  for (std::size_t o = 0; o < boxes.size(); ++o) objects_[o].box = boxes[o];
 }
 Insides::~Insides() = default;
 

@@ -9,6 +9,7 @@
 #include "embedded/clash_js.h"
 #include "experiments/picture/page_parts.h"
 #include "experiments/record/output.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 namespace {
@@ -44,7 +45,7 @@ void require_clash_page(const Scene& scene) {
 
 std::string clash_page(const Scene& scene, const ClashRecord& record, const std::string& unit) {
   require_clash_page(scene);
-  const Box box = box_of(scene);
+  const Box box = bounds(scene);
   PageBlocks blocks;
   json frame = page_vertices(scene, box, blocks);
   add_page_triangles(scene, blocks, frame);

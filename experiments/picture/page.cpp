@@ -23,6 +23,7 @@
 #include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
+#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
 #include "verify/contact.h"
@@ -115,12 +116,6 @@ std::string PageBlocks::add(const std::string& text) {
   return name;
 }
 
-Box box_of(const Scene& scene) {
-  Box out = Box::empty();
-  for (const Box& box : triangle_boxes(scene)) out.add(box);
-  return out;
-}
-
 void require_page_size(const Scene& scene) {
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
@@ -188,7 +183,7 @@ class PageMaker {
       : arguments_(arguments), lab_(lab) {
     const Scene& scene = open_scene(arguments_.picture, lab_);
     require_page_size(scene);
-    box_ = box_of(scene);
+    box_ = bounds(scene);
     const std::vector<TrianglePair>& pairs = lab_.truth().pairs;
     if (pairs.size() > kMostPagePairs)
       throw too_large("colliding pairs", pairs.size(), kMostPagePairs);

@@ -21,8 +21,6 @@ class PageBlocks {
   int count_ = 0;
 };
 
-Box box_of(const Scene& scene);
-
 /// Throws Error naming --html if a page cannot hold the scene.
 void require_page_size(const Scene& scene);
 

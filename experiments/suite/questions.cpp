@@ -44,15 +44,6 @@ Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bo
   return out;
 }
 
-Box box_of(const Scene& scene, std::size_t o) {
-  Box out = Box::empty();
-  const Object& object = scene.objects[o];
-  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    for (const Vec3& p : scene.corners(object.first_triangle + t)) out.add(p);
-  }
-  return out;
-}
-
 Vec3 point_in(RandomDraws& draws, const Box& box) {
   Vec3 out;
   for (int k = 0; k < 3; ++k) out[k] = draws.between(box.lo[k], box.hi[k]);
@@ -148,7 +139,7 @@ SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed) {
     if (!is_closed(alone, 0)) continue;
     closed.push_back(o);
     RandomDraws draws(seed_of_item(seed, mesh.name, o));
-    const Box box = box_of(alone, 0);
+    const Box box = bounds(alone);
     std::vector<Vec3> points;
     for (int i = 0; i < kPoints; ++i) points.push_back(hard_point(draws, alone, box, i % 4));
     const std::vector<bool> labels = decide_inside(alone, points, mesh.name);
@@ -221,11 +212,11 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
 }
 
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where) {
-  const Box common = intersection(box_of(scene, 0), box_of(scene, 1));
+  std::array<Scene, 2> alone = {objects_of(scene, {0}, false), objects_of(scene, {1}, false)};
+  const Box common = intersection(bounds(alone[0]), bounds(alone[1]));
   if ((common.lo.array() >= common.hi.array()).any()) return false;
   constexpr int kTries = 256;
   RandomDraws draws(seed_of_item(0, "clash", 0));
-  std::array<Scene, 2> alone = {objects_of(scene, {0}, false), objects_of(scene, {1}, false)};
   const std::array<Surface, 2> surfaces = {surface_of(alone[0], 0), surface_of(alone[1], 0)};
   for (int i = 0; i < kTries; ++i) {
     const Vec3 p = point_in(draws, common);

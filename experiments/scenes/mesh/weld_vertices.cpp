@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/near_points.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 
@@ -26,10 +27,7 @@ WeldTolerance parse_weld(const std::string& text) {
 }
 
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance) {
-  Box box = Box::empty();
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.add(mesh.vertices[v]);
-  }
+  const Box box = bounds(mesh);
   const double size = std::min((box.hi - box.lo).norm(), std::numeric_limits<double>::max());
   NearPoints near(tolerance.value * (tolerance.relative ? size : 1));
   constexpr std::uint32_t kNone = 0xffffffff;
