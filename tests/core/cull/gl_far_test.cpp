@@ -75,16 +75,6 @@ TEST(GlFar, MissesNothingOnBuiltInScenes) {
   }
 }
 
-TEST(GlFar, CullideMissesPairsThatFarKeeps) {
-  const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions options;
-  options.method = Method::cullide;
-  const Record cullide = run(scene, 64, options);
-  EXPECT_GT(cullide.verification->false_negatives, 0u);
-  EXPECT_FALSE(broken(cullide, false)) << "cullide promises nothing";
-  EXPECT_TRUE(broken(cullide, true));
-}
-
 TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
   const int side = 256;
   const Scene scene = corner_scene(side);
