@@ -19,6 +19,15 @@ inline Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
   return {t[order[0]], t[order[1]], t[order[2]]};
 }
 
+/// The corners of a pair that fails, all bits of them.
+inline std::string text(const Triangle& a, const Triangle& b) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const Triangle& t : {a, b})
+    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
+  return out.str();
+}
+
 template <typename Integer>
 using Vector = std::array<Integer, 3>;
 

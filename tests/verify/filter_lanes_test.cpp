@@ -2,9 +2,8 @@
 // decide() answers as the predicates on two triangles do.
 #include "verify/filter.h"
 
-#include "core/native/canvas.h"
 #include "tests/lab/hard_pairs.h"
-#include "tests/lab/test.h"
+#include "tests/lab/lanes.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
 
@@ -15,12 +14,6 @@ using hard_pairs::Sharing;
 using reference::Triangle;
 
 constexpr std::array kSharings = {Sharing::none, Sharing::vertex, Sharing::edge};
-
-/// Uses an instruction set until the end of its scope.
-struct UseLanes {
-  explicit UseLanes(const std::string& name) { use_lane_target(name); }
-  ~UseLanes() { use_lane_target(""); }
-};
 
 /// Pairs, each of two triangles of its own, and a scene of them.
 struct PairsOfScene {

@@ -17,6 +17,7 @@
 namespace farcull {
 namespace {
 
+using lab::canvases;
 using lab::corner_scene;
 using lab::random_scene;
 using lab::undrawable_scene;
@@ -158,12 +159,6 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   EXPECT_TRUE(has_text(no_device_reason(record.trace), "nothing left to draw"));
   EXPECT_EQ(record.found.triangle_count, 0u);
   EXPECT_EQ(record.verification->false_negatives, 0u);
-}
-
-lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
-  return [options](const Fattener& fattener) {
-    return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);
-  };
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {

@@ -3,33 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/lab/test.h"
+#include "tests/lab/pairs.h"
+#include "tests/lab/runs.h"
 #include "verify/accounting.h"
 
 namespace farcull {
 namespace {
 
-RunOptions on_cpu(Method method, double clearance = 0) {
-  RunOptions options;
-  options.method = method;
-  options.device = "cpu";
-  options.clearance = clearance;
-  return options;
-}
+using lab::on_cpu;
+using lab::run;
 
-Record run(const Scene& scene, const RunOptions& options) {
-  Session session(options.device);
-  return run(scene, options, session);
-}
-
-Scene self_scene(const std::string& name) {
-  Scene scene = make_builtin_scene(name);
-  for (Object& object : scene.objects) object.self = true;
-  return scene;
-}
+Scene self_scene(const std::string& name) { return lab::with_self(make_builtin_scene(name)); }
 
 /// One object: 0 and 1 share an edge and lie on one side of it in one plane, so they are neighbours
 /// that collide; 2 crosses both.

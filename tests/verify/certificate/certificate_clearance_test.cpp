@@ -11,16 +11,8 @@
 namespace farcull {
 namespace {
 
+using reference::text;
 using reference::Triangle;
-
-std::string text(const Triangle& a, const Triangle& b, double clearance) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const Triangle& t : {a, b})
-    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  out << clearance;
-  return out.str();
-}
 
 double below(double x) { return std::nextafter(x, 0); }
 double above(double x) { return std::nextafter(x, HUGE_VAL); }
@@ -44,8 +36,8 @@ TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
         const bool expected = within(a, b, d);
         ++(expected ? inside : apart);
         ASSERT_EQ(pair.separating_direction().has_value(), !expected)
-            << generator.name << ": " << text(a, b, d);
-        ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b, d);
+            << generator.name << ": " << text(a, b) << d;
+        ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b) << d;
         ASSERT_EQ(integer_within(a, b, d), expected);
       }
     }

@@ -10,15 +10,8 @@
 namespace farcull {
 namespace {
 
+using reference::text;
 using reference::Triangle;
-
-std::string text(const Triangle& a, const Triangle& b) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const Triangle& t : {a, b})
-    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  return out.str();
-}
 
 /// True where the direction of docs/certificate.md separates, written from that page alone.
 bool page_separates(const Triangle& s, const Triangle& t, int direction) {
