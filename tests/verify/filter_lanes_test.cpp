@@ -125,21 +125,16 @@ TEST(FilterLanes, KnowNothingOfTrianglesThatShareACorner) {
 
 // ---- twins that must fail ----
 
-struct NoSide : FilterBounds {
-  static constexpr double side = 0;
-};
-struct NoAbsolute : FilterBounds {
-  static constexpr double absolute = 0;
-};
-
 // The pairs are close enough to the bounds that another one shows.
 TEST(FilterLanesTwin, WithASmallerBoundTheAnswersDiffer) {
   const PairsOfScene close = made(hard_pairs::nearly_coplanar, Sharing::none, 8000);
   const PairsOfScene tiny = made(hard_pairs::extreme, Sharing::none, 8000);
   for (const std::string& target : lane_targets()) {
     const UseLanes use(target);
-    EXPECT_GT(differences(on_lanes(close, 0), on_scalars<NoSide>(close, 0)), 0) << target;
-    EXPECT_GT(differences(on_lanes(tiny, 0), on_scalars<NoAbsolute>(tiny, 0)), 0) << target;
+    EXPECT_GT(differences(on_lanes(close, 0), on_scalars<hard_pairs::NoSide>(close, 0)), 0)
+        << target;
+    EXPECT_GT(differences(on_lanes(tiny, 0), on_scalars<hard_pairs::NoAbsolute>(tiny, 0)), 0)
+        << target;
   }
 }
 
@@ -156,7 +151,7 @@ TEST(FilterLanesTwin, WithTheLanesExchangedTheAnswersDiffer) {
 
 TEST(FilterLanesTwin, WithoutTheBoundOfSidesSharedCornersAreDecided) {
   const PairsOfScene of = made(hard_pairs::nearly_coplanar, Sharing::vertex, 8000);
-  const std::vector<Triage> answers = on_scalars<NoSide>(of, 0);
+  const std::vector<Triage> answers = on_scalars<hard_pairs::NoSide>(of, 0);
   EXPECT_LT(std::ranges::count(answers, Triage::unknown), answers.size());
 }
 
