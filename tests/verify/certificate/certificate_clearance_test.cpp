@@ -141,16 +141,10 @@ TEST(IntegerClearance, TheWholeRangeOfDoubles) {
 // ---- certificates ----
 
 /// Three objects on a lattice, each against itself as well: neighbours that meet and others.
-Scene on_lattice(std::uint32_t seed, std::size_t triangles_each, std::uint32_t extent) {
+Scene on_lattice(std::uint32_t seed, std::size_t triangles_each, int extent) {
   std::mt19937 random(seed);
   std::vector<std::vector<Triangle>> objects(3);
-  for (auto& triangles : objects) {
-    triangles.resize(triangles_each);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
+  for (auto& triangles : objects) triangles = reference::on_grid(random, triangles_each, extent);
   Scene out = reference::welded(reference::scene_of(objects), true);
   for (Object& object : out.objects) object.self = true;
   return out;

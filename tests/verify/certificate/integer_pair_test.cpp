@@ -180,11 +180,7 @@ TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
     const int extent = 2 + static_cast<int>(random() % 30);
     for (auto& triangles : objects) {
       if (random() % 4 == 0) continue;  // objects without triangles, also at both ends
-      triangles.resize(random() % 40);
-      for (Triangle& t : triangles) {
-        const Vec3 corner(random() % extent, random() % extent, random() % extent);
-        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-      }
+      triangles = reference::on_grid(random, random() % 40, extent);
     }
     Scene scene = reference::scene_of(objects);
     for (Object& object : scene.objects) object.self = random() % 3 == 0;
