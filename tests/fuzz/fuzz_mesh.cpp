@@ -1,6 +1,5 @@
 // The mesh readers.
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <map>
@@ -11,6 +10,7 @@
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 #include "tests/fuzz/target.h"
+#include "tests/lab/gzip.h"
 
 namespace farcull {
 namespace {
@@ -102,22 +102,6 @@ void check_rewritten(const Mesh& mesh) {
 constexpr AllocationLimits kGunzipLimits = {
     .once_per_byte = 2 * 1032, .all_per_byte = 3 * 1032, .constant = 16 << 10};
 
-std::string gzipped(std::string_view bytes) {
-  z_stream stream = {};
-  require(deflateInit2(&stream, 1, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK,
-          "zlib does not start");
-  std::string out(deflateBound(&stream, bytes.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int code = deflate(&stream, Z_FINISH);
-  out.resize(out.size() - stream.avail_out);
-  deflateEnd(&stream);
-  require(code == Z_STREAM_END, "zlib does not end");
-  return out;
-}
-
 /// The mesh in words, or the Error.
 std::string told(std::string_view bytes, MeshFormat format) {
   try {
@@ -141,7 +125,7 @@ Answer fuzz_mesh(const std::uint8_t* data, std::size_t size) {
     if (!text) return Answer::refused;
     paid += text->size();
   } else if ((data[0] & 4) != 0) {
-    require(told(gzipped(bytes), format) == told(bytes, format),
+    require(told(lab::gzipped(bytes, 1), format) == told(bytes, format),
             "another answer where the file is compressed");
   }
   const auto mesh = answer_of(kLimits, paid, [&] { return parse_mesh(bytes, format, "fuzz"); });

@@ -38,9 +38,7 @@ struct Case {
   explicit Case(Scene from, double clearance = 0)
       : scene(std::move(from)), pairs(box_pairs(scene, clearance)) {
     const Collisions found = decide(scene, pairs, {.clearance = clearance});
-    meeting = found.pairs;
-    meeting.insert(meeting.end(), found.neighbour_pairs.begin(), found.neighbour_pairs.end());
-    std::ranges::sort(meeting);
+    meeting = found.all();
     neighbours = found.neighbours - found.neighbour_pairs.size();
     for (std::size_t i = 0; i < pairs.size(); ++i)
       if (i % 3 == 0 || meets(i)) kept.push_back(pairs[i]);

@@ -149,14 +149,10 @@ inline Scene random_scene(rational::Draws& random, int objects, int most) {
   return grid.scene;
 }
 
-/// The second half of the objects moved away by so many diagonals of the scene.
-inline Scene moved_apart(Scene scene, double diagonals) {
-  Box box = Box::empty();
-  for (const Vec3& p : scene.vertices) box.add(p);
-  const Vec3 by = Vec3(1, 0.7, 0.3).normalized() * ((box.hi - box.lo).norm() * diagonals);
+/// Moves the vertices of these objects of the scene, each once.
+inline void move_objects(Scene& scene, std::span<const Object> objects, const Vec3& by) {
   std::vector<bool> moved(scene.vertices.size());
-  for (std::size_t o = scene.objects.size() / 2; o < scene.objects.size(); ++o) {
-    const Object& object = scene.objects[o];
+  for (const Object& object : objects) {
     for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
       for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
         if (!moved[v]) scene.vertices[v] += by;
@@ -164,6 +160,14 @@ inline Scene moved_apart(Scene scene, double diagonals) {
       }
     }
   }
+}
+
+/// The second half of the objects moved away by so many diagonals of the scene.
+inline Scene moved_apart(Scene scene, double diagonals) {
+  Box box = Box::empty();
+  for (const Vec3& p : scene.vertices) box.add(p);
+  const Vec3 by = Vec3(1, 0.7, 0.3).normalized() * ((box.hi - box.lo).norm() * diagonals);
+  move_objects(scene, std::span(scene.objects).subspan(scene.objects.size() / 2), by);
   return scene;
 }
 

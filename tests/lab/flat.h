@@ -34,24 +34,4 @@ std::array<std::string, 2> refusal(const Call& call) {
   return {"nothing was thrown", "nothing was thrown"};
 }
 
-namespace lab {
-
-/// The same with what collides in it.
-struct FlatScene : Flat {
-  std::vector<Pair> pairs, neighbour_pairs;  // the truth, by the method `exact`
-
-  /// self: every object is tested against itself as well.
-  FlatScene(Scene scene, bool self) : Flat(scene) {
-    for (Object& object : scene.objects) object.self = self;
-    const ExactResult exact = all_colliding_pairs(scene, {});
-    for (const TrianglePair& p : exact.pairs) pairs.push_back({p.a, p.b});
-    for (const TrianglePair& p : exact.neighbour_pairs) neighbour_pairs.push_back({p.a, p.b});
-  }
-  bool found_by(Collider& collider) const {
-    const Result found = collider.find(input());
-    return found.pairs == pairs && found.neighbour_pairs == neighbour_pairs;
-  }
-};
-
-}  // namespace lab
 }  // namespace farcull

@@ -15,6 +15,12 @@ inline const GlContext& context() {
   return shared;
 }
 
+inline MakeCanvas canvases(const GlCanvasOptions& options = {}) {
+  return [options](const Fattener& fattener) {
+    return std::make_unique<GlCanvas>(context(), fattener.mode, fattener.solid, options);
+  };
+}
+
 // A driver that reverses the depth test: what shall keep the nearest keeps the farthest.
 
 /// While it lives, LESS and LEQUAL are GREATER and GEQUAL, and depth buffers of the probes are

@@ -4,6 +4,7 @@
 
 #include "experiments/generators/pair_generators.h"
 #include "tests/lab/reference.h"
+#include "verify/rounding.h"
 
 namespace farcull::hard_pairs {
 
@@ -138,5 +139,19 @@ inline void share(Sharing sharing, Triangle& a, Triangle& b) {
   if (sharing >= Sharing::vertex) b[0] = a[0];
   if (sharing == Sharing::edge) b[1] = a[1];
 }
+
+// The bounds of the filters without one of them: the twins that must be wrong.
+struct NoSide : FilterBounds {
+  static constexpr double side = 0;
+};
+struct NoAbsolute : FilterBounds {
+  static constexpr double absolute = 0;
+};
+struct NoPoint : FilterBounds {
+  static constexpr double point = 0;
+};
+struct NoGap : FilterBounds {
+  static constexpr double gap = 0;
+};
 
 }  // namespace farcull::hard_pairs

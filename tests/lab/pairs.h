@@ -15,11 +15,7 @@ inline Scene with_self(Scene scene) {
 // Every pair that counts and collides, neighbours included, by the definition: all pairs of
 // triangles, exact tests.
 inline std::vector<TrianglePair> truth_of(const Scene& scene, double clearance = 0) {
-  const ExactResult exact = all_colliding_pairs(scene, {.clearance = clearance});
-  std::vector<TrianglePair> pairs = exact.pairs;
-  pairs.insert(pairs.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-  std::ranges::sort(pairs);
-  return pairs;
+  return all_colliding_pairs(scene, {.clearance = clearance}).all();
 }
 
 inline std::size_t missed(const std::vector<TrianglePair>& truth,

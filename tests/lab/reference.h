@@ -19,6 +19,15 @@ inline Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
   return {t[order[0]], t[order[1]], t[order[2]]};
 }
 
+/// The corners of a pair that fails, all bits of them.
+inline std::string text(const Triangle& a, const Triangle& b) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const Triangle& t : {a, b})
+    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
+  return out.str();
+}
+
 template <typename Integer>
 using Vector = std::array<Integer, 3>;
 
@@ -252,18 +261,23 @@ inline Scene welded(Scene scene, bool all) {
   return scene;
 }
 
+/// So many small triangles on a grid.
+inline std::vector<Triangle> on_grid(std::mt19937& random, std::size_t count, int extent) {
+  std::vector<Triangle> out(count);
+  for (Triangle& t : out) {
+    const Vec3 corner(random() % extent, random() % extent, random() % extent);
+    for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+  }
+  return out;
+}
+
 /// So many objects of small triangles on a grid, some of them empty; many touch, share corners or
 /// are degenerate.
 inline Scene grid_scene(std::mt19937& random, std::size_t object_count, int extent,
                         int empty_one_in) {
   std::vector<std::vector<Triangle>> objects(object_count);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % empty_one_in == 0 ? 0 : random() % 40);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
+  for (auto& triangles : objects)
+    triangles = on_grid(random, random() % empty_one_in == 0 ? 0 : random() % 40, extent);
   return welded(scene_of(objects), random() % 2 == 0);
 }
 

@@ -23,6 +23,14 @@ constexpr double kLengthOff = 35 * u;
 constexpr double kRoot = 3 * u;
 const std::string kLost = "1b-1070";  // more than all that underflows in a point
 
+using Axes = std::array<Number, 3>;
+
+Number exact_sum_of(const Axes& x) { return exact_sum(exact_sum(x[0], x[1]), x[2]); }
+
+Number computed_sum_of(const Axes& x, Script& script) {
+  return script.sum_in_any_order(x[0], x[1], x[2]);
+}
+
 std::string weights(double off) {
   return raw_script(
       "@rnd = float<ieee_64,ne>;\nl = rnd(l_);\nm = rnd(m_);\nk = rnd(rnd(1 - l) - m);",
@@ -96,7 +104,7 @@ std::string near(double point, double absolute) {
 // that follows.
 std::string far(double gap, double absolute) {
   Script script(kDouble);
-  std::array<Number, 3> size, s, t, s_exact, t_exact;
+  Axes size, s, t, s_exact, t_exact;
   const char* const names[3] = {"X", "Y", "Z"};
   for (int i = 0; i < 3; ++i) {
     const std::string name = names[i];  // |d| times the extent
@@ -107,15 +115,10 @@ std::string far(double gap, double absolute) {
     s_exact[i] = script.perturbed(p);
     t_exact[i] = script.perturbed(q);
   }
-  const auto exact = [](const std::array<Number, 3>& x) {
-    return exact_sum(exact_sum(x[0], x[1]), x[2]);
-  };
-  const auto any = [&](const std::array<Number, 3>& x) {
-    return script.sum_in_any_order(x[0], x[1], x[2]);
-  };
-  const Number doubt = gap * any(size) + absolute;
+  const Number doubt = gap * computed_sum_of(size, script) + absolute;
   const Number error =
-      exact_difference(any(t) - any(s), exact_difference(exact(t_exact), exact(s_exact)));
+      exact_difference(computed_sum_of(t, script) - computed_sum_of(s, script),
+                       exact_difference(exact_sum_of(t_exact), exact_sum_of(s_exact)));
   return script.claims_not_negative(
       exact_difference(exact_difference(doubt, error), script.between("1b-1001", "1b-1001")));
 }
@@ -144,7 +147,7 @@ std::string lower(double rounding) {
 // x - p.
 std::string same_points(double tie, double points, double subnormal, double absolute) {
   Script script(kDouble);
-  std::array<Number, 3> computed, exact, bound;
+  Axes computed, exact, bound;
   const char* const axes[3] = {"X", "Y", "Z"};
   for (int i = 0; i < 3; ++i) {
     const std::string axis = axes[i];
@@ -164,14 +167,9 @@ std::string same_points(double tie, double points, double subnormal, double abso
         Number(subnormal)));
     bound[i] = script.rounded_product(exact_product(of_axis, from_size));
   }
-  const auto all = [](const std::array<Number, 3>& x) {
-    return exact_sum(exact_sum(x[0], x[1]), x[2]);
-  };
-  const auto any = [&](const std::array<Number, 3>& x) {
-    return script.sum_in_any_order(x[0], x[1], x[2]);
-  };
-  const Number whole = script.perturbed(exact_sum(any(bound), Number(absolute)));
-  const Number error = exact_difference(all(exact), any(computed));
+  const Number whole =
+      script.perturbed(exact_sum(computed_sum_of(bound, script), Number(absolute)));
+  const Number error = exact_difference(exact_sum_of(exact), computed_sum_of(computed, script));
   return script.claims_not_negative(exact_difference(whole, error));
 }
 

@@ -1,6 +1,6 @@
 // Clearance: squared distances against the square of the clearance, exactly.
 #include "experiments/generators/pair_generators.h"
-#include "tests/lab/reference.h"
+#include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
@@ -138,15 +138,9 @@ int wrong(bool twin = false) {
 
 TEST(ClearanceFilter, NeverContradictsExactArithmetic) { EXPECT_EQ(wrong<FilterBounds>(), 0); }
 
-struct NoPoint : FilterBounds {
-  static constexpr double point = 0;
-};
-struct NoGap : FilterBounds {
-  static constexpr double gap = 0;
-};
 TEST(ClearanceFilterTwin, WithoutItsBoundsItIsWrong) {
-  wrong<NoPoint>(true);
-  wrong<NoGap>(true);
+  wrong<hard_pairs::NoPoint>(true);
+  wrong<hard_pairs::NoGap>(true);
 }
 
 TEST(ClearanceFilter, DecidesWhatIsNotClose) {

@@ -285,62 +285,44 @@ TEST(ContactShape, ThePolygonOfTrianglesInOnePlane) {
   EXPECT_TRUE(contact_polygon(a, {Vec3(0, 0, 2), Vec3(6, 0, 2), Vec3(0, 6, 2)}).empty());
 }
 
-TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
-  Random random(603);
-  const Scene scene = reference::soup(random, 40, 4);
-  std::vector<TrianglePair> pairs;
+// Kinds and shapes of all pairs; counts of those that meet.
+TEST(ContactKinds, AndCountsAreThoseOfEachPairWhateverTheThreads) {
+  Random random(502);
+  const Scene scene = reference::soup(random, 100, 5);
+  std::vector<TrianglePair> pairs, meeting;
   std::vector<ContactKind> kinds;
   std::vector<ContactShape> shapes;
-  for (std::uint32_t a = 0; a < 40; ++a) {
-    for (std::uint32_t b = a + 1; b < 40; ++b) {
+  ContactCounts counts;
+  for (std::uint32_t a = 0; a < 100; ++a) {
+    for (std::uint32_t b = a + 1; b < 100; ++b) {
       pairs.push_back({a, b});
       shapes.push_back(contact_shape(scene.corners(a), scene.corners(b)));
       kinds.push_back(shapes.back().kind);
+      if (kinds.back() == ContactKind::apart) continue;
+      meeting.insert(meeting.end(), 2, {a, b});  // a pair that is given twice counts twice
+      (kinds.back() == ContactKind::crossing ? counts.penetrating : counts.touching) += 2;
     }
   }
-  for (const unsigned threads : {0u, 1u, 3u}) {
+  EXPECT_GT(meeting.size(), 2048u);  // enough for more than one thread
+  EXPECT_GT(counts.touching, 0u);
+  EXPECT_GT(counts.penetrating, 0u);
+  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
     EXPECT_EQ(contact_kinds(scene, pairs, threads), kinds);
     EXPECT_EQ(contact_shapes(scene, pairs, threads), shapes);
+    EXPECT_EQ(count_contacts(scene, meeting, threads), counts);
   }
   EXPECT_TRUE(contact_kinds(scene, {}).empty());
-  EXPECT_THROW(contact_kinds(scene, std::vector<TrianglePair>{{0, 40}}), std::logic_error);
+  EXPECT_EQ(count_contacts(scene, {}), ContactCounts{});
+  const std::vector<TrianglePair> beyond = {{0, 100}}, twice = {{1, 1}};
+  EXPECT_THROW(contact_kinds(scene, beyond), std::logic_error);
+  EXPECT_THROW(count_contacts(scene, beyond), std::logic_error);
+  EXPECT_THROW(count_contacts(scene, twice), std::logic_error);
 }
 
 TEST(ContactKinds, HaveNamesThatAreReadBack) {
   for (const ContactKind kind : kContactKinds) EXPECT_EQ(parse_contact_kind(name_of(kind)), kind);
   EXPECT_FALSE(parse_contact_kind("touch"));
   EXPECT_FALSE(parse_contact_kind(""));
-}
-
-TEST(CountContacts, CountsEachPairWhateverTheThreads) {
-  Random random(502);
-  const Scene scene = reference::soup(random, 100, 5);
-  std::vector<TrianglePair> pairs;
-  ContactCounts expected;
-  for (std::uint32_t a = 0; a < 100; ++a) {
-    for (std::uint32_t b = a + 1; b < 100; ++b) {
-      if (!intersects(scene.corners(a), scene.corners(b))) continue;
-      pairs.insert(pairs.end(), 2, {a, b});  // a pair that is given twice counts twice
-      const ContactKind kind = contact_kind(scene.corners(a), scene.corners(b));
-      (kind == ContactKind::crossing ? expected.penetrating : expected.touching) += 2;
-    }
-  }
-  EXPECT_GT(pairs.size(), 2048u);  // enough for more than one thread
-  EXPECT_GT(expected.touching, 0u);
-  EXPECT_GT(expected.penetrating, 0u);
-  for (const unsigned threads : {0u, 1u, 2u, 7u})
-    EXPECT_EQ(count_contacts(scene, pairs, threads), expected);
-  EXPECT_EQ(count_contacts(scene, {}), ContactCounts{});
-}
-
-TEST(CountContacts, RefusesPairsThatAreNone) {
-  Scene scene;
-  scene.vertices = {kPlate[0], kPlate[1], kPlate[2]};
-  scene.triangles = {{0, 1, 2}, {0, 1, 2}};
-  scene.source_face = {0, 1};
-  scene.objects.push_back({"plate", 0, 2, true});
-  EXPECT_THROW(count_contacts(scene, std::vector<TrianglePair>{{0, 2}}), std::logic_error);
-  EXPECT_THROW(count_contacts(scene, std::vector<TrianglePair>{{1, 1}}), std::logic_error);
 }
 
 }  // namespace

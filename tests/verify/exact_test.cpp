@@ -15,18 +15,8 @@ using reference::kMax;
 using reference::kPermutations;
 using reference::kTiny;
 using reference::reordered;
+using reference::text;
 using reference::Triangle;
-
-std::string text(const Triangle& a, const Triangle& b) {
-  const Eigen::IOFormat format(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "{",
-                               "}");
-  std::ostringstream out;
-  for (const Triangle& t : {a, b}) {
-    for (const Vec3& p : t) out << p.transpose().format(format);
-    out << ' ';
-  }
-  return out.str();
-}
 
 double up(double x) { return std::nextafter(x, kMax); }
 double down(double x) { return std::nextafter(x, -kMax); }

@@ -2,9 +2,8 @@
 // decide() answers as the predicates on two triangles do.
 #include "verify/filter.h"
 
-#include "core/native/canvas.h"
 #include "tests/lab/hard_pairs.h"
-#include "tests/lab/test.h"
+#include "tests/lab/lanes.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
 
@@ -15,12 +14,6 @@ using hard_pairs::Sharing;
 using reference::Triangle;
 
 constexpr std::array kSharings = {Sharing::none, Sharing::vertex, Sharing::edge};
-
-/// Uses an instruction set until the end of its scope.
-struct UseLanes {
-  explicit UseLanes(const std::string& name) { use_lane_target(name); }
-  ~UseLanes() { use_lane_target(""); }
-};
 
 /// Pairs, each of two triangles of its own, and a scene of them.
 struct PairsOfScene {
@@ -132,21 +125,16 @@ TEST(FilterLanes, KnowNothingOfTrianglesThatShareACorner) {
 
 // ---- twins that must fail ----
 
-struct NoSide : FilterBounds {
-  static constexpr double side = 0;
-};
-struct NoAbsolute : FilterBounds {
-  static constexpr double absolute = 0;
-};
-
 // The pairs are close enough to the bounds that another one shows.
 TEST(FilterLanesTwin, WithASmallerBoundTheAnswersDiffer) {
   const PairsOfScene close = made(hard_pairs::nearly_coplanar, Sharing::none, 8000);
   const PairsOfScene tiny = made(hard_pairs::extreme, Sharing::none, 8000);
   for (const std::string& target : lane_targets()) {
     const UseLanes use(target);
-    EXPECT_GT(differences(on_lanes(close, 0), on_scalars<NoSide>(close, 0)), 0) << target;
-    EXPECT_GT(differences(on_lanes(tiny, 0), on_scalars<NoAbsolute>(tiny, 0)), 0) << target;
+    EXPECT_GT(differences(on_lanes(close, 0), on_scalars<hard_pairs::NoSide>(close, 0)), 0)
+        << target;
+    EXPECT_GT(differences(on_lanes(tiny, 0), on_scalars<hard_pairs::NoAbsolute>(tiny, 0)), 0)
+        << target;
   }
 }
 
@@ -163,7 +151,7 @@ TEST(FilterLanesTwin, WithTheLanesExchangedTheAnswersDiffer) {
 
 TEST(FilterLanesTwin, WithoutTheBoundOfSidesSharedCornersAreDecided) {
   const PairsOfScene of = made(hard_pairs::nearly_coplanar, Sharing::vertex, 8000);
-  const std::vector<Triage> answers = on_scalars<NoSide>(of, 0);
+  const std::vector<Triage> answers = on_scalars<hard_pairs::NoSide>(of, 0);
   EXPECT_LT(std::ranges::count(answers, Triage::unknown), answers.size());
 }
 

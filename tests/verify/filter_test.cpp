@@ -99,13 +99,10 @@ void expect_needed(Sharing sharing, const Make& make) {
   FAIL() << "without its bound the filter is right too";
 }
 
-struct NoSide : FilterBounds {
-  static constexpr double side = 0;
-};
 TEST(FilterTwin, WithoutTheBoundOfSidesItIsWrong) {
-  expect_needed<NoSide>(Sharing::none, nearly_coplanar);
-  expect_needed<NoSide>(Sharing::vertex, nearly_coplanar);
-  expect_needed<NoSide>(Sharing::edge, coplanar_and_long);
+  expect_needed<hard_pairs::NoSide>(Sharing::none, nearly_coplanar);
+  expect_needed<hard_pairs::NoSide>(Sharing::vertex, nearly_coplanar);
+  expect_needed<hard_pairs::NoSide>(Sharing::edge, coplanar_and_long);
 }
 
 struct NoNormals : FilterBounds {
@@ -115,11 +112,8 @@ TEST(FilterTwin, WithoutTheBoundOfNormalsItIsWrong) {
   expect_needed<NoNormals>(Sharing::edge, slivers_on_an_edge);
 }
 
-struct NoAbsolute : FilterBounds {
-  static constexpr double absolute = 0;
-};
 TEST(FilterTwin, WithoutTheBoundOfUnderflowItIsWrong) {
-  expect_needed<NoAbsolute>(Sharing::none, extreme);
+  expect_needed<hard_pairs::NoAbsolute>(Sharing::none, extreme);
 }
 
 }  // namespace

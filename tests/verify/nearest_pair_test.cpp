@@ -179,15 +179,9 @@ TEST(DistanceBounds, EncloseTheDistance) {
   EXPECT_GT(t.tight, t.apart / 2);
 }
 
-struct NoPoint : FilterBounds {
-  static constexpr double point = 0;
-};
-struct NoGap : FilterBounds {
-  static constexpr double gap = 0;
-};
 TEST(DistanceBoundsTwin, WithoutTheirErrorsTheyDoNot) {
-  tally<NoPoint>();
-  tally<NoGap>();
+  tally<hard_pairs::NoPoint>();
+  tally<hard_pairs::NoGap>();
 }
 
 }  // namespace

@@ -109,29 +109,5 @@ TEST(Overlap, NoPlaneDividesASheetFromTheBoxAroundIt) {
   }
 }
 
-// Solids of unit cubes: they overlap iff they have a cube in common.
-TEST(Overlap, OfSolidsOfCubesIsKnown) {
-  RandomNumbers random(test_seed(5));
-  int touching = 0, overlapping = 0;
-  for (int k = 0; more_cases(k, trials(60, 40), touching > 1 && overlapping > 1); ++k) {
-    std::array<std::set<std::array<int, 3>>, 2> cubes;
-    for (auto& solid : cubes) {
-      const int count = 1 + random.below(6);
-      for (int i = 0; i < count; ++i)
-        solid.insert({random.below(3), random.below(3), random.below(2)});
-    }
-    bool common = false;
-    for (const auto& cube : cubes[0]) common = common || cubes[1].contains(cube);
-    Parts parts;
-    parts.add_cubes("a", cubes[0], random);
-    parts.add_cubes("b", cubes[1], random);
-    const Case of = case_of(parts.scene);
-    if (of.contacts.empty() || of.crossing) continue;
-    const Overlap found = answer(parts.scene);
-    ASSERT_EQ(found, common ? Overlap::yes : Overlap::no) << k;
-    (common ? overlapping : touching) += 1;
-  }
-}
-
 }  // namespace
 }  // namespace farcull

@@ -122,9 +122,7 @@ BoxesResult found(const Scene& scene, const BoxesSettings& settings, unsigned th
 // "" if a result is right and took no more work than it may.
 std::string wrong(const Scene& scene, const BoxesResult& result) {
   const ExactResult exact = all_colliding_pairs(scene);
-  std::vector<TrianglePair> truth = exact.pairs;
-  truth.insert(truth.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-  if (lab::missed(truth, result.candidates) > 0) return "missed a pair";
+  if (lab::missed(exact.all(), result.candidates) > 0) return "missed a pair";
   for (const TrianglePair& pair : result.candidates)
     if (!boxes_meet(scene, pair, 0)) return "a candidate whose boxes are apart";
   const BoxesWork work = work_of(result);

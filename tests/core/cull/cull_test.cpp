@@ -176,8 +176,6 @@ TEST(Cull, ATenthOfTheRadiusMisses) {
   EXPECT_GT(lost, 10u);
 }
 
-// ---- the passes themselves ----
-
 // ---- what is left out, and why ----
 
 TEST(Cull, RefusesAResolutionBeyondTheDevice) {

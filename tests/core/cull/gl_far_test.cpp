@@ -17,6 +17,7 @@
 namespace farcull {
 namespace {
 
+using lab::canvases;
 using lab::corner_scene;
 using lab::random_scene;
 using lab::undrawable_scene;
@@ -73,16 +74,6 @@ TEST(GlFar, MissesNothingOnBuiltInScenes) {
       expect_right(scene, run(scene, suffix[0] == 0 ? 200 : 64));
     }
   }
-}
-
-TEST(GlFar, CullideMissesPairsThatFarKeeps) {
-  const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions options;
-  options.method = Method::cullide;
-  const Record cullide = run(scene, 64, options);
-  EXPECT_GT(cullide.verification->false_negatives, 0u);
-  EXPECT_FALSE(broken(cullide, false)) << "cullide promises nothing";
-  EXPECT_TRUE(broken(cullide, true));
 }
 
 TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
@@ -168,12 +159,6 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   EXPECT_TRUE(has_text(no_device_reason(record.trace), "nothing left to draw"));
   EXPECT_EQ(record.found.triangle_count, 0u);
   EXPECT_EQ(record.verification->false_negatives, 0u);
-}
-
-lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
-  return [options](const Fattener& fattener) {
-    return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);
-  };
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {

@@ -5,11 +5,7 @@
 namespace farcull {
 namespace {
 
-lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
-  return [options](const Fattener& fattener) {
-    return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);
-  };
-}
+using lab::canvases;
 
 TEST(GlLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), trials(100'000)); }
 

@@ -5,6 +5,7 @@
 
 #include "core/view/budget.h"
 #include "core/view/regions.h"
+#include "tests/lab/boxes.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
@@ -274,6 +275,7 @@ TEST(FitWindow, AtTheEndOfTheDoublesIsEmptyOrContains) {
 
 // ----
 
+using lab::meet;
 using reference::Triangle;
 
 Box box_of(const std::vector<Triangle>& triangles) {
@@ -281,12 +283,6 @@ Box box_of(const std::vector<Triangle>& triangles) {
   for (const Triangle& t : triangles)
     for (const Vec3& p : t) box.add(p);
   return box;
-}
-
-bool meet(const Box& a, const Box& b) {
-  for (int i = 0; i < 3; ++i)
-    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
-  return true;
 }
 
 /// The plan recomputed from the definitions, over all objects and triangles.

@@ -62,18 +62,6 @@ class Check : public testing::Test {
   ScratchFolder folder;
 };
 
-TEST_F(Check, ProvedIsStatus0) {
-  const ProgramAnswer answer = check({written(), {"random-soup"}, ""});
-  EXPECT_EQ(answer.status, 0);
-  EXPECT_EQ(answer.text.substr(0, answer.text.find('\n')),
-            "proved: these " + grouped(record.collisions.pairs.size()) +
-                " pairs of the scene meet, and no others");
-  EXPECT_TRUE(has_text(answer.text, "unattested"));
-  EXPECT_TRUE(has_text(answer.text, "about the scene and not about the run"));
-  EXPECT_TRUE(has_text(answer.text, "  which pairs the run kept"));
-  EXPECT_TRUE(has_text(answer.text, "ns per pair"));
-}
-
 TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
   for (std::uint8_t& byte : certificate.evidence) {
     if (byte == (kKept | kMeets)) {

@@ -68,13 +68,10 @@ blade.obj << v 0.1 0.6 -1; v 0.1 0.6 1; v 0.1 0.7 0; v 2.1 0.6 -1; v 2.1 0.6 1; 
 1 check of it without --self | check c.json folded.obj | ^not proved: the certificate is of another scene
 0 scene that collides with itself | verify self.json --method boxes
 0 compare with self | compare folded.obj --self --clearance 0.5 | ^boxes +- +- | ^method .* colliding  \+ neighbours[ ]
-# Frames: a triangle that falls through another.
+# Frames: a triangle that falls through another. frames_test.cpp has the answers.
 fall_1.obj << v 0.1 0.1 -1.5; v 0.9 0.1 -1.5; v 0.1 0.1 -1.1; f 1 2 3
 fall_2.obj << v 0.1 0.1 0.5; v 0.9 0.1 0.5; v 0.1 0.1 0.1; f 1 2 3
 fall_3.obj << v 0.1 0.1 1.5; v 0.9 0.1 1.5; v 0.1 0.1 1.1; f 1 2 3
-0 frames | verify fall_%d.obj good.obj --method boxes --frames 1:3 --json - --pairs falls.csv
-  | ^ *"frame": 3 | ^ *"read": | ^ *"median": | ^ *"p95": | ^ *"max": | ^ *"frames": 3 | ^ *"missed": 0
-  | @falls.csv ^frame,object_a,triangle_a,object_b,triangle_b$ | @falls.csv ^2,0,0,1,3$
 fall.json << {"objects": [{"mesh": "fall_%d.obj", "self": true}, {"mesh": "good.obj"}]}
 0 frames of a scene file | run fall.json --method exact --frames 1:3 --no-verify
   | ^frame +candidates +colliding +\+ neighbours +cull ms | ^per frame  median[ ]
@@ -82,7 +79,7 @@ fall.json << {"objects": [{"mesh": "fall_%d.obj", "self": true}, {"mesh": "good.
   | ^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$
 """, pairs='two-spheres --method boxes')
 
-# ---- certificates of frames and of clearances, and lists without a certificate
+# ---- certificates of frames; check_test.cpp has those of clearances, and lists without a certificate
 
 rows(r"""
 $ mkdir certificates
@@ -91,25 +88,7 @@ $ mkdir certificates
   | $ [[ $(cd certificates && echo *) == 'c_01.json c_02.json c_03.json' ]]
 0 check of frames | check certificates/c_%02d.json fall.json --frames 1:3 --pairs falls.csv
   | ^proved: in each of 3 frames these pairs of the scene meet, and no others: 1 in all$ | ^ +2  proved +[0-9]+ +1 +[0-9.]+$
-0 a list of frames alone | check fall.json --frames 1:3 --pairs falls.csv | ^proved: in each of 3 frames[ ] | ^ +3  proved[ ]
 bad certificates of frames without frames | CERTIFICATE: .*--frames | check certificates/c_%02d.json fall.json
-$ rm certificates/c_03.json
-2 a certificate that is missing | check certificates/c_%02d.json fall.json --frames 1:3 | ^ +1  proved[ ]
-  | @err ^farcull: certificates/c_03\.json: the file does not .*; give[ ]
-# At 0.1, as at every decimal fraction, the clearance is the double nearest to it.
-0 a certificate of a clearance | run {move} --clearance 0.1 --certificate near.json --pairs near.csv
-  | @near.json ^  "version": 4,$ | @near.json ^  "clearance": 0\.1,$
-0 check of a clearance | check near.json two-spheres --pairs near.csv
-  | ^proved: these [0-9,]+ pairs of the scene are at distance 0\.1 or less, and no others$
-# Lists that others wrote.
-0 a list alone | check two-spheres --pairs plain.csv | ^proved: these 298 pairs of the scene meet, and no others$
-""", move='two-spheres --method boxes')
-
-rows(r"""
-$ sed '99d' plain.csv >fewer.csv && sed '3s/[0-9]*$/x/' plain.csv >broken.csv
-1 a list that lacks a pair | check two-spheres --pairs fewer.csv | ^  pair: .* triangle [0-9]+ and .* triangle [0-9]+$
-  | ^refuted: fewer\.csv is not the list of the pairs: a pair is missing$
-bad a list that is no list | broken\.csv:3: triangle_b is 'x', .*; give a list as[ ] | check two-spheres --pairs broken.csv
 bad neither certificate nor list | SCENE: is missing[ ] | check two-spheres
 bad a mesh for the certificate | CERTIFICATE: .*--pairs | check good.obj folded.obj
 """)

@@ -1,4 +1,5 @@
-"""Studies: interrupted and resumed, in shards, and into files that are none of ours. store_test.cpp kills them and fills the disk."""
+"""Studies: interrupted and resumed, and in shards. store_test.cpp kills them and fills the disk, and has stores that are refused;
+merge_test.cpp has shards that are."""
 import contextlib
 import os
 import signal
@@ -72,10 +73,7 @@ def shards():
     rows('bad a shard is missing | shard 4/4: of precision is missing | merge shards')
     measure('shards', 'shards --shard 4/4')
     rows(r"""
-bad a shard twice | .*is shard 1/4 of precision, and so is
-  | merge shards/results-1-of-4.sqlite shards/results-1-of-4.sqlite -o new.sqlite
 0 merge | merge shards | ^{points} rows of 1 study from 4 shards: shards/results.sqlite$
-bad merged already | shards/results.sqlite: is there already | merge shards
 """, points=str(points))
     same('shards', 'shards')
 
@@ -88,11 +86,7 @@ rows(r"""
 0 a folder with a colon | {study} 'file:x?mode=memory&q=' --shard 1/1000
   | $ [[ -e 'file:x?mode=memory&q=/results-1-of-1000.sqlite' ]]
 # What is refused.
-bad again without --resume | whole/results.sqlite: holds [0-9]+ rows of precision already | {study} whole
-bad the other grid | whole/results.sqlite: precision stands there with | experiment precision --out whole --resume
-$ mkdir foreign empty
-foreign/results.sqlite << my notes, long enough to be no empty file
-bad a foreign file | foreign/results.sqlite: is no store of farcull | {study} foreign --resume
+$ mkdir empty
 bad no such study | acuracy: no such command | experiment acuracy
 bad no study | experiment: no study is named; name one: all, scenes, accuracy | experiment
 bad seed 0 | --seed: 0 is out of range | experiment precision --seed 0

@@ -4,11 +4,13 @@
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
-#include "tests/lab/scenes.h"
+#include "tests/lab/pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
+
+using lab::with_self;
 
 BenchOptions quick() {
   BenchOptions options;
@@ -17,11 +19,6 @@ BenchOptions quick() {
   options.device = "cpu";
   options.methods = "boxes,exact";
   return options;
-}
-
-Scene self_colliding(Scene scene) {
-  for (Object& object : scene.objects) object.self = true;
-  return scene;
 }
 
 // Every pair that counts, without any broad phase.
@@ -70,7 +67,7 @@ TEST(Bench, PeersAgreeOnSmallScenes) {
 TEST(Bench, PeersAgreeWithBruteForceOnDegenerateTriangles) {
   const Scene scene = make_builtin_scene("degenerate");
   EXPECT_EQ(expect_agreement(scene, true).rows[0].pairs, brute_force(scene).size());
-  const Scene self = self_colliding(scene);
+  const Scene self = with_self(scene);
   EXPECT_EQ(expect_agreement(self, true).rows[0].pairs, brute_force(self).size());
 }
 
@@ -81,7 +78,7 @@ TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
 
   // A mesh has neighbours, and nothing else that meets; its objects meet each other.
   Scene some = make_builtin_scene("field:1000");
-  EXPECT_EQ(expect_agreement(self_colliding(some)).rows[0].pairs, brute_force(some).size());
+  EXPECT_EQ(expect_agreement(with_self(some)).rows[0].pairs, brute_force(some).size());
   some.objects[1].self = true;
   expect_agreement(some);
   some.objects = {{"one", 0, static_cast<std::uint32_t>(some.triangles.size())}};
@@ -283,11 +280,11 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   EXPECT_TRUE(out.contains("fcl-obb")) << "not exact here, or not in this build";
   options.methods = "far";
   EXPECT_NO_THROW(contestants(scene, options));
-  Scene with_self = scene;
-  with_self.objects.front().self = true;
-  EXPECT_NO_THROW(contestants(with_self, options)) << "far tests objects against themselves";
+  Scene marked = scene;
+  marked.objects.front().self = true;
+  EXPECT_NO_THROW(contestants(marked, options)) << "far tests objects against themselves";
   options.methods = "cullide";
-  EXPECT_EQ(error_of([&] { contestants(with_self, options); }).where, "--methods");
+  EXPECT_EQ(error_of([&] { contestants(marked, options); }).where, "--methods");
   options = quick();
   options.peers = "fcl-obb,cgal-aabb";
   EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--peers");

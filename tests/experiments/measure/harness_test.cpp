@@ -20,20 +20,6 @@ TEST(Harness, RunsAllContestantsInTurnAfterTheWarmUp) {
   EXPECT_FALSE(timed[0].peak_mib);
 }
 
-TEST(Harness, DoesNotRepeatAContestantOverTheLimit) {
-  int runs = 0;
-  const Rounds rounds{.warm_up = 1, .counted = 3, .limit_ms = 5, .memory = true};
-  const std::vector<Timed> timed = measure_in_turns(2, rounds, [&](std::size_t i, int) {
-    runs += i == 1;
-    return i == 1 ? 6.0 : 5.0;
-  });
-  EXPECT_EQ(runs, 1);
-  EXPECT_TRUE(timed[1].over_limit(rounds));
-  EXPECT_TRUE(timed[1].ms.empty());
-  EXPECT_FALSE(timed[0].over_limit(rounds));
-  EXPECT_EQ(timed[0].ms.size(), 3u);
-}
-
 TEST(Harness, TakesTheMeanOfTwoMiddleValuesAndTheFasterOfTwoMiddleRuns) {
   EXPECT_EQ(spread_of({4, 1, 2, 9}).median, 3);
   EXPECT_EQ(spread_of({4, 1, 2, 9}).min, 1);

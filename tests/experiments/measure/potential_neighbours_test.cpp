@@ -144,32 +144,6 @@ TEST(NeighbourSets, OfWholeObjectsHaveAllTheirTriangles) {
   EXPECT_EQ(sizes.missed + sizes.missed_pairs, 0u);
 }
 
-// Against sets of sets.
-TEST(NeighbourSets, CountEachTriangleOnce) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const Scene scene = lab::neighbours_scene(seed);
-    lab::Random random(seed);
-    const std::vector<std::uint32_t> owner = owners(scene);
-    NeighbourSets sets = sets_with({}, {});
-    std::map<std::uint32_t, std::set<std::uint32_t>> triangles, objects;
-    for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
-      for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
-        if (owner[a] == owner[b] || random.below(3) > 0) continue;
-        sets.pairs.push_back({a, b});
-        triangles[owner[a]].insert(b);
-        triangles[owner[b]].insert(a);
-        objects[owner[a]].insert(owner[b]);
-      }
-    }
-    for (const auto& [a, others] : objects)
-      for (const std::uint32_t b : others) sets.objects.push_back({a, b});
-    std::uint64_t expected = 0;
-    for (const auto& [object, of] : triangles) expected += of.size();
-    EXPECT_EQ(sizes_of(scene, sets, nearest_objects(scene)).set_triangles, expected);
-  }
-}
-
 // Boxes and trees promise it for any finite scene; the truth is computed in rationals, by code that
 // shares nothing with either.
 TEST(NeighbourSets, OfBoxesAndTreesLoseNothing) {
@@ -188,20 +162,6 @@ TEST(NeighbourSets, OfBoxesAndTreesLoseNothing) {
       lab::count_losses(scene, truth, sets.objects, losses);
       EXPECT_EQ(losses.lost, 0u) << to_string(method);
     }
-  }
-}
-
-TEST(NeighbourSets, DoNotDependOnThreads) {
-  const Scene scene = make_builtin_scene("crowd:30");
-  for (const NeighbourMethod method :
-       {NeighbourMethod::trees, NeighbourMethod::voronoi, NeighbourMethod::voronoi_reliable}) {
-    const NeighbourSets one =
-        neighbour_sets(scene, {.method = method, .resolution = 32, .threads = 1});
-    const NeighbourSets three =
-        neighbour_sets(scene, {.method = method, .resolution = 32, .threads = 3});
-    EXPECT_EQ(one.objects, three.objects) << to_string(method);
-    EXPECT_EQ(one.pairs, three.pairs) << to_string(method);
-    EXPECT_EQ(one.left, three.left) << to_string(method);
   }
 }
 

@@ -2,27 +2,17 @@
 // meet. For every kind of method, against the run that is asked for all.
 #include <nlohmann/json.hpp>
 
-#include "experiments/method/run.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/runs.h"
 #include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
-Record run(const Scene& scene, const RunOptions& options) {
-  Session session(options.device);
-  return run(scene, options, session);
-}
-
-RunOptions on_cpu(Method method) {
-  RunOptions options;
-  options.method = method;
-  options.device = "cpu";
-  options.resolution = draws(method) ? 64 : 0;
-  return options;
-}
+using lab::on_cpu;
+using lab::run;
 
 const std::vector<ObjectPair> kIgnored = {{0, 1}, {0, 3}, {2, 5}, {6, 7}};
 

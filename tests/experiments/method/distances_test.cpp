@@ -108,14 +108,7 @@ TEST(Distances, OfTheFrameBeforeSaveWork) {
         without.box_pairs += alone.counts.box_pairs;
       }
       const Vec3 by = Vec3(0.004, -0.003, 0.002) * (frame + 1);
-      const Object& object = scene.objects[static_cast<std::size_t>(frame)];
-      std::vector<bool> moved(scene.vertices.size());
-      for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-        for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
-          if (!moved[v]) scene.vertices[v] += by;
-          moved[v] = true;
-        }
-      }
+      distance_lab::move_objects(scene, std::span(scene.objects).subspan(frame, 1), by);
     }
     EXPECT_LT(with.triangle_pairs, without.triangle_pairs);
     EXPECT_LT(with.box_pairs, without.box_pairs);

@@ -2,10 +2,10 @@
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
 #include <nlohmann/json.hpp>
 
-#include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
+#include "tests/lab/flat.h"
 #include "tests/lab/floating_point.h"
 #include "tests/lab/unwrapped.h"
 #include "verify/certificate/certificate.h"
@@ -155,12 +155,7 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
 // A collider's, and the caller's environment afterwards, also where the call throws.
 TEST(FloatingPointAnswers, Collider) {
   for_all([](const Environment& environment, const Sample& sample) {
-    std::vector<double> vertices;
-    for (const Vec3& p : sample.scene.vertices)
-      vertices.insert(vertices.end(), p.data(), p.data() + 3);
-    std::vector<std::uint32_t> triangles, starts = {0, kCopies};
-    for (const auto& t : sample.scene.triangles)
-      triangles.insert(triangles.end(), t.begin(), t.end());
+    const Flat flat(sample.scene);
     Result found;
     FloatingPoint after_making, after, after_throwing;
     bool threw = false;
@@ -168,10 +163,10 @@ TEST(FloatingPointAnswers, Collider) {
       const Disturbed disturbed(environment);
       farcull::Collider collider({.threads = 3});
       after_making = floating_point();
-      found = collider.find({vertices, triangles, starts});
+      found = collider.find(flat.input());
       after = floating_point();
       try {
-        collider.find({vertices, triangles, std::vector<std::uint32_t>{1}});
+        collider.find({flat.vertices, flat.triangles, std::vector<std::uint32_t>{1}});
       } catch (const Error&) {
         threw = true;
         after_throwing = floating_point();

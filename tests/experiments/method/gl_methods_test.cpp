@@ -80,12 +80,6 @@ TEST(GlMethods, RunsFollowThePlan) {
   }
 }
 
-bool ran(const Record& record, const std::string& part) {
-  return std::ranges::any_of(record.trace, [&](const Stage& s) {
-    return s.ran && name_of(s).find(part) != std::string::npos;
-  });
-}
-
 // OBBs first, then exact offsets on what they have left, from the bits that they have set.
 TEST(GlMethods, ExactOffsetsSeeWhatBoxesHaveLeft) {
   const Scene scene = make_builtin_scene("two-tori");
@@ -187,22 +181,6 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
   const Record record = run(scene, options, native);
   EXPECT_TRUE(to_json(scene, record)["device_work"].is_null());
   EXPECT_FALSE(has_text(run_table(scene, record, ""), "\nwork "));
-}
-
-TEST(GlMethods, BothQueryModesGiveTheSame) {
-  for (const Method method : kDrawing) {
-    const Scene scene = scene_for("degenerate", method);
-    RunOptions options = options_of(method, 128);
-    options.full = true;  // to the fixed point
-    options.query = QueryMode::flags;
-    const Record flags = run(scene, options, session());
-    options.query = QueryMode::occlusion;
-    if (method != Method::s_cullide) options.clusters = {16, 4};
-    const Record queries = run(scene, options, session());
-    EXPECT_EQ(queries.found.pairs, flags.found.pairs) << to_string(method);
-    EXPECT_EQ(ran(queries, "clusters of 4"), method != Method::s_cullide);
-    EXPECT_FALSE(ran(flags, "clusters of 4"));
-  }
 }
 
 // One object: a sheet, and in it a triangle that only touches it and one that goes through.

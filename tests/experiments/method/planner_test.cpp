@@ -12,25 +12,15 @@
 #include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/plan.h"
+#include "tests/lab/runs.h"
 #include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
 
 using lab::not_followed;
-
-RunOptions on_cpu(Method method, bool full = false) {
-  RunOptions options;
-  options.method = method;
-  options.device = "cpu";
-  options.full = full;
-  return options;
-}
-
-Record run(const Scene& scene, const RunOptions& options) {
-  Session session(options.device);
-  return run(scene, options, session);
-}
+using lab::on_cpu;
+using lab::run;
 
 Stage stage_named(const Plan& plan, const std::string& name) {
   for (const Stage& stage : plan.stages())
@@ -237,8 +227,8 @@ void expect_runs_follow(bool of_packaged_meshes) {
       for (Object& object : scene.objects) object.self = self;
       for (const Method method : {Method::boxes, Method::i_collide, Method::exact}) {
         for (const bool full : {false, true}) {
-          RunOptions options = on_cpu(method, full);
-          options.verify = full;
+          RunOptions options = on_cpu(method);
+          options.full = options.verify = full;
           if (full && scene.triangles.size() > most_triangles) continue;
           EXPECT_EQ(not_followed(run(scene, options)), "")
               << name << " " << to_string(method) << " full " << full << " self " << self;
@@ -308,7 +298,9 @@ RC_GTEST_PROP(Planner, FullFindsTheSamePairs, ()) {
   const Record exact = run(scene, on_cpu(Method::exact));
   for (const Method method : {Method::boxes, Method::i_collide}) {
     for (const bool full : {false, true}) {
-      const Record record = run(scene, on_cpu(method, full));
+      RunOptions options = on_cpu(method);
+      options.full = full;
+      const Record record = run(scene, options);
       RC_ASSERT(record.collisions.pairs == exact.collisions.pairs);
       RC_ASSERT(record.collisions.neighbour_pairs == exact.collisions.neighbour_pairs);
       RC_ASSERT(record.verification->false_negatives == 0u);

@@ -3,33 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/lab/test.h"
+#include "tests/lab/pairs.h"
+#include "tests/lab/runs.h"
 #include "verify/accounting.h"
 
 namespace farcull {
 namespace {
 
-RunOptions on_cpu(Method method, double clearance = 0) {
-  RunOptions options;
-  options.method = method;
-  options.device = "cpu";
-  options.clearance = clearance;
-  return options;
-}
+using lab::on_cpu;
+using lab::run;
 
-Record run(const Scene& scene, const RunOptions& options) {
-  Session session(options.device);
-  return run(scene, options, session);
-}
-
-Scene self_scene(const std::string& name) {
-  Scene scene = make_builtin_scene(name);
-  for (Object& object : scene.objects) object.self = true;
-  return scene;
-}
+Scene self_scene(const std::string& name) { return lab::with_self(make_builtin_scene(name)); }
 
 /// One object: 0 and 1 share an edge and lie on one side of it in one plane, so they are neighbours
 /// that collide; 2 crosses both.
@@ -64,6 +50,11 @@ TEST(RunPairs, GivesTheExactPairs) {
   for (const char* name : {"two-spheres", "degenerate", "needles", "random-soup", "crowd",
                            "far-apart", "two-spheres@ground"})
     expect_as_exact(make_builtin_scene(name));
+  expect_as_exact(folded());
+  for (const char* name : {"degenerate", "needles", "random-soup"})
+    expect_as_exact(self_scene(name));
+  expect_as_exact(make_builtin_scene("needles"), 0.02);
+  expect_as_exact(self_scene("degenerate"), 0.25);
 }
 
 TEST(Session, DropsWhatItKeptOfTheLastFrameAfterAFailure) {
@@ -76,17 +67,6 @@ TEST(Session, DropsWhatItKeptOfTheLastFrameAfterAFailure) {
   ASSERT_TRUE(session.frame_memory());
   EXPECT_FALSE(session.frame_memory()->frame);
   EXPECT_EQ(session.frame_memory()->moved.frame(), 0u);
-}
-
-TEST(RunPairs, GivesTheExactPairsOfObjectsAgainstThemselves) {
-  expect_as_exact(folded());
-  for (const char* name : {"degenerate", "needles", "random-soup"})
-    expect_as_exact(self_scene(name));
-}
-
-TEST(RunPairs, GivesTheExactPairsOfAClearance) {
-  expect_as_exact(make_builtin_scene("needles"), 0.02);
-  expect_as_exact(self_scene("degenerate"), 0.25);
 }
 
 // A crumpled sheet and another one across it, each with one vertex far away, which makes most of

@@ -112,6 +112,9 @@ class Browser:
             raise RuntimeError(str(out["exceptionDetails"]))
         return out["result"].get("value")
 
+    def text(self, name):
+        return self.run(f"document.getElementById('{name}').textContent")
+
     def wait(self, condition, seconds=30):
         """Until the expression is true in the page."""
         end = time.monotonic() + seconds

@@ -20,22 +20,18 @@ def shown(b, address):
     b.wait("document.documentElement && document.documentElement.dataset.ready !== undefined", 60)
 
 
-def text(b, name):
-    return b.run(f"document.getElementById('{name}').textContent")
-
-
 for size in ((1280, 760), (400, 760)):
     with Browser(width=size[0], height=size[1]) as b:
         b.media(prefers_reduced_motion="reduce")
         shown(b, "#")
         rows = b.run("[...document.querySelectorAll('#rows button')].map((row) => row.textContent)")
         check(len(rows) == 2 and "clash" in rows[0] and "contained" in rows[1], f"rows {rows}")
-        check(text(b, "headline") == "3 of 3 pairs of parts examined; 1 clash, 1 contained", "the headline")
-        check("the other parts" in text(b, "legend"), "the legend has both colours")
+        check(b.text("headline") == "3 of 3 pairs of parts examined; 1 clash, 1 contained", "the headline")
+        check("the other parts" in b.text("legend"), "the legend has both colours")
         zoom = b.run("farcull.view.camera.zoom")
         b.run("document.querySelectorAll('#rows button')[0].click()")
         check(b.run("farcull.state.row") == 0 and b.run("farcull.view.camera.zoom") > zoom, "a click flies there")
-        check("the surfaces cross" in text(b, "legend"), "the legend names the curve")
+        check("the surfaces cross" in b.text("legend"), "the legend names the curve")
         check(b.run("farcull.view.scene.children.some((o) => o.isLineSegments && o.renderOrder === 9)"), "the curve is drawn")
         seen = "[0, 1, 2].map((o) => farcull.view.places.image.data[4 * o + 3] > 0.1)"
         before = b.run(seen)
@@ -44,7 +40,7 @@ for size in ((1280, 760), (400, 760)):
         b.run("document.getElementById('through').click()")
         b.run("document.getElementById('canvas').focus()")
         b.key("n")
-        check(b.run("farcull.state.row") == 1 and "cross" not in text(b, "legend"), "n shows the next pair")
+        check(b.run("farcull.state.row") == 1 and "cross" not in b.text("legend"), "n shows the next pair")
         ghosts = b.run(seen)
         check(ghosts == [True, True, False], f"the part inside is seen: {ghosts}")
         b.run("(() => { const s = document.getElementById('search'); s.value = 'clash'; s.dispatchEvent(new Event('input')); })()")

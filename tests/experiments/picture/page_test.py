@@ -51,10 +51,6 @@ def drawn(b):
     b.run(DRAWN)
 
 
-def text(b, name):
-    return b.run(f"document.getElementById('{name}').textContent")
-
-
 def place_of_canvas(b):
     return b.run("(() => { const r = document.getElementById('canvas').getBoundingClientRect();"
                  "return [r.left, r.top, r.width, r.height]; })()")
@@ -97,12 +93,12 @@ def check_steps(b, said):
                 set_value(b, "resolution", step)
             b.wait(f"document.getElementById('headline').textContent.startsWith('{method}')")
             drawn(b)
-            seen.append(text(b, "headline"))
+            seen.append(b.text("headline"))
             count = int(re.search(r"missed ([\d,]+) of", seen[-1])[1].replace(",", ""))
             here = missed_pixels(b)
             check((here > 0) == (count > 0), f"{seen[-1]}: {here} pixels of the colour of misses")
             lost.append(count)
-            legend = text(b, "legend")
+            legend = b.text("legend")
             check(("missed:" in legend) == (count > 0), f"the legend says {legend}")
         if method == "cullide":
             check(lost[0] > lost[-1] > 0, f"cullide loses {lost}: the case shows nothing")
@@ -143,16 +139,16 @@ def check_click(b, pairs, times=3):
         drawn(b)
         triangle = b.run("farcull.state.triangle")
         b.run("farcull.view.camera.zoom = 40, farcull.view.zoom(1)")
-        wanted = named(text(b, "chosen"))
+        wanted = named(b.text("chosen"))
         b.key("Escape")
         drawn(b)
-        check("Click a triangle" in text(b, "chosen"), "Escape chooses no triangle")
+        check("Click a triangle" in b.text("chosen"), "Escape chooses no triangle")
         left, top, *_ = place_of_canvas(b)
         x, y = b.run(f"farcull.view.project({triangle})")
         check(b.run(f"farcull.view.pick({x}, {y})") >= 0, "nothing is where a missed triangle is")
         b.click(left + x, top + y)
         drawn(b)
-        chosen = text(b, "chosen")
+        chosen = b.text("chosen")
         got = named(chosen)
         check(got is not None, f"the click says {chosen}")
         if got is None:
@@ -165,7 +161,7 @@ def check_click(b, pairs, times=3):
         other = named(listed[0])
         b.run("document.querySelector('#chosen button').click()")
         drawn(b)
-        check(named(text(b, "chosen")) == other, f"the button of {other} chooses {text(b, 'chosen')}")
+        check(named(b.text("chosen")) == other, f"the button of {other} chooses {b.text('chosen')}")
         b.run(f"farcull.state.triangle = {triangle}")
     check(tried > 0, "no click found the triangle that was aimed at")
     b.key("Escape")
@@ -269,7 +265,7 @@ def check_twins(b, page, pairs, kinds, flat):
     def damaged(path):
         b.open(url(path))
         b.wait("document.getElementById('trouble') && !document.getElementById('trouble').hidden")
-        check("cannot be shown" not in text(b, "trouble"), "the reader is told of damaged data")
+        check("cannot be shown" not in b.text("trouble"), "the reader is told of damaged data")
 
     def click(path):
         shown(b, path)
@@ -307,7 +303,7 @@ def main():
     with Browser("--disable-3d-apis") as b:
         shown(b, page)
         check(b.run("getComputedStyle(document.getElementById('flat')).display") == "block" and
-              "stands in" in text(b, "trouble"), "without WebGL the flat picture does not stand in")
+              "stands in" in b.text("trouble"), "without WebGL the flat picture does not stand in")
         set_value(b, "method", "far", "change")
         b.wait("document.getElementById('headline').textContent.startsWith('far')")
     if failures:

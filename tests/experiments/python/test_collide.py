@@ -18,12 +18,6 @@ F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
 OBJECTS = [0, 1, 2]
 
 
-def test_pairs_are_sorted_rows():
-    result = farcull.collide(V, F, OBJECTS)
-    assert result.pairs.tolist() == [[0, 1]]
-    assert result.pairs.dtype == np.int64 and result.neighbour_pairs.shape == (0, 2)
-
-
 @pytest.mark.parametrize("kind", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8"])
 def test_many_triangles_of_every_type_are_read_exactly(kind):
     # More rows than are converted at once, and some that are left over.

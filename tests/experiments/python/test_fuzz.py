@@ -106,13 +106,9 @@ def require_right(call, arguments, answer):
     if call is farcull.distances:
         assert list(answer) == list(again)
         return False
-    if call is farcull.collide:
-        assert rows(answer.pairs) == rows(again.pairs)
-        assert rows(answer.neighbour_pairs) == rows(again.neighbour_pairs)
-        pairs = rows(answer.pairs)
-    else:
-        assert [rows(part.pairs) for part in answer] == [rows(part.pairs) for part in again]
-        pairs = [pair for part in answer for pair in rows(part.pairs)]
+    pairs = rows(answer.pairs)
+    assert pairs == rows(again.pairs)
+    assert rows(answer.neighbour_pairs) == rows(again.neighbour_pairs)
     if arguments.keys() != {"V", "F", "object_starts", "threads"}:
         return False
     at_0 = farcull.distances(V, F, arguments["object_starts"], kind="all", within=0, threads=1, inside=False)

@@ -55,15 +55,6 @@ def test_promises_come_first(study, failed):
     assert ("One row of methods that promise does not say" in said) == (failed is None)
 
 
-@pytest.mark.parametrize("study", PROMISING)
-def test_missing_rows_are_told(study):
-    chapter = chapter_of(study, [], declared=3)
-    assert chapter.figures == [] and "Not finished: 0 of 3 points are measured." in chapter.limits
-    point = PROMISING[study][0]
-    chapter = chapter_of(study, [(point, {}, {}, "a mesh is not there")])
-    assert "Left out at 1 of 1 points: a mesh is not there." in chapter.limits
-
-
 # A sentence about misses says what decided, and how many pairs could have been missed.
 def said_of_misses(far_more=(), *others):
     return findings(chapter_of("accuracy", [

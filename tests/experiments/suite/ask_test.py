@@ -106,17 +106,20 @@ def soup(folder):
     return {f'{folder}/{name}': text for name, text in files.items()}
 
 
+def write(path, text):
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+
+
 def write_suite(folder, files):
     text = 'farcull-suite 1\nseed 1\nsize small\nlicence CC0-1.0\n'
     for path, content in sorted(files.items()):
         os.makedirs(os.path.dirname(f'{folder}/{path}'), exist_ok=True)
-        with open(f'{folder}/{path}', 'w', encoding='utf-8') as file:
-            file.write(content)
+        write(f'{folder}/{path}', content)
         items = content.count('\n') - 1 if path[-4:] in ('.txt', '.csv') else content.count('f ')
         items = 0 if path.endswith('mesh.txt') else items
         text += f'file {path} {len(content)} {hashlib.sha256(content.encode()).hexdigest()} {items}\n'
-    with open(folder + '/suite.txt', 'w', encoding='utf-8') as file:
-        file.write(text + f'sum {hashlib.sha256(text.encode()).hexdigest()}\n')
+    write(folder + '/suite.txt', text + f'sum {hashlib.sha256(text.encode()).hexdigest()}\n')
 
 
 def run(*words, status=0, limit=100):
@@ -144,8 +147,7 @@ shutil.copy(root + '/experiments/suite/ask.py', 'suite/ask.py')
 spec = importlib.util.spec_from_file_location('ask', 'suite/ask.py')
 module = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(module)
-with open('faulty.py', 'w', encoding='utf-8') as script:
-    script.write(FAULTY)
+write('faulty.py', FAULTY)
 
 
 class Ask(unittest.TestCase):
@@ -239,19 +241,17 @@ class Ask(unittest.TestCase):
         self.assertEqual(without_times(run(program, 'suite', 'suite', '--ask', command)),
                          without_times(run('python3', 'suite/ask.py', command)))
         os.makedirs('shadows', exist_ok=True)
-        with open('shadows/queue.py', 'w', encoding='utf-8') as file:
-            file.write('raise SystemExit("a file of the user is no part of ask.py")\n')
+        write('shadows/queue.py', 'raise SystemExit("a file of the user is no part of ask.py")\n')
         self.assertIn('few', run('sh', '-c', 'cd shadows && exec "$@"', 'sh', program, 'suite', '../suite', '--ask',
                                  'python3 ../separate.py'))
         self.assertIn('suite.txt', run(program, 'suite', 'nowhere', '--ask', command, status=2))
 
     def test_distances_have_their_own_table(self):
         def row(distance, points):
-            with open('far.py', 'w', encoding='utf-8') as file:
-                file.write('import sys\nfor line in sys.stdin:\n  number, question, *x = line.split()\n'
-                           '  i = int(float(x[0])) if question == "distance" else 0\n'
-                           f'  answer = [{distance}, {points}] if question == "distance" else ["refused", "x"]\n'
-                           '  print(number, *answer, sep="\\t", flush=True)\n')
+            write('far.py', 'import sys\nfor line in sys.stdin:\n  number, question, *x = line.split()\n'
+                  '  i = int(float(x[0])) if question == "distance" else 0\n'
+                  f'  answer = [{distance}, {points}] if question == "distance" else ["refused", "x"]\n'
+                  '  print(number, *answer, sep="\\t", flush=True)\n')
             return ask('python3 far.py', '--only', 'distance')['distance', 'few']
         nearest = 'i + 1, 1, 0, i + 1, 1, i % 2'
         self.expect(row('i % 2', nearest))
@@ -284,8 +284,8 @@ class Ask(unittest.TestCase):
     def test_an_answer_has_an_end(self):
         """The limits hold for all lines of an answer together."""
         mesh = [module.Question('mesh', ['0', 'a', 'b'])]
-        with open('endless.py', 'w', encoding='utf-8') as file:
-            file.write('import time\nwhile True:\n  print("0\\tpair\\t0\\t0\\t0\\t1", flush=True)\n  time.sleep(0.01)\n')
+        write('endless.py',
+              'import time\nwhile True:\n  print("0\\tpair\\t0\\t0\\t0\\t1", flush=True)\n  time.sleep(0.01)\n')
         with contextlib.closing(module.Child(['python3', 'endless.py'], argparse.Namespace(memory=4096))) as child:
             self.assertEqual(module.ask_from(child, mesh, 0, [None], 0.02, 0), (0, module.HUNG))
         # One that always has a line already.
@@ -310,9 +310,9 @@ class Ask(unittest.TestCase):
         self.assertFalse(module.ask(says, [module.Question('self', ['/a.obj'])], options)[0][0].value)
 
     def test_deaths_end_a_family_and_each_family_is_asked_twice(self):
-        with open('ends.py', 'w', encoding='utf-8') as file:
-            file.write('import sys\nfor line in sys.stdin:\n  number, _, word = line.split()\n  if word == "x": sys.exit(1)\n'
-                       '  print(number, 1, flush=True, sep="\t")\n')
+        write('ends.py',
+              'import sys\nfor line in sys.stdin:\n  number, _, word = line.split()\n  if word == "x": sys.exit(1)\n'
+              '  print(number, 1, flush=True, sep="\t")\n')
         options, families = argparse.Namespace(limit=5, memory=4096, deaths=2), 'a' * 4 + 'b' * 20 + 'c'
         questions = [module.Question('self', ['x' if family == 'a' else 'y'], family) for family in families]
         answers, differs = module.ask_twice(['python3', 'ends.py'], questions, options)
@@ -338,10 +338,9 @@ class Ask(unittest.TestCase):
 
     def test_a_card_has_known_words(self):
         def asked(key, value, status):
-            with open('card.py', 'w', encoding='utf-8') as file:
-                file.write('import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
-                           f'  print(number, "card", "{key}", "{value}", sep="\\t") if question == "card" else 0\n'
-                           '  print(number, "done" if question == "card" else "0", sep="\\t", flush=True)\n')
+            write('card.py', 'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+                  f'  print(number, "card", "{key}", "{value}", sep="\\t") if question == "card" else 0\n'
+                  '  print(number, "done" if question == "card" else "0", sep="\\t", flush=True)\n')
             return run('python3', 'suite/ask.py', '--only', 'pair', 'python3 card.py', status=status)
         self.assertIn('few', asked('answers', 'pair self', 0))
         self.assertIn('pairs meshes', asked('answers', 'pairs meshes', 2))
@@ -352,11 +351,10 @@ class Ask(unittest.TestCase):
 
     def test_pairs_of_a_mesh_are_missed_and_wrong(self):
         def row(*pairs):
-            with open('mesh.py', 'w', encoding='utf-8') as file:
-                file.write(f'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
-                           '  if question == "card":\n    print(number, "refused", "x", sep="\\t", flush=True)\n    continue\n'
-                           f'  for row in {pairs}:\n'
-                           '    print(number, "pair", *row, sep="\\t")\n  print(number, "done", sep="\\t", flush=True)\n')
+            write('mesh.py', f'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+                  '  if question == "card":\n    print(number, "refused", "x", sep="\\t", flush=True)\n    continue\n'
+                  f'  for row in {pairs}:\n'
+                  '    print(number, "pair", *row, sep="\\t")\n  print(number, "done", sep="\\t", flush=True)\n')
             return ask('python3 mesh.py', '--only', 'mesh')['mesh', 'cross']
         self.expect(row((0, 0, 1, 0)))
         self.expect(row((1, 0, 0, 0), (0, 0, 0, 1)))  # neighbours count only if the card says so

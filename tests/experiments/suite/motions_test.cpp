@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include "experiments/generators/pair_generators.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/writer.h"
-#include "tests/lab/test.h"
+#include "tests/lab/flat.h"
 
 namespace farcull {
 namespace {
@@ -29,13 +28,7 @@ Lists pairs_by(Method method, Session& session, const Scene& scene) {
 }
 
 Lists pairs_by(Collider& collider, const Scene& scene) {
-  std::vector<std::uint32_t> triangles, starts;
-  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-  for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const Result result =
-      collider.find({.vertices = {scene.vertices.front().data(), 3 * scene.vertices.size()},
-                     .triangles = triangles,
-                     .object_starts = starts});
+  const Result result = collider.find(Flat(scene).input());
   Lists out;
   for (const auto* some : {&result.pairs, &result.neighbour_pairs}) {
     for (const Pair& pair : *some) out.push_back({pair.a, pair.b});

@@ -2,9 +2,8 @@
 #include "experiments/suite/writer.h"
 
 #include "experiments/generators/pair_generators.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
-#include "tests/lab/test.h"
+#include "tests/lab/flat.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
 
@@ -85,12 +84,7 @@ Scene scene_of(const SuitePair& pair) {
 
 /// Whether the library reports the pair.
 bool found_by_library(Collider& collider, const Scene& scene) {
-  std::vector<double> vertices;
-  for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
-  std::vector<std::uint32_t> triangles, starts;
-  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-  for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  const Result result = collider.find({vertices, triangles, starts});
+  const Result result = collider.find(Flat(scene).input());
   return result.pairs.size() + result.neighbour_pairs.size() > 0;
 }
 
@@ -151,13 +145,9 @@ TEST(SuiteAnswers, BoxesFindTheListsOfAllMeshes) {
     options.device = asked_device();
     options.verify = false;
     const Record record = run(mesh.scene, options, session);
-    std::vector<TrianglePair> found = record.collisions.pairs;
-    found.insert(found.end(), record.collisions.neighbour_pairs.begin(),
-                 record.collisions.neighbour_pairs.end());
-    std::ranges::sort(found);
     std::vector<TrianglePair> listed;
     for (const SuiteMeshPair& pair : mesh.pairs) listed.push_back(pair.pair);
-    EXPECT_EQ(found, listed) << name;
+    EXPECT_EQ(record.collisions.all(), listed) << name;
   }
 }
 

@@ -11,16 +11,8 @@
 namespace farcull {
 namespace {
 
+using reference::text;
 using reference::Triangle;
-
-std::string text(const Triangle& a, const Triangle& b, double clearance) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const Triangle& t : {a, b})
-    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  out << clearance;
-  return out.str();
-}
 
 double below(double x) { return std::nextafter(x, 0); }
 double above(double x) { return std::nextafter(x, HUGE_VAL); }
@@ -44,8 +36,8 @@ TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
         const bool expected = within(a, b, d);
         ++(expected ? inside : apart);
         ASSERT_EQ(pair.separating_direction().has_value(), !expected)
-            << generator.name << ": " << text(a, b, d);
-        ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b, d);
+            << generator.name << ": " << text(a, b) << d;
+        ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b) << d;
       }
     }
     EXPECT_GT(inside, 5) << generator.name;
@@ -147,22 +139,19 @@ TEST(IntegerClearance, TheWholeRangeOfDoubles) {
 
 // ---- certificates ----
 
-/// Objects on a lattice, each against itself as well: neighbours, and distances of exactly 1 and 2.
+/// Three objects on a lattice, each against itself as well: neighbours that meet and others.
+Scene on_lattice(std::uint32_t seed, std::size_t triangles_each, int extent) {
+  std::mt19937 random(seed);
+  std::vector<std::vector<Triangle>> objects(3);
+  for (auto& triangles : objects) triangles = reference::on_grid(random, triangles_each, extent);
+  Scene out = reference::welded(reference::scene_of(objects), true);
+  for (Object& object : out.objects) object.self = true;
+  return out;
+}
+
+/// With distances of exactly 1 and 2.
 const Scene& lattice() {
-  static const Scene scene = [] {
-    std::mt19937 random(5);
-    std::vector<std::vector<Triangle>> objects(3);
-    for (auto& triangles : objects) {
-      triangles.resize(40);
-      for (Triangle& t : triangles) {
-        const Vec3 corner(random() % 9, random() % 9, random() % 9);
-        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-      }
-    }
-    Scene out = reference::welded(reference::scene_of(objects), true);
-    for (Object& object : out.objects) object.self = true;
-    return out;
-  }();
+  static const Scene scene = on_lattice(5, 40, 9);
   return scene;
 }
 
@@ -313,22 +302,8 @@ TEST(CertificateOfAList, ProvesTheRightListAlone) {
 
 // ---- Certificates of scenes whose objects are tested against themselves: neighbours.
 
-/// Every object against itself; with neighbours that meet and others.
 const Case& folded() {
-  static const Case folded = [] {
-    std::mt19937 random(4);
-    std::vector<std::vector<reference::Triangle>> objects(3);
-    for (auto& triangles : objects) {
-      triangles.resize(60);
-      for (reference::Triangle& t : triangles) {
-        const Vec3 corner(random() % 4, random() % 4, random() % 4);
-        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-      }
-    }
-    Scene scene = reference::welded(reference::scene_of(objects), true);
-    for (Object& object : scene.objects) object.self = true;
-    return Case(std::move(scene));
-  }();
+  static const Case folded(on_lattice(4, 60, 4));
   return folded;
 }
 

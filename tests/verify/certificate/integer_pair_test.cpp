@@ -10,15 +10,8 @@
 namespace farcull {
 namespace {
 
+using reference::text;
 using reference::Triangle;
-
-std::string text(const Triangle& a, const Triangle& b) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const Triangle& t : {a, b})
-    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  return out.str();
-}
 
 /// True where the direction of docs/certificate.md separates, written from that page alone.
 bool page_separates(const Triangle& s, const Triangle& t, int direction) {
@@ -188,11 +181,7 @@ TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
     const int extent = 2 + static_cast<int>(random() % 30);
     for (auto& triangles : objects) {
       if (random() % 4 == 0) continue;  // objects without triangles, also at both ends
-      triangles.resize(random() % 40);
-      for (Triangle& t : triangles) {
-        const Vec3 corner(random() % extent, random() % extent, random() % extent);
-        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-      }
+      triangles = reference::on_grid(random, random() % 40, extent);
     }
     Scene scene = reference::scene_of(objects);
     for (Object& object : scene.objects) object.self = random() % 3 == 0;

@@ -1,31 +1,15 @@
 // Meshes compressed by gzip, and files of formats that are not read.
 #include "experiments/scenes/mesh/text.h"
 
-#include <zlib.h>
-
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
+#include "tests/lab/gzip.h"
 #include "tests/lab/meshes.h"
 
 namespace farcull {
 namespace {
 
-// One member; level 0 stores the text as it is.
-std::string gzipped(const std::string& text, int level = 9) {
-  z_stream stream = {};
-  if (deflateInit2(&stream, level, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::runtime_error("zlib does not start");
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int code = deflate(&stream, Z_FINISH);
-  out.resize(out.size() - stream.avail_out);
-  deflateEnd(&stream);
-  if (code != Z_STREAM_END) throw std::runtime_error("zlib does not end");
-  return out;
-}
+using lab::gzipped;
 
 bool same(const Mesh& a, const Mesh& b) {
   return a.vertices == b.vertices && a.triangles == b.triangles && a.source_face == b.source_face &&
