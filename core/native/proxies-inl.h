@@ -13,6 +13,10 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/native/canvas.h"
 #include "core/native/glsl_lanes-inl.h"
@@ -199,13 +203,11 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws an element in the rows of the job. True: it is asked, and seen.
+/// Draws a proxy in the rows of the job. True: it is asked, and seen.
 template <class Kernel>
-HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb verb) {
-  const PixelRange& range = job.ranges[element];
+HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const PixelRange& range,
+                           Verb verb) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
-  if (y0 >= y1) return false;
-  const Proxy& proxy = job.proxies[element];
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
@@ -255,11 +257,146 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
   return false;
 }
 
+// Most proxies are decided by their outlines; the others wait, and are fitted and drawn together.
+
+/// True: the proxy is asked in a pixel that it covers for sure, and seen there.
+HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
+  if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
+  Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
+  if (job.fixed24) depth = std::rint(depth * kSteps24);
+  const Plain old = job.depth[static_cast<std::ptrdiff_t>(outline.y) * job.stride + outline.x];
+  return job.touching ? depth >= old : depth > old;
+}
+
+/// False: not even the nearest (store) or farthest (ask) depth of the proxy changes a pixel of its
+/// range. Only looked at for small proxies: large ones are divided into blocks as they are drawn.
+HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
+  constexpr int kMostBlocks = 4;  // in a row and in a column
+  const int x0 = outline.range.x0, x1 = outline.range.x1;
+  const int y0 = std::max<int>(outline.range.y0, job.y0);
+  const int y1 = std::min<int>(outline.range.y1, job.y1);
+  if (x1 - x0 > kMostBlocks * kBlockWidth || y1 - y0 > kMostBlocks * kBlockHeight) return true;
+  const Lane bound = held_depth(
+      job, mapped_depth(job, Lane(verb == Verb::store ? outline.nearest : outline.farthest)));
+  for (int y = y0; y < y1; y += kBlockHeight) {
+    const Bool rows = lane_rows() < Lane(static_cast<Plain>(y1 - y));
+    for (int x = x0; x < x1; x += kBlockWidth) {
+      const float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
+      const Lane old = Lane(load_rows<kLanes>(at, job.stride, y1 - y));
+      const Bool changes = verb == Verb::store ? bound < old : bound >= old;
+      if (any(changes && rows && lane_columns() < Lane(static_cast<Plain>(x1 - x)))) return true;
+    }
+  }
+  return false;
+}
+
+/// Proxies of one step that no outline decided.
+template <class Kernel>
+class WaitingProxies {
+ public:
+  WaitingProxies(const NativeJob& job, Verb verb)
+      : job_(job), verb_(verb), asked_(verb == Verb::ask && job.output == NativeOutput::run) {}
+
+  HWY_INLINE void add(const Draw& draw) {
+    draws_[count_++] = draw;
+    if (count_ == kMost) draw_all();
+  }
+  HWY_INLINE void draw_all() {
+    const Drawables& from = *job_.drawables;
+    std::uint32_t items[kMost];
+    std::uint8_t done[kMost];
+    Proxy fitted[kMost];
+    const Proxy* proxies[kMost];
+    FattenBatch batch = from.batch;
+    for (int i = 0; i < count_; ++i) {
+      const std::uint32_t element = draws_[i].element;
+      if (from.fit == nullptr) {
+        proxies[i] = &from.proxies[element];
+      } else if (from.sources[element] & kFitted) {
+        proxies[i] = &from.proxies[from.sources[element] - kFitted];
+      } else {
+        proxies[i] = &fitted[batch.count];
+        items[batch.count++] = from.sources[element];
+      }
+    }
+    if (batch.count > 0) {
+      batch.items = items;
+      batch.out = fitted;
+      batch.done = done;
+      from.fit(batch);
+    }
+    for (int i = 0; i < count_; ++i) {
+      const auto [element, slot] = draws_[i];
+      if (asked_ && already_seen(job_.seen, slot)) continue;
+      const bool seen = draw_proxy<Kernel>(job_, *proxies[i], job_.outlines[element].range, verb_);
+      if (asked_ && seen) mark_seen(job_.seen, slot);
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kMost = 16;
+  const NativeJob& job_;
+  const Verb verb_;
+  const bool asked_;
+  Draw draws_[kMost];
+  int count_ = 0;
+};
+
+/// The stored elements of a step that reach the job's rows, the nearest first: in any order they
+/// leave the same depths, and in this one most of those behind change nothing. `order`: memory that
+/// is used again.
+inline std::span<const Draw> front_to_back(const NativeJob& job, const Step& step,
+                                           std::vector<Draw>& order) {
+  constexpr int kBuckets = 512;
+  const std::span<const Draw> draws(job.draws + step.first, step.count);
+  std::uint32_t end[kBuckets + 1] = {};
+  const auto bucket = [&job](const Draw& draw) {
+    if (draw.element == kEverywhere) return 0;
+    const ProxyOutline& outline = job.outlines[draw.element];
+    if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0) return kBuckets;
+    const Plain depth = std::min(std::max(outline.nearest * job.scale, -0.25f), 0.25f);
+    return static_cast<int>((depth + 0.25f) * (2 * (kBuckets - 1)));
+  };
+  for (const Draw& draw : draws) ++end[bucket(draw)];
+  const std::uint32_t kept = step.count - end[kBuckets];
+  std::uint32_t before = 0;
+  for (std::uint32_t& count : end) before += std::exchange(count, before);
+  order.resize(step.count);
+  for (const Draw& draw : draws) order[end[bucket(draw)]++] = draw;
+  return std::span(order).first(kept);
+}
+
 template <class Kernel>
 HWY_INLINE void draw_proxies(const NativeJob& job) {
-  for_draws(job, [&job](std::uint32_t element, Verb verb) {
-    return draw_proxy<Kernel>(job, element, verb);
-  });
+  constexpr std::uint32_t kLeastSorted = 64;
+  std::vector<Draw> order;
+  for (std::uint32_t s = 0; s < job.step_count; ++s) {
+    const Step& step = job.steps[s];
+    const bool run = job.output == NativeOutput::run;
+    const bool asked = step.verb == Verb::ask && run;
+    std::span<const Draw> draws(job.draws + step.first, step.count);
+    if (step.verb == Verb::store && step.count >= kLeastSorted)
+      draws = front_to_back(job, step, order);
+    WaitingProxies<Kernel> waiting(job, step.verb);
+    for (const Draw& draw : draws) {
+      if (asked && already_seen(job.seen, draw.slot)) continue;
+      if (draw.element == kEverywhere) {
+        if (take_everywhere(job, step.verb) && asked) mark_seen(job.seen, draw.slot);
+        continue;
+      }
+      const ProxyOutline& outline = job.outlines[draw.element];
+      if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0 ||
+          outline.range.y0 >= outline.range.y1)
+        continue;
+      if (asked && seen_for_sure(job, outline)) {
+        mark_seen(job.seen, draw.slot);
+      } else if (!run || may_change(job, outline, step.verb)) {
+        waiting.add(draw);
+      }
+    }
+    waiting.draw_all();
+  }
 }
 
 /// Calls the kernel for single lines.
