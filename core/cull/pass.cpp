@@ -48,7 +48,8 @@ class PassBuilder {
     asked_.reserve(of.visit.items.size());
     for_owners(of.visit, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
-      store_owner(from, to);
+      const bool last = of.ask == kF ? to == of.visit.items.size() : from == 0;
+      if (!last) store_owner(from, to);  // no query would read it
     });
     while (!pass_.steps.empty() && pass_.steps.back().verb == Verb::store) {
       pass_.draws.resize(pass_.steps.back().first);

@@ -2,8 +2,6 @@
 // instruction set and any number of threads.
 #include "core/native/canvas.h"
 
-#include <numeric>
-
 #include "core/view/regions.h"
 #include "offsets/offsets.h"
 #include "tests/lab/lanes.h"
