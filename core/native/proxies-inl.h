@@ -268,26 +268,41 @@ HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline)
   return job.touching ? depth >= old : depth > old;
 }
 
-/// False: not even the nearest (store) or farthest (ask) depth of the proxy changes a pixel of its
-/// range. Only looked at for small proxies: large ones are divided into blocks as they are drawn.
-HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
-  constexpr int kMostBlocks = 4;  // in a row and in a column
-  const int x0 = outline.range.x0, x1 = outline.range.x1;
-  const int y0 = std::max<int>(outline.range.y0, job.y0);
-  const int y1 = std::min<int>(outline.range.y1, job.y1);
-  if (x1 - x0 > kMostBlocks * kBlockWidth || y1 - y0 > kMostBlocks * kBlockHeight) return true;
-  const Lane bound = held_depth(
-      job, mapped_depth(job, Lane(verb == Verb::store ? outline.nearest : outline.farthest)));
+/// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows until it
+/// returns true, and returns whether it did. at: the depth of the block's first pixel; rows,
+/// columns: how many of them are in the range.
+template <class Visit>
+HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
+  const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
   for (int y = y0; y < y1; y += kBlockHeight) {
-    const Bool rows = lane_rows() < Lane(static_cast<Plain>(y1 - y));
-    for (int x = x0; x < x1; x += kBlockWidth) {
-      const float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
-      const Lane old = Lane(load_rows<kLanes>(at, job.stride, y1 - y));
-      const Bool changes = verb == Verb::store ? bound < old : bound >= old;
-      if (any(changes && rows && lane_columns() < Lane(static_cast<Plain>(x1 - x)))) return true;
+    for (int x = range.x0; x < range.x1; x += kBlockWidth) {
+      if (visit(static_cast<std::ptrdiff_t>(y) * job.stride + x, y1 - y, range.x1 - x)) return true;
     }
   }
   return false;
+}
+HWY_INLINE Bool inside_block(int rows, int columns) {
+  return lane_rows() < Lane(static_cast<Plain>(rows)) &&
+         lane_columns() < Lane(static_cast<Plain>(columns));
+}
+/// Whether a proxy is so small that its blocks are looked at before it is fitted.
+HWY_INLINE bool is_small(const PixelRange& range) {
+  constexpr int kMostBlocks = 4;  // in a row and in a column
+  return range.x1 - range.x0 <= kMostBlocks * kBlockWidth &&
+         range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
+}
+
+/// False: not even the nearest (store) or farthest (ask) depth of the proxy changes a pixel of its
+/// range.
+HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
+  if (!is_small(outline.range)) return true;
+  const Lane bound = held_depth(
+      job, mapped_depth(job, Lane(verb == Verb::store ? outline.nearest : outline.farthest)));
+  return any_block(job, outline.range, [&](std::ptrdiff_t at, int rows, int columns) HWY_ATTR {
+    const Lane old = Lane(load_rows<kLanes>(job.depth + at, job.stride, rows));
+    const Bool changes = verb == Verb::store ? bound < old : bound >= old;
+    return any(changes && inside_block(rows, columns));
+  });
 }
 
 /// Proxies of one step that no outline decided.
@@ -343,56 +358,75 @@ class WaitingProxies {
   int count_ = 0;
 };
 
-/// The stored elements of a step that reach the job's rows, the nearest first: in any order they
-/// leave the same depths, and in this one most of those behind change nothing. `order`: memory that
-/// is used again.
-inline std::span<const Draw> front_to_back(const NativeJob& job, const Step& step,
-                                           std::vector<Draw>& order) {
-  constexpr int kBuckets = 512;
-  const std::span<const Draw> draws(job.draws + step.first, step.count);
+/// Some draws that follow one another, mostly neighbours on a mesh.
+struct DrawRun {
+  std::uint32_t first, count;
+};
+/// The draws of a stored step in runs, the nearest first: in any order they leave the same depths,
+/// and in this one most of those behind change nothing. Runs that do not reach the job's rows are
+/// left out.
+inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
+  constexpr std::uint32_t kRun = 16, kBuckets = 512;
+  const std::uint32_t runs = (step.count + kRun - 1) / kRun;
+  std::vector<std::uint16_t> bucket(runs);
   std::uint32_t end[kBuckets + 1] = {};
-  const auto bucket = [&job](const Draw& draw) {
-    if (draw.element == kEverywhere) return 0;
-    const ProxyOutline& outline = job.outlines[draw.element];
-    if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0) return kBuckets;
-    const Plain depth = std::min(std::max(outline.nearest * job.scale, -0.25f), 0.25f);
-    return static_cast<int>((depth + 0.25f) * (2 * (kBuckets - 1)));
-  };
-  for (const Draw& draw : draws) ++end[bucket(draw)];
-  const std::uint32_t kept = step.count - end[kBuckets];
+  for (std::uint32_t k = 0; k < runs; ++k) {
+    const std::uint32_t first = step.first + k * kRun;
+    Plain nearest = HUGE_VALF;
+    bool here = false;
+    for (std::uint32_t d = first; d < std::min(first + kRun, step.first + step.count); ++d) {
+      if (job.draws[d].element == kEverywhere) {
+        nearest = -HUGE_VALF, here = true;
+        continue;
+      }
+      const ProxyOutline& outline = job.outlines[job.draws[d].element];
+      here = here || (outline.range.y0 < job.y1 && outline.range.y1 > job.y0);
+      nearest = std::min(nearest, outline.nearest);
+    }
+    const Plain depth = std::min(std::max(nearest * job.scale, -0.25f), 0.25f);
+    bucket[k] = here ? static_cast<std::uint16_t>((depth + 0.25f) * (2 * (kBuckets - 1)))
+                     : static_cast<std::uint16_t>(kBuckets);
+    ++end[bucket[k]];
+  }
+  out.resize(runs - end[kBuckets]);
   std::uint32_t before = 0;
   for (std::uint32_t& count : end) before += std::exchange(count, before);
-  order.resize(step.count);
-  for (const Draw& draw : draws) order[end[bucket(draw)]++] = draw;
-  return std::span(order).first(kept);
+  for (std::uint32_t k = 0; k < runs; ++k) {
+    if (bucket[k] < kBuckets)
+      out[end[bucket[k]]++] = {step.first + k * kRun, std::min(kRun, step.count - k * kRun)};
+  }
 }
 
 template <class Kernel>
 HWY_INLINE void draw_proxies(const NativeJob& job) {
-  constexpr std::uint32_t kLeastSorted = 64;
-  std::vector<Draw> order;
+  const bool run = job.output == NativeOutput::run;
+  std::vector<DrawRun> runs;
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
     const Step& step = job.steps[s];
-    const bool run = job.output == NativeOutput::run;
     const bool asked = step.verb == Verb::ask && run;
-    std::span<const Draw> draws(job.draws + step.first, step.count);
-    if (step.verb == Verb::store && step.count >= kLeastSorted)
-      draws = front_to_back(job, step, order);
+    if (asked) {
+      runs.assign(1, {step.first, step.count});
+    } else {
+      front_to_back(job, step, runs);
+    }
     WaitingProxies<Kernel> waiting(job, step.verb);
-    for (const Draw& draw : draws) {
-      if (asked && already_seen(job.seen, draw.slot)) continue;
-      if (draw.element == kEverywhere) {
-        if (take_everywhere(job, step.verb) && asked) mark_seen(job.seen, draw.slot);
-        continue;
-      }
-      const ProxyOutline& outline = job.outlines[draw.element];
-      if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0 ||
-          outline.range.y0 >= outline.range.y1)
-        continue;
-      if (asked && seen_for_sure(job, outline)) {
-        mark_seen(job.seen, draw.slot);
-      } else if (!run || may_change(job, outline, step.verb)) {
-        waiting.add(draw);
+    for (const DrawRun& some : runs) {
+      for (std::uint32_t d = some.first; d < some.first + some.count; ++d) {
+        const Draw& draw = job.draws[d];
+        if (asked && already_seen(job.seen, draw.slot)) continue;
+        if (draw.element == kEverywhere) {
+          take_everywhere(job, step.verb);
+          continue;
+        }
+        const ProxyOutline& outline = job.outlines[draw.element];
+        if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0 ||
+            outline.range.y0 >= outline.range.y1)
+          continue;
+        if (asked && seen_for_sure(job, outline)) {
+          mark_seen(job.seen, draw.slot);
+        } else if (!run || may_change(job, outline, step.verb)) {
+          waiting.add(draw);
+        }
       }
     }
     waiting.draw_all();
