@@ -38,6 +38,18 @@ FAR_KERNEL double fit_above(double z, double radius) {
   return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
+// Depths that no point of the fattened primitive comes before (depths[0]) and none behind (depths[1]); floats.
+FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* depths) {
+  double lowest = p[0].z;
+  double highest = p[0].z;
+  for (int k = 1; k < count; ++k) {
+    lowest = min(lowest, p[k].z);
+    highest = max(highest, p[k].z);
+  }
+  depths[0] = fit_below(lowest, radius);
+  depths[1] = fit_above(highest, radius);
+}
+
 // ---- the proxy's rectangle ----
 
 // A rectangle, four corners x, y counterclockwise, that contains the image of the points fattened by a disc, inside |x| <=
@@ -162,16 +174,12 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
     middle = fit_sub(middle, fit_scaled(-(0.5 * lo + 0.5 * hi), rows[i]));
   }
   const dvec3 centre = {FAR_NEAREST(middle.x), FAR_NEAREST(middle.y), FAR_NEAREST(middle.z)};
-  double lowest = p[0].z;
-  double highest = p[0].z;
-  for (int k = 1; k < count; ++k) {
-    lowest = min(lowest, p[k].z);
-    highest = max(highest, p[k].z);
-  }
+  double depths[2];
+  fit_depths(p, count, radius, depths);
   solid[0] = centre.x;
   solid[1] = centre.y;
   solid[2] = centre.z;
-  solid[3] = fit_below(lowest, radius);
+  solid[3] = depths[0];
   for (int i = 0; i < 3; ++i) {
     const dvec3 n = {FAR_NEAREST(rows[i].x), FAR_NEAREST(rows[i].y), FAR_NEAREST(rows[i].z)};
     double reach = 0.0;
@@ -189,7 +197,7 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
     solid[4 * i + 6] = n.z;
     solid[4 * i + 7] = fit_up(reach + kFitBox * size + radius * length);
   }
-  solid[16] = fit_above(highest, radius);
+  solid[16] = depths[1];
   solid[17] = 0.0;
   solid[18] = 0.0;
   solid[19] = 0.0;
@@ -207,7 +215,9 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
   solid[0] = centre.x;
   solid[1] = centre.y;
   solid[2] = centre.z;
-  solid[3] = fit_below(lo.z, radius);
+  double depths[2];
+  fit_depths(p, 3, radius, depths);
+  solid[3] = depths[0];
   double lost2 = 0.0;
   double size2 = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -225,7 +235,7 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
   // 2^-511, whose squares are less than a normal double.
   const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
   solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));
-  solid[11] = fit_above(hi.z, radius);
+  solid[11] = depths[1];
   solid[16] = 0.0;
   solid[17] = 0.0;
   solid[18] = 0.0;

@@ -33,6 +33,9 @@ struct Box {
   static HWY_INLINE void solid(const dvec3* p, WideLane radius, WideLane* numbers) {
     fit_box(p, 3, radius, numbers);
   }
+  static HWY_INLINE void depths(const dvec3* p, WideLane radius, WideLane* found) {
+    fit_depths(p, 3, radius, found);
+  }
 };
 struct Minkowski : Box {
   static HWY_INLINE void solid(const dvec3* p, WideLane radius, WideLane* numbers) {

@@ -60,11 +60,11 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 
 namespace {
 
-// Whether a stretched object can meet another one or itself.
+// Whether an object whose blocks are too small for floats can meet another one or itself.
 bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
   if (blocks.stretched.empty()) return false;
   return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {
-           return blocks.is_stretched(meeting.a) || blocks.is_stretched(meeting.b);
+           return std::max(blocks.stretch(meeting.a), blocks.stretch(meeting.b)) > kUneven;
          });
 }
 

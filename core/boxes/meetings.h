@@ -60,9 +60,9 @@ struct BlockDecision {
 /// Compares the boxes of the blocks of objects that meet. The number of overlaps decides how pairs
 /// are found: by blocks along the axes if few of them overlap, by oriented blocks if few of those
 /// overlap in a sample, else by a tree; also by a tree if there are too many meetings to list, or
-/// an object is stretched (core/boxes/triangle_blocks.h). Each way finds every pair at most the
-/// clearance apart. threads: 0 for as many as there are cores; changes no answer. ignored: as
-/// find_meetings().
+/// an object is stretched beyond kUneven (core/boxes/triangle_blocks.h). Each way finds every pair
+/// at most the clearance apart. threads: 0 for as many as there are cores; changes no answer.
+/// ignored: as find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 

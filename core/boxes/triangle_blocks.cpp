@@ -39,11 +39,12 @@ double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
 }
-// Whether most triangles of an object lie in a small part of its box, which is grown by `half`.
-bool is_stretched(const Scene& scene, const Object& object, const Box& box, double half) {
+// How many times longer the box of an object, which is grown by `half`, is than the box around most
+// of its triangles.
+float stretch_of(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
   constexpr std::uint32_t kLeast = 4096;  // triangles
-  if (object.triangle_count < kLeast) return false;
+  if (object.triangle_count < kLeast) return 0;
   double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -55,15 +56,17 @@ bool is_stretched(const Scene& scene, const Object& object, const Box& box, doub
     side += 0.5 * at[kSample - 1 - kEnd] - 0.5 * at[kEnd] + half;
     whole += 0.5 * box.hi[axis] - 0.5 * box.lo[axis];
   }
-  return whole > kStretched * side;
+  constexpr double kLeastSide = std::numeric_limits<double>::denorm_min();
+  return static_cast<float>(std::min(whole / std::max(side, kLeastSide), 0x1p100));
 }
 
 void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
   blocks.stretched.clear();
   for (std::size_t o = 0; o < blocks.objects.size(); ++o) {
-    if (!is_stretched(scene, scene.objects[o], blocks.objects[o], half)) continue;
+    const float stretch = stretch_of(scene, scene.objects[o], blocks.objects[o], half);
+    if (!(stretch > kStretched)) continue;
     blocks.stretched.resize(blocks.objects.size(), 0);
-    blocks.stretched[o] = 1;
+    blocks.stretched[o] = stretch;
   }
 }
 
@@ -267,7 +270,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
   for (std::uint32_t o = 0; o < regions.size(); ++o) {
     if (regions[o].is_empty()) continue;
     all.add(blocks.objects[o]);
-    if (blocks.is_stretched(o) || is_scattered(blocks, o)) scattered.push_back(o);
+    if (blocks.stretch(o) > kStretched || is_scattered(blocks, o)) scattered.push_back(o);
   }
   blocks.origin = middle(all);
   if (scattered.empty()) return;
@@ -280,7 +283,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
     const Object& object = scene.objects[o];
     const auto order =
         std::span(blocks.order).subspan(object.first_triangle, object.triangle_count);
-    inside[k] = blocks.is_stretched(o)
+    inside[k] = blocks.stretch(o) > kStretched
                     ? order_stretched(scene, object, order)
                     : order_object(scene, object, half, blocks.origin,
                                    relative(regions[o], blocks.origin), own_threads, order);

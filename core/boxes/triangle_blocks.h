@@ -34,14 +34,14 @@ struct TriangleBlocks {
     std::uint32_t count = 0;  // blocks with lanes; triangles of other blocks meet nothing
     bool any = false;
   };
-  std::vector<Gathered> gathered;         // per object; empty: no object was gathered
-  std::vector<std::uint8_t> stretched;    // per object; empty: no object is stretched
+  std::vector<Gathered> gathered;  // per object; empty: no object was gathered
+  std::vector<float> stretched;    // per object, see stretch(); empty: no object is stretched
   UninitializedVector<BlockLanes> lanes;  // of the blocks of gathered objects
 
   bool is_gathered(std::uint32_t object) const { return !gathered.empty() && gathered[object].any; }
-  bool is_stretched(std::uint32_t object) const {
-    return !stretched.empty() && stretched[object] != 0;
-  }
+  /// How many times longer the box of an object is than the box around most of its triangles; 0 if
+  /// it is not stretched.
+  float stretch(std::uint32_t object) const { return stretched.empty() ? 0 : stretched[object]; }
   /// Blocks of an object that can meet anything.
   std::uint32_t count(std::uint32_t object) const {
     return is_gathered(object) ? gathered[object].count : first[object + 1] - first[object];
@@ -61,9 +61,13 @@ struct TriangleBlocks {
 /// smooth surface.
 constexpr double kScattered = 3;
 /// An object is stretched if its box is more than kStretched times as long as the box around most
-/// of its triangles (judged by a sample). Grids over such a box, and boxes of blocks as floats, are
-/// of no use. Objects of a few blocks are not judged.
-constexpr double kStretched = 8;
+/// of its triangles (judged by a sample). Grids over such a box are of no use. Objects of a few
+/// blocks are not judged.
+constexpr float kStretched = 8;
+/// Beyond this, boxes of blocks as floats are of no use either: a block of a surface with a million
+/// triangles has 1/256 of the length of the whole. 64 steps of a float, which is 2^-24 of the
+/// object's box, should fit into it.
+constexpr float kUneven = 0x1p24f / (256 * 64);
 
 /// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
 /// are cores.

@@ -100,20 +100,70 @@ struct SolidProgram {
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
 
+/// A proxy lies in |x| <= x, |y| <= y px, strictly inside the viewport.
+struct ProxyBounds {
+  double x;
+  double y;
+};
+
+/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the
+/// window's lower left corner; empty if x0 >= x1 or y0 >= y1.
+struct PixelRange {
+  std::uint16_t x0, x1, y0, y1;
+};
+
+/// What tells of most proxies that they change nothing, or that they are seen, before they are
+/// fitted to their triangle.
+struct ProxyOutline {
+  PixelRange range;         // of the rectangle's corners
+  float nearest, farthest;  // px; no entry comes before, no exit behind
+  /// A pixel of the window whose centre the proxy covers, and a depth (px) that its exit there is
+  /// at or behind (docs/budget.md, "The canvas on the CPU"). kNoPixel: none is known.
+  std::uint16_t x, y;
+  float depth;
+};
+constexpr std::uint16_t kNoPixel = 0xffff;
+
+/// Triangles to fatten at once.
+struct FattenBatch {
+  const Scene* scene = nullptr;
+  const std::uint32_t* items = nullptr;  // triangles
+  std::size_t count = 0;
+  const Window* window = nullptr;
+  double radius = 0;  // px
+  double reach = 0;   // px; a proxy covers every pixel centre this close to a corner; 0: unknown
+  ProxyBounds bounds{};
+  std::uint8_t* done = nullptr;  // per item: 1: the item's one proxy is there; 0: the item is not
+                                 // drawable or has to be clipped to the region
+  // Per item; without meaning if it is not done. One of them is null.
+  Proxy* out = nullptr;
+  ProxyOutline* outlines = nullptr;
+};
+
 /// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns
 /// the elements first[i] .. first[i + 1] - 1.
 struct Drawables {
   DepthMode mode = DepthMode::fragment;
   std::vector<std::uint32_t> first{0};
-  UninitializedVector<Proxy> proxies;            // fragment
+  UninitializedVector<Proxy> proxies;            // fragment; per element if `fit` is null
   std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
   std::vector<std::uint32_t> undrawable;  // items beyond the budget: they own no elements, see Pass
 
+  /// For a canvas that fits proxies as it draws them (Canvas::fits_proxies): element e is
+  /// proxies[sources[e] - kFitted], or the proxy of triangle sources[e], by fit(batch) with these
+  /// items, count, out and done. Null: no element waits, and there are no sources and outlines.
+  void (*fit)(const FattenBatch& batch) = nullptr;
+  FattenBatch batch;
+  UninitializedVector<std::uint32_t> sources;
+  UninitializedVector<ProxyOutline> outlines;
+
   std::size_t items() const { return first.size() - 1; }
   std::size_t elements() const {
-    return mode == DepthMode::fragment ? proxies.size() : triangles.size();
+    if (mode == DepthMode::fixed) return triangles.size();
+    return fit == nullptr ? proxies.size() : sources.size();
   }
 };
+constexpr std::uint32_t kFitted = 0x80000000;
 
 /// One element drawn on behalf of a slot. kEverywhere: a full-window quad at the nearest depth; it
 /// is only stored, and hides all.
@@ -149,6 +199,8 @@ class Canvas {
  public:
   virtual ~Canvas() = default;
   virtual const RasterLimits& limits() const = 0;
+  /// Whether this canvas takes drawables whose proxies are not fitted yet (Drawables::fit).
+  virtual bool fits_proxies() const { return false; }
   /// Makes `drawables` (kept by the canvas until the next begin) the material of the passes that
   /// follow.
   virtual void begin(const Window& window, const Drawables& drawables) = 0;

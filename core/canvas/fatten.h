@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "core/canvas/canvas.h"
@@ -11,29 +12,18 @@
 
 namespace farcull {
 
-/// A proxy lies in |x| <= x, |y| <= y px, strictly inside the viewport.
-struct ProxyBounds {
-  double x;
-  double y;
-};
 ProxyBounds proxy_bounds(const Window& window);
+
+/// The pixels of the window whose centres are in the box of `points`, `margin` px larger on each
+/// side. points: x and y (px) of a point, at every `step` floats.
+PixelRange pixel_range(std::span<const float> points, std::size_t step, double margin,
+                       const Window& window);
+/// The outline of a fitted proxy, of which only the pixels are known.
+ProxyOutline outline_of(const Proxy& proxy, const Window& window);
 
 /// The largest radius (px) that offsets and their kernels are derived for (docs/budget.md, "The
 /// radius").
 constexpr double kMaxRadius = 0x1p20;
-
-/// Triangles to fatten at once.
-struct FattenBatch {
-  const Scene* scene;
-  const std::uint32_t* items;  // triangles
-  std::size_t count;
-  const Window* window;
-  double radius;  // px
-  ProxyBounds bounds;
-  Proxy* out;          // per item
-  std::uint8_t* done;  // per item: 1: `out` has the item's one proxy; 0: the item is not drawable
-                       // or has to be clipped to the region, and `out` has no meaning
-};
 
 struct Fattener {
   std::string name;  // "raw", "obb", ...
@@ -43,8 +33,8 @@ struct Fattener {
   /// px (>= 0).
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
-  /// Fattens many triangles at once, those that need no clipping, to the same bits as `fatten`;
-  /// null: triangles are fattened one by one.
+  /// Fattens many triangles at once, those that need no clipping, to the same bits as `fatten`, or
+  /// finds the outlines of their proxies; null: triangles are fattened one by one.
   void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
@@ -60,8 +50,10 @@ struct FattenCounts {
 
 /// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
 /// does not depend on them. `used`: drawables no longer needed, whose memory is used again.
+/// `reach`: if it is given, proxies wait to be fitted (Drawables::fit) where the fattener has
+/// fatten_inside; as FattenBatch::reach. The result then refers to `scene` and `window`.
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
-                 const Fattener& fattener, double radius, FattenCounts& counts,
-                 Drawables used = {});
+                 const Fattener& fattener, double radius, FattenCounts& counts, Drawables used = {},
+                 std::optional<double> reach = {});
 
 }  // namespace farcull

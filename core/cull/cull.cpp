@@ -257,11 +257,16 @@ class Culling {
     Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
     stage.fattener = settings_.fattener.name;
     stage.depends = round_ > 1 || (visited_ && !settings_.full);
-    items_ = state_.live;
+    std::vector<std::uint32_t> live = state_.live;
     FattenCounts counts;
-    drawables_ = fatten(scene_, items_, *place_->window, settings_.fattener,
-                        result_.views[view].radius_px, counts, std::move(drawables_));
+    const ViewReport& report = result_.views[view];
+    // A proxy covers the centres that are deeper inside it than its corners are rounded (lemma 21).
+    std::optional<double> reach;
+    if (canvas_.fits_proxies()) reach = (report.radius_px - report.budget.input) * (1 - 0x1p-30);
+    drawables_ = fatten(scene_, live, *place_->window, settings_.fattener, report.radius_px, counts,
+                        std::move(drawables_), reach);
     canvas_.begin(*place_->window, drawables_);
+    items_ = VisitItems(state_, std::move(live), drawables_);
     stage.out = drawables_.elements();
     stage.n = counts.undrawable;
     finish(stage);
@@ -451,7 +456,7 @@ class Culling {
   // The state of the visit in progress.
   std::string view_;
   ViewState* place_ = nullptr;
-  std::vector<std::uint32_t> items_;
+  VisitItems items_;
   Drawables drawables_;
   Stopwatch watch_;
 };

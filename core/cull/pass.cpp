@@ -8,58 +8,48 @@ namespace {
 
 // Calls visit(from, to) for the items of each owner, in the order of the pass that asks `ask`.
 template <class Visit>
-void for_owners(const CullState& state, std::span<const std::uint32_t> items, Bit ask,
-                const Visit& visit) {
-  const auto owner = [&](std::size_t i) { return state.owner[items[i]]; };
+void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
+  const std::vector<std::uint32_t>& begin = items.owner_begin;
   if (ask == kF) {
-    for (std::size_t from = 0, to = 0; from < items.size(); from = to) {
-      while (to < items.size() && owner(to) == owner(from)) ++to;
-      visit(from, to);
-    }
+    for (std::size_t o = 0; o + 1 < begin.size(); ++o) visit(begin[o], begin[o + 1]);
   } else {
-    for (std::size_t to = items.size(), from = to; to > 0; to = from) {
-      while (from > 0 && owner(from - 1) == owner(to - 1)) --from;
-      visit(from, to);
-    }
+    for (std::size_t o = begin.size(); o-- > 1;) visit(begin[o - 1], begin[o]);
   }
 }
 
 // Says which items a pass asks and stores. It only reads the state.
 struct PassQuestion {
   const CullState& state;
-  std::span<const std::uint32_t> items;
+  const VisitItems& visit;
   const Drawables& drawables;
   Bit ask;
   const PassRule& rule;
   const Level& level;
 
-  std::uint8_t bits(std::size_t item) const { return state.bits[items[item]]; }
+  std::uint8_t bits(std::size_t item) const { return state.bits[visit.items[item]]; }
   bool asks(std::size_t item) const { return rule.asks[ask == kL][bits(item)]; }
   bool stores(std::size_t item) const { return rule.stores[ask == kL][bits(item)]; }
   std::uint32_t elements(std::size_t item) const {
     return drawables.first[item + 1] - drawables.first[item];
   }
   std::uint32_t group(std::size_t item) const {
-    return level.group ? (*level.group)[items[item]] : items[item];
+    return level.group ? (*level.group)[visit.items[item]] : visit.items[item];
+  }
+  bool undrawable(std::size_t item) const {
+    return !visit.undrawable.empty() && visit.undrawable[item];
   }
 };
-
-std::vector<std::uint8_t> undrawable_items(const PassQuestion& of) {
-  if (of.drawables.undrawable.empty()) return {};
-  std::vector<std::uint8_t> out(of.items.size());
-  for (const std::uint32_t item : of.drawables.undrawable) out[item] = 1;
-  return out;
-}
 
 // One pass in the making.
 class PassBuilder {
  public:
-  explicit PassBuilder(const PassQuestion& of) : of_(of), undrawable_(undrawable_items(of)) {
+  explicit PassBuilder(const PassQuestion& of) : of_(of) {
     pass_.draws.reserve(2 * of.drawables.elements());
-    asked_.reserve(of.items.size());
-    for_owners(of.state, of.items, of.ask, [&](std::size_t from, std::size_t to) {
+    asked_.reserve(of.visit.items.size());
+    for_owners(of.visit, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
-      store_owner(from, to);
+      const bool last = of.ask == kF ? to == of.visit.items.size() : from == 0;
+      if (!last) store_owner(from, to);  // no query would read it
     });
     while (!pass_.steps.empty() && pass_.steps.back().verb == Verb::store) {
       pass_.draws.resize(pass_.steps.back().first);
@@ -75,11 +65,11 @@ class PassBuilder {
   // Calls clear(triangle) for all that the pass did not see.
   template <class Clear>
   void for_unseen(const std::vector<std::uint8_t>& seen, const Clear& clear) const {
-    for (const std::uint32_t item : undrawn_) clear(of_.items[item]);
+    for (const std::uint32_t item : undrawn_) clear(of_.visit.items[item]);
     for (std::size_t slot = 0; slot < pass_.slots; ++slot) {
       if (seen[slot]) continue;
       for (std::size_t i = slot_begin_[slot]; i < slot_begin_[slot + 1]; ++i)
-        clear(of_.items[asked_[i]]);
+        clear(of_.visit.items[asked_[i]]);
     }
   }
 
@@ -89,7 +79,7 @@ class PassBuilder {
     std::uint32_t group = 0;
     bool first = true;
     for (std::size_t i = from; i < to; ++i) {
-      if (undrawable(i) || !of_.asks(i)) continue;
+      if (of_.undrawable(i) || !of_.asks(i)) continue;
       const auto item = static_cast<std::uint32_t>(i);
       if (!anything_stored_ || of_.elements(i) == 0) {
         undrawn_.push_back(item);
@@ -109,7 +99,7 @@ class PassBuilder {
     const Step step{Verb::store, static_cast<std::uint32_t>(pass_.draws.size()), 0};
     for (std::size_t i = from; i < to; ++i) {
       if (!of_.stores(i)) continue;
-      if (undrawable(i)) {
+      if (of_.undrawable(i)) {
         pass_.draws.push_back({kEverywhere, 0});
       } else {
         add_elements(i, 0);
@@ -117,8 +107,6 @@ class PassBuilder {
     }
     push(step);
   }
-
-  bool undrawable(std::size_t item) const { return !undrawable_.empty() && undrawable_[item]; }
 
   void add_elements(std::size_t item, std::uint32_t slot) {
     const std::vector<std::uint32_t>& first = of_.drawables.first;
@@ -133,10 +121,9 @@ class PassBuilder {
   }
 
   const PassQuestion& of_;
-  std::vector<std::uint8_t> undrawable_;  // per item; empty: none is
-  std::vector<std::uint32_t> undrawn_;    // items that get the bit without being drawn
-  std::vector<std::uint32_t> asked_;      // items, slot after slot
-  std::vector<std::size_t> slot_begin_;   // into asked_
+  std::vector<std::uint32_t> undrawn_;   // items that get the bit without being drawn
+  std::vector<std::uint32_t> asked_;     // items, slot after slot
+  std::vector<std::size_t> slot_begin_;  // into asked_
   bool anything_stored_ = false;
   Pass pass_;
 };
@@ -158,9 +145,21 @@ void CullState::clear_bits() {
   for (const std::uint32_t t : live) bits[t] = 0;
 }
 
-PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
-                  const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
-                  bool touching, Canvas& canvas) {
+VisitItems::VisitItems(const CullState& state, std::vector<std::uint32_t> live,
+                       const Drawables& drawables)
+    : items(std::move(live)) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i == 0 || state.owner[items[i]] != state.owner[items[i - 1]])
+      owner_begin.push_back(static_cast<std::uint32_t>(i));
+  }
+  owner_begin.push_back(static_cast<std::uint32_t>(items.size()));
+  if (drawables.undrawable.empty()) return;
+  undrawable.resize(items.size());
+  for (const std::uint32_t item : drawables.undrawable) undrawable[item] = 1;
+}
+
+PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& drawables, Bit ask,
+                  const PassRule& rule, const Level& level, bool touching, Canvas& canvas) {
   const PassQuestion question{state, items, drawables, ask, rule, level};
   PassBuilder builder(question);
   Pass& pass = builder.pass();
@@ -172,35 +171,32 @@ PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
 }
 
 // The cost of a pass of plain CULLIDE: counts as PassBuilder does, and makes no lists.
-PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
-                    const Drawables& drawables, Bit ask, const Level& level) {
+PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
+                    Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};
-  const std::vector<std::uint8_t> undrawable = undrawable_items(of);
   PassCost cost;            // up to the last question
   std::uint64_t drawn = 0;  // so far
   bool anything_stored = false;
-  for_owners(state, items, ask, [&](std::size_t from, std::size_t to) {
-    std::uint64_t asked = 0, stored = 0, groups = 0;
-    std::uint32_t group = 0;
+  for_owners(items, ask, [&](std::size_t from, std::size_t to) {
+    // No branch for a single item: a visit counts all its items often.
+    std::uint64_t elements = 0, everywhere = 0, groups = 0, group = UINT64_MAX;
     for (std::size_t i = from; i < to; ++i) {
-      if (!of.asks(i)) continue;  // plain CULLIDE stores what it asks
-      if (!undrawable.empty() && undrawable[i]) {
-        ++stored;
-        continue;
-      }
-      const std::uint32_t elements = of.elements(i);
-      stored += elements;
-      if (!anything_stored || elements == 0) continue;
-      const std::uint32_t its = of.group(i);
-      if (groups == 0 || its != group) ++groups;
-      group = its;
-      asked += elements;
+      const std::uint32_t open = of.bits(i) != kCulled;
+      const std::uint64_t its = of.group(i);
+      const bool counts = open * of.elements(i) > 0;
+      elements += open * of.elements(i);
+      groups += counts && its != group;
+      group = counts ? its : group;
     }
-    cost.queries += groups;
-    drawn += asked;
-    if (asked > 0) cost.draws = drawn;
-    drawn += stored;
-    anything_stored = anything_stored || stored > 0;
+    for (std::size_t i = from; i < to && !items.undrawable.empty(); ++i)
+      everywhere += of.undrawable(i) && of.asks(i);
+    if (anything_stored) {
+      cost.queries += groups;
+      drawn += elements;
+      if (elements > 0) cost.draws = drawn;
+    }
+    drawn += elements + everywhere;  // plain CULLIDE stores what it asks
+    anything_stored = anything_stored || elements + everywhere > 0;
   });
   return cost;
 }

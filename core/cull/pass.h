@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +52,17 @@ struct CullState {
   void clear_bits();
 };
 
+/// The triangles that one visit of a view asks and stores.
+struct VisitItems {
+  VisitItems() = default;
+  /// Those of `live`, in the order of CullState::live.
+  VisitItems(const CullState& state, std::vector<std::uint32_t> live, const Drawables& drawables);
+
+  std::vector<std::uint32_t> items;        // those of the view's drawables
+  std::vector<std::uint32_t> owner_begin;  // into items, per owner that has some; then their number
+  std::vector<std::uint8_t> undrawable;    // per item; empty: none is
+};
+
 struct PassCost {
   std::uint64_t draws = 0;    // elements drawn
   std::uint64_t queries = 0;  // slots asked
@@ -67,13 +77,12 @@ struct PassCost {
 /// by the rule, then stores by the rule. Triangles not seen get the bit after the pass. Two kinds
 /// get it undrawn: triangles without elements in this view, and those asked before anything is
 /// stored. Undrawable ones get no bit and are stored everywhere. Stores that no later query reads
-/// are left out. items: those of `drawables`, triangles in the order of CullState::live.
-PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
-                  const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
-                  bool touching, Canvas& canvas);
+/// are left out.
+PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& drawables, Bit ask,
+                  const PassRule& rule, const Level& level, bool touching, Canvas& canvas);
 
 /// Elements and slots that the pass of plain CULLIDE would draw and ask on the same live triangles.
-PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
-                    const Drawables& drawables, Bit ask, const Level& level);
+PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
+                    Bit ask, const Level& level);
 
 }  // namespace farcull

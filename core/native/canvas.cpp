@@ -3,7 +3,6 @@
 #include "core/native/canvas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -11,36 +10,13 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/canvas/fatten.h"
 
 namespace farcull {
 namespace {
 
 constexpr int kMostPixels = 16380;    // a side; its viewport is 2^14
 constexpr std::size_t kLeast = 2048;  // draws; with fewer, another thread costs more than it saves
-
-// First and one past the last pixel whose centre is in [lo, hi].
-void cut(double lo, double hi, int size, std::uint16_t& from, std::uint16_t& to) {
-  const double first = std::ceil(lo + 0.5 * size - 0.5), last = std::floor(hi + 0.5 * size - 0.5);
-  from = static_cast<std::uint16_t>(std::clamp<double>(first, 0, size));
-  to = static_cast<std::uint16_t>(std::clamp<double>(last + 1, 0, size));
-}
-
-template <std::size_t kCount>
-PixelRange range_of(const std::array<float, kCount>& points, double margin, const Window& window) {
-  constexpr std::size_t kStep = kCount == 8 ? 2 : 4;
-  float lo[2] = {HUGE_VALF, HUGE_VALF}, hi[2] = {-HUGE_VALF, -HUGE_VALF};
-  for (std::size_t i = 0; i < kCount; i += kStep) {
-    for (int k = 0; k < 2; ++k) {
-      lo[k] = std::min(lo[k], points[i + k]);
-      hi[k] = std::max(hi[k], points[i + k]);
-    }
-  }
-  PixelRange range;
-  cut(lo[0] - margin, hi[0] + margin, window.width, range.x0, range.x1);
-  cut(lo[1] - margin, hi[1] + margin, window.height, range.y0, range.y1);
-  if (range.x0 >= range.x1) range.y1 = range.y0;
-  return range;
-}
 
 }  // namespace
 
@@ -75,20 +51,26 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
       throw std::logic_error("NativeCanvas: a window of " + std::to_string(side) + " px");
   }
   window_ = window;
-  const std::size_t count = drawables.elements();
-  ranges_.resize(count);
+  const bool proxies = mode_ == DepthMode::fragment, waiting = drawables.fit != nullptr;
+  const std::size_t count = drawables.elements(), unknown = waiting ? 0 : count;
+  ranges_.resize(proxies ? 0 : count);
+  outlines_.resize(proxies ? unknown : 0);
   // Snapping moves a corner by half a subpixel, and a pixel reaches half its side from its centre.
   const double reach = options_.conservative ? 0x1p-8 + 0.5 : 0x1p-8;
-  for_chunks(count, chunks_for(count, 4 * kLeast, options_.threads),
+  for_chunks(unknown, chunks_for(unknown, 4 * kLeast, options_.threads),
              [&](std::size_t, std::size_t from, std::size_t to) {
                for (std::size_t i = from; i < to; ++i) {
-                 ranges_[i] = mode_ == DepthMode::fragment
-                                  ? range_of(drawables.proxies[i].corners, 0, window)
-                                  : range_of(drawables.triangles[i], reach, window);
+                 if (proxies) {
+                   outlines_[i] = outline_of(drawables.proxies[i], window);
+                 } else {
+                   ranges_[i] = pixel_range(drawables.triangles[i], 4, reach, window);
+                 }
                }
              });
   work_.assign(static_cast<std::size_t>(window.height) + 1, 0);
-  for (const PixelRange& range : ranges_) {
+  const ProxyOutline* const outlines = waiting ? drawables.outlines.data() : outlines_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const PixelRange& range = proxies ? outlines[i].range : ranges_[i];
     if (range.y0 < range.y1) ++work_[(range.y0 + range.y1) / 2 + 1u];
   }
   for (int y = 0; y < window.height; ++y) work_[y + 1u] += work_[y];
@@ -107,8 +89,8 @@ NativeJob NativeCanvas::job(NativeOutput output, float empty) {
           .scale = depth_scale(window_),
           .fixed24 = options_.depth_bits == 24,
           .conservative = options_.conservative,
-          .proxies = drawables_->proxies.data(),
-          .triangles = drawables_->triangles.data(),
+          .drawables = drawables_,
+          .outlines = drawables_->fit != nullptr ? drawables_->outlines.data() : outlines_.data(),
           .ranges = ranges_.data(),
           .output = output,
           .touching = true,

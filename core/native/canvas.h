@@ -23,12 +23,6 @@ namespace farcull {
 /// may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
-/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the
-/// window's lower left corner; empty if x0 >= x1 or y0 >= y1.
-struct PixelRange {
-  std::uint16_t x0, x1, y0, y1;
-};
-
 /// run: a pass. values: the depths in px that store (nearest) or ask (farthest) leaves. depths: the
 /// same as the depth buffer holds them.
 enum class NativeOutput : std::uint8_t { run, values, depths };
@@ -43,9 +37,9 @@ struct NativeJob {
   bool fixed24;       // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
   bool conservative;  // triangles have a fragment in each pixel that they touch
   // The elements.
-  const Proxy* proxies;
-  const std::array<float, 12>* triangles;
-  const PixelRange* ranges;  // per element
+  const Drawables* drawables;
+  const ProxyOutline* outlines;  // per proxy
+  const PixelRange* ranges;      // per triangle
   // The pass.
   NativeOutput output;
   bool touching;
@@ -99,6 +93,7 @@ class NativeCanvas final : public Canvas {
   NativeCanvas(DepthMode mode, const SolidProgram& solid, const NativeCanvasOptions& options = {});
 
   const RasterLimits& limits() const override { return limits_; }
+  bool fits_proxies() const override { return true; }
   /// Throws std::logic_error for drawables of the other mode and windows beyond 16380 px.
   void begin(const Window& window, const Drawables& drawables) override;
   std::vector<std::uint8_t> run(const Pass& pass) override;
@@ -117,7 +112,8 @@ class NativeCanvas final : public Canvas {
   RasterLimits limits_;
   Window window_;
   const Drawables* drawables_ = nullptr;  // the caller's, until the next begin
-  std::vector<PixelRange> ranges_;        // per element
+  std::vector<PixelRange> ranges_;        // per triangle
+  std::vector<ProxyOutline> outlines_;    // per proxy, if all are fitted
   std::vector<std::uint64_t> work_;       // per row: elements whose middle row is before it
   int stride_ = 0;
   std::vector<float> depth_;

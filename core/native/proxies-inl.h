@@ -13,6 +13,10 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/native/canvas.h"
 #include "core/native/glsl_lanes-inl.h"
@@ -199,13 +203,11 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws an element in the rows of the job. True: it is asked, and seen.
+/// Draws a proxy in the rows of the job. True: it is asked, and seen.
 template <class Kernel>
-HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb verb) {
-  const PixelRange& range = job.ranges[element];
+HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const PixelRange& range,
+                           Verb verb) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
-  if (y0 >= y1) return false;
-  const Proxy& proxy = job.proxies[element];
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
@@ -255,11 +257,180 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, std::uint32_t element, Verb ver
   return false;
 }
 
+// Most proxies are decided by their outlines; the others wait, and are fitted and drawn together.
+
+/// True: the proxy is asked in a pixel that it covers for sure, and seen there.
+HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
+  if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
+  Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
+  if (job.fixed24) depth = std::rint(depth * kSteps24);
+  const Plain old = job.depth[static_cast<std::ptrdiff_t>(outline.y) * job.stride + outline.x];
+  return job.touching ? depth >= old : depth > old;
+}
+
+/// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows until it
+/// returns true, and returns whether it did. at: the depth of the block's first pixel; rows,
+/// columns: how many of them are in the range.
+template <class Visit>
+HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
+  const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
+  for (int y = y0; y < y1; y += kBlockHeight) {
+    for (int x = range.x0; x < range.x1; x += kBlockWidth) {
+      if (visit(static_cast<std::ptrdiff_t>(y) * job.stride + x, y1 - y, range.x1 - x)) return true;
+    }
+  }
+  return false;
+}
+HWY_INLINE Bool inside_block(int rows, int columns) {
+  return lane_rows() < Lane(static_cast<Plain>(rows)) &&
+         lane_columns() < Lane(static_cast<Plain>(columns));
+}
+/// Whether a proxy is so small that its blocks are looked at before it is fitted.
+HWY_INLINE bool is_small(const PixelRange& range) {
+  constexpr int kMostBlocks = 4;  // in a row and in a column
+  return range.x1 - range.x0 <= kMostBlocks * kBlockWidth &&
+         range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
+}
+
+/// False: not even the nearest (store) or farthest (ask) depth of the proxy changes a pixel of its
+/// range.
+HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
+  if (!is_small(outline.range)) return true;
+  const Lane bound = held_depth(
+      job, mapped_depth(job, Lane(verb == Verb::store ? outline.nearest : outline.farthest)));
+  return any_block(job, outline.range, [&](std::ptrdiff_t at, int rows, int columns) HWY_ATTR {
+    const Lane old = Lane(load_rows<kLanes>(job.depth + at, job.stride, rows));
+    const Bool changes = verb == Verb::store ? bound < old : bound >= old;
+    return any(changes && inside_block(rows, columns));
+  });
+}
+
+/// Proxies of one step that no outline decided.
+template <class Kernel>
+class WaitingProxies {
+ public:
+  WaitingProxies(const NativeJob& job, Verb verb)
+      : job_(job), verb_(verb), asked_(verb == Verb::ask && job.output == NativeOutput::run) {}
+
+  HWY_INLINE void add(const Draw& draw) {
+    draws_[count_++] = draw;
+    if (count_ == kMost) draw_all();
+  }
+  HWY_INLINE void draw_all() {
+    const Drawables& from = *job_.drawables;
+    std::uint32_t items[kMost];
+    std::uint8_t done[kMost];
+    Proxy fitted[kMost];
+    const Proxy* proxies[kMost];
+    FattenBatch batch = from.batch;
+    for (int i = 0; i < count_; ++i) {
+      const std::uint32_t element = draws_[i].element;
+      if (from.fit == nullptr) {
+        proxies[i] = &from.proxies[element];
+      } else if (from.sources[element] & kFitted) {
+        proxies[i] = &from.proxies[from.sources[element] - kFitted];
+      } else {
+        proxies[i] = &fitted[batch.count];
+        items[batch.count++] = from.sources[element];
+      }
+    }
+    if (batch.count > 0) {
+      batch.items = items;
+      batch.out = fitted;
+      batch.done = done;
+      from.fit(batch);
+    }
+    for (int i = 0; i < count_; ++i) {
+      const auto [element, slot] = draws_[i];
+      if (asked_ && already_seen(job_.seen, slot)) continue;
+      const bool seen = draw_proxy<Kernel>(job_, *proxies[i], job_.outlines[element].range, verb_);
+      if (asked_ && seen) mark_seen(job_.seen, slot);
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kMost = 16;
+  const NativeJob& job_;
+  const Verb verb_;
+  const bool asked_;
+  Draw draws_[kMost];
+  int count_ = 0;
+};
+
+/// Some draws that follow one another, mostly neighbours on a mesh.
+struct DrawRun {
+  std::uint32_t first, count;
+};
+/// The draws of a stored step in runs, the nearest first: in any order they leave the same depths,
+/// and in this one most of those behind change nothing. Runs that do not reach the job's rows are
+/// left out.
+inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
+  constexpr std::uint32_t kRun = 16, kBuckets = 512;
+  const std::uint32_t runs = (step.count + kRun - 1) / kRun;
+  std::vector<std::uint16_t> bucket(runs);
+  std::uint32_t end[kBuckets + 1] = {};
+  for (std::uint32_t k = 0; k < runs; ++k) {
+    const std::uint32_t first = step.first + k * kRun;
+    Plain nearest = HUGE_VALF;
+    bool here = false;
+    for (std::uint32_t d = first; d < std::min(first + kRun, step.first + step.count); ++d) {
+      if (job.draws[d].element == kEverywhere) {
+        nearest = -HUGE_VALF, here = true;
+        continue;
+      }
+      const ProxyOutline& outline = job.outlines[job.draws[d].element];
+      here = here || (outline.range.y0 < job.y1 && outline.range.y1 > job.y0);
+      nearest = std::min(nearest, outline.nearest);
+    }
+    const Plain depth = std::min(std::max(nearest * job.scale, -0.25f), 0.25f);
+    bucket[k] = here ? static_cast<std::uint16_t>((depth + 0.25f) * (2 * (kBuckets - 1)))
+                     : static_cast<std::uint16_t>(kBuckets);
+    ++end[bucket[k]];
+  }
+  out.resize(runs - end[kBuckets]);
+  std::uint32_t before = 0;
+  for (std::uint32_t& count : end) before += std::exchange(count, before);
+  for (std::uint32_t k = 0; k < runs; ++k) {
+    if (bucket[k] < kBuckets)
+      out[end[bucket[k]]++] = {step.first + k * kRun, std::min(kRun, step.count - k * kRun)};
+  }
+}
+
 template <class Kernel>
 HWY_INLINE void draw_proxies(const NativeJob& job) {
-  for_draws(job, [&job](std::uint32_t element, Verb verb) {
-    return draw_proxy<Kernel>(job, element, verb);
-  });
+  const bool run = job.output == NativeOutput::run;
+  std::vector<DrawRun> runs;
+  for (std::uint32_t s = 0; s < job.step_count; ++s) {
+    const Step& step = job.steps[s];
+    const bool asked = step.verb == Verb::ask && run;
+    if (asked) {
+      runs.assign(1, {step.first, step.count});
+    } else {
+      front_to_back(job, step, runs);
+    }
+    WaitingProxies<Kernel> waiting(job, step.verb);
+    for (const DrawRun& some : runs) {
+      for (std::uint32_t d = some.first; d < some.first + some.count; ++d) {
+        const Draw& draw = job.draws[d];
+        if (asked && already_seen(job.seen, draw.slot)) continue;
+        if (draw.element == kEverywhere) {
+          take_everywhere(job, step.verb);
+          continue;
+        }
+        const ProxyOutline& outline = job.outlines[draw.element];
+        if (outline.range.y0 >= job.y1 || outline.range.y1 <= job.y0 ||
+            outline.range.y0 >= outline.range.y1)
+          continue;
+        if (asked && seen_for_sure(job, outline)) {
+          mark_seen(job.seen, draw.slot);
+        } else if (!run || may_change(job, outline, step.verb)) {
+          waiting.add(draw);
+        }
+      }
+    }
+    waiting.draw_all();
+  }
 }
 
 /// Calls the kernel for single lines.

@@ -72,7 +72,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
   const PixelRange& range = job.ranges[element];
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
   if (y0 >= y1) return false;
-  const SnappedTriangle t(job, job.triangles[element]);
+  const SnappedTriangle t(job, job.drawables->triangles[element]);
   if (!kTouched && t.area == 0) return false;
   constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // of a pixel's side
   const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});

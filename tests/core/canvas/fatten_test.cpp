@@ -206,6 +206,50 @@ TEST(Fatten, IsTheConcatenationOfItsItems) {
   }
 }
 
+TEST(Fatten, ProxiesThatWaitAreFittedToTheirTriangle) {
+  Random random(405);
+  const std::vector<Box> region{{Vec3::Constant(-1), Vec3::Constant(1)}};
+  const Scene scene = mixed_scene(random, 20'000);  // several chunks where there are cores
+  std::vector<std::uint32_t> items(scene.triangles.size());
+  std::iota(items.begin(), items.end(), 0);
+  const Window window = *fit_window(parse_view("1:2:3"), region, 300);
+  for (const Fattener& fattener : {obb_fattener(), raw_triangles()}) {
+    FattenCounts counts, waiting_counts;
+    const Drawables fitted = fatten(scene, items, window, fattener, 0.75, counts);
+    const Drawables waiting =
+        fatten(scene, items, window, fattener, 0.75, waiting_counts, {}, 0.74);
+    EXPECT_EQ(counts.outside, waiting_counts.outside);
+    EXPECT_EQ(counts.clipped, waiting_counts.clipped);
+    EXPECT_EQ(waiting.first, fitted.first);
+    EXPECT_EQ(waiting.undrawable, fitted.undrawable);
+    if (fattener.raw) {
+      EXPECT_TRUE(same(waiting, fitted)) << "only proxies wait";
+      continue;
+    }
+    std::size_t there = 0;
+    for (std::size_t e = 0; e < waiting.elements(); ++e) {
+      Proxy proxy;
+      std::uint8_t done = 1;
+      if (waiting.sources[e] & kFitted) {
+        proxy = waiting.proxies[waiting.sources[e] - kFitted];
+        ++there;
+      } else {
+        FattenBatch batch = waiting.batch;
+        batch.items = &waiting.sources[e];
+        batch.count = 1;
+        batch.out = &proxy;
+        batch.done = &done;
+        waiting.fit(batch);
+      }
+      ASSERT_EQ(done, 1);
+      ASSERT_EQ(std::memcmp(&proxy, &fitted.proxies[e], sizeof proxy), 0) << e;
+    }
+    EXPECT_EQ(there, waiting.proxies.size());
+    EXPECT_GT(there, 100u);
+    EXPECT_GT(waiting.elements(), 2 * there);
+  }
+}
+
 TEST(RawTriangles, AreAFanOfThePatchInFloat) {
   Random random(404);
   for (int n = 0; n < 500; ++n) {

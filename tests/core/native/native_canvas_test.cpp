@@ -5,6 +5,7 @@
 #include "core/view/regions.h"
 #include "offsets/offsets.h"
 #include "tests/lab/lanes.h"
+#include "tests/lab/reference.h"
 #include "tests/lab/scenes.h"
 #include "tests/lab/solids.h"
 #include "verify/kernel_cases.h"
@@ -282,6 +283,101 @@ TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
     EXPECT_GT(seen_in_all, 10 * seeds);
     EXPECT_LT(seen_in_all, seeds * 4 * 24 - 10 * seeds);
     EXPECT_GT(reversed_differs, 13 * seeds / 4) << "a swapped depth test has to be noticed";
+  });
+}
+
+// ---- proxies that are fitted as they are drawn ----
+
+/// The triangles of a random pass as a scene, since pixel space is the world itself.
+Scene scene_of(const RandomPass& random) {
+  std::vector<reference::Triangle> triangles;
+  for (const Patch& p : random.patches)
+    triangles.push_back({p.corners[0], p.corners[1], p.corners[2]});
+  return reference::scene_of({triangles});
+}
+
+Drawables waiting(const Scene& scene, const Window& window, const Fattener& fattener, double radius,
+                  double reach) {
+  std::vector<std::uint32_t> items(scene.triangles.size());
+  std::iota(items.begin(), items.end(), 0);
+  FattenCounts counts;
+  return fatten(scene, items, window, fattener, radius, counts, {}, reach);
+}
+
+TEST(NativeCanvas, ProxiesThatWaitAreSeenAsPlainLoopsSeeThem) {
+  // Twins: outlines that are wrong by a little.
+  using Change = void (*)(ProxyOutline & outline);
+  const Change twins[] = {
+      [](ProxyOutline& o) { o.nearest += 0.5f; }, [](ProxyOutline& o) { o.farthest -= 0.5f; },
+      [](ProxyOutline& o) { o.depth += 2; }, [](ProxyOutline& o) { o.x = o.range.x0; }};
+  const int seeds = trials(40);
+  on_every_target([&] {
+    int different[std::size(twins)] = {}, too_far = 0;
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+      const RandomPass random(seed);
+      const Scene scene = scene_of(random);
+      const Pass many = repeated(random.pass);
+      for (const Fattener& fattener : fatteners()) {
+        for (const double radius : {0.72, 0.3}) {
+          SCOPED_TRACE(fattener.name + ", seed " + std::to_string(seed));
+          const double input = budget_for(native_limits(), 128).input;
+          const Drawables fitted = lab::fattened(random.window, fattener, radius, random.patches);
+          const Drawables right = waiting(scene, random.window, fattener, radius, radius - input);
+          ASSERT_EQ(right.first, fitted.first);
+          ASSERT_TRUE(right.proxies.empty());
+          const auto seen = [&](const Drawables& drawables, const Pass& pass, int bits) {
+            NativeCanvas canvas(fattener.mode, fattener.solid, {.depth_bits = bits, .threads = 2});
+            canvas.begin(random.window, drawables);
+            return canvas.run(pass);
+          };
+          for (const int bits : {32, 24}) {
+            const auto wanted = plain_run(random.window, fitted, fattener.solid, random.pass, bits);
+            EXPECT_EQ(seen(right, random.pass, bits), wanted) << bits << " bits";
+            EXPECT_EQ(seen(right, many, bits), wanted) << bits << " bits, many draws";
+          }
+          const auto wanted = seen(right, random.pass, 32);
+          for (std::size_t t = 0; t < std::size(twins); ++t) {
+            Drawables wrong = right;
+            for (ProxyOutline& outline : wrong.outlines) twins[t](outline);
+            different[t] += seen(wrong, random.pass, 32) != wanted;
+          }
+          too_far +=
+              seen(waiting(scene, random.window, fattener, radius, 3), random.pass, 32) != wanted;
+        }
+      }
+    }
+    for (const int count : different) EXPECT_GT(count, 0);
+    EXPECT_GT(too_far, 0);
+  });
+}
+
+TEST(NativeCanvas, OutlinesAreThoseOfTheFittedProxies) {
+  on_every_target([] {
+    int sure = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const RandomPass random(seed);
+      const Scene scene = scene_of(random);
+      for (const Fattener& fattener : fatteners()) {
+        const Drawables fitted = lab::fattened(random.window, fattener, 0.72, random.patches);
+        const Drawables found = waiting(scene, random.window, fattener, 0.72, 0.71);
+        for (std::size_t e = 0; e < found.outlines.size(); ++e) {
+          const ProxyOutline &outline = found.outlines[e],
+                             expected = outline_of(fitted.proxies[e], random.window);
+          const Solid& solid = fitted.proxies[e].solid;
+          EXPECT_EQ(std::memcmp(&outline.range, &expected.range, sizeof(PixelRange)), 0);
+          EXPECT_EQ(outline.nearest, solid[0][3]);
+          EXPECT_EQ(outline.farthest, fattener.name == "obb" ? solid[4][0] : solid[2][3]);
+          if (outline.x == kNoPixel) continue;
+          ++sure;
+          float entry = 0, exit = 0;
+          ASSERT_TRUE(fattener.solid.interval(static_cast<float>(outline.x) + 0.5f - 33,
+                                              static_cast<float>(outline.y) + 0.5f - 33, solid,
+                                              entry, exit));
+          EXPECT_GE(exit, outline.depth);
+        }
+      }
+    }
+    EXPECT_GT(sure, 1000);
   });
 }
 
