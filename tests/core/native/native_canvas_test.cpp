@@ -134,8 +134,8 @@ TEST(NativeLanes, FattenedTrianglesAreThoseOfTheScalarTextBitForBit) {
                                   .window = &*window,
                                   .radius = 0.71,
                                   .bounds = proxy_bounds(*window),
-                                  .out = proxies.data(),
-                                  .done = done.data()});
+                                  .done = done.data(),
+                                  .out = proxies.data()});
           on_lanes += std::ranges::count(done, 1);
           left += std::ranges::count(done, 0);
           EXPECT_EQ(std::memcmp(many.proxies.data(), one.proxies.data(),
