@@ -257,16 +257,21 @@ class Culling {
     Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
     stage.fattener = settings_.fattener.name;
     stage.depends = round_ > 1 || (visited_ && !settings_.full);
-    std::vector<std::uint32_t> live = state_.live;
+    items_ = VisitItems(state_);
     FattenCounts counts;
     const ViewReport& report = result_.views[view];
-    // A proxy covers the centres that are deeper inside it than its corners are rounded (lemma 21).
+    // Proxies wait if many are drawn in a step: then those that are not decided are fitted
+    // together. A proxy covers the centres that are deeper inside it than its corners are rounded
+    // (lemma 21).
+    constexpr std::size_t kLeastOfOwner = 16;
     std::optional<double> reach;
-    if (canvas_.fits_proxies()) reach = (report.radius_px - report.budget.input) * (1 - 0x1p-30);
-    drawables_ = fatten(scene_, live, *place_->window, settings_.fattener, report.radius_px, counts,
-                        std::move(drawables_), reach);
+    if (canvas_.fits_proxies() &&
+        items_.items.size() >= kLeastOfOwner * (items_.owner_begin.size() - 1))
+      reach = (report.radius_px - report.budget.input) * (1 - 0x1p-30);
+    drawables_ = fatten(scene_, items_.items, *place_->window, settings_.fattener, report.radius_px,
+                        counts, std::move(drawables_), reach);
     canvas_.begin(*place_->window, drawables_);
-    items_ = VisitItems(state_, std::move(live), drawables_);
+    items_.mark_undrawable(drawables_);
     stage.out = drawables_.elements();
     stage.n = counts.undrawable;
     finish(stage);

@@ -145,14 +145,15 @@ void CullState::clear_bits() {
   for (const std::uint32_t t : live) bits[t] = 0;
 }
 
-VisitItems::VisitItems(const CullState& state, std::vector<std::uint32_t> live,
-                       const Drawables& drawables)
-    : items(std::move(live)) {
+VisitItems::VisitItems(const CullState& state) : items(state.live) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (i == 0 || state.owner[items[i]] != state.owner[items[i - 1]])
       owner_begin.push_back(static_cast<std::uint32_t>(i));
   }
   owner_begin.push_back(static_cast<std::uint32_t>(items.size()));
+}
+
+void VisitItems::mark_undrawable(const Drawables& drawables) {
   if (drawables.undrawable.empty()) return;
   undrawable.resize(items.size());
   for (const std::uint32_t item : drawables.undrawable) undrawable[item] = 1;

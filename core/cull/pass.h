@@ -55,8 +55,10 @@ struct CullState {
 /// The triangles that one visit of a view asks and stores.
 struct VisitItems {
   VisitItems() = default;
-  /// Those of `live`, in the order of CullState::live.
-  VisitItems(const CullState& state, std::vector<std::uint32_t> live, const Drawables& drawables);
+  /// Those that are live.
+  explicit VisitItems(const CullState& state);
+  /// Call it when they are drawables.
+  void mark_undrawable(const Drawables& drawables);
 
   std::vector<std::uint32_t> items;        // those of the view's drawables
   std::vector<std::uint32_t> owner_begin;  // into items, per owner that has some; then their number

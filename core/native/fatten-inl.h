@@ -88,7 +88,8 @@ struct WideOutlines {
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
     // A float before it: a double errs by 2^-53, a float by 2^-24.
-    out.depth = corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140));
+    out.depth = farcull::HWY_NAMESPACE::nearest(
+        corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
     return out;
   }
 

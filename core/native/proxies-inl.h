@@ -400,11 +400,12 @@ inline void front_to_back(const NativeJob& job, const Step& step, std::vector<Dr
 template <class Kernel>
 HWY_INLINE void draw_proxies(const NativeJob& job) {
   const bool run = job.output == NativeOutput::run;
+  constexpr std::uint32_t kLeastSorted = 64;
   std::vector<DrawRun> runs;
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
     const Step& step = job.steps[s];
     const bool asked = step.verb == Verb::ask && run;
-    if (asked) {
+    if (asked || step.count < kLeastSorted) {
       runs.assign(1, {step.first, step.count});
     } else {
       front_to_back(job, step, runs);
@@ -415,7 +416,7 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
         const Draw& draw = job.draws[d];
         if (asked && already_seen(job.seen, draw.slot)) continue;
         if (draw.element == kEverywhere) {
-          take_everywhere(job, step.verb);
+          if (take_everywhere(job, step.verb) && asked) mark_seen(job.seen, draw.slot);
           continue;
         }
         const ProxyOutline& outline = job.outlines[draw.element];
