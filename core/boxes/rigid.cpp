@@ -40,6 +40,26 @@ bool keeps_finite(const RigidMotion& motion, const Box& box) {
   return true;
 }
 
+namespace {
+
+// Sets the lists of the vertices of blocks.
+void list_vertices(const Scene& scene, RigidBlocks& out) {
+  out.first_vertex.assign(1, 0);
+  for (const TriangleBlock& range : out.of->ranges) {
+    const auto begin = static_cast<std::ptrdiff_t>(out.vertices.size());
+    for (std::uint32_t k = 0; k < range.count; ++k) {
+      const auto& corners = scene.triangles[out.of->triangle(range.first + k)];
+      out.vertices.insert(out.vertices.end(), corners.begin(), corners.end());
+    }
+    std::sort(out.vertices.begin() + begin, out.vertices.end());
+    out.vertices.erase(std::unique(out.vertices.begin() + begin, out.vertices.end()),
+                       out.vertices.end());
+    out.first_vertex.push_back(static_cast<std::uint32_t>(out.vertices.size()));
+  }
+}
+
+}  // namespace
+
 RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
   RigidBlocks out;
   out.of = std::make_shared<TriangleBlocks>(make_blocks(scene, 0, threads));
@@ -69,6 +89,7 @@ RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
                 static_cast<std::uint32_t>(o));
     out.trees[o] = make_tree<double>(leaves, out.nodes, at[o]);
   });
+  list_vertices(scene, out);
   return out;
 }
 
@@ -210,23 +231,24 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
 }
 
 void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> motions,
-                   const RigidBlocks& rigid, const BlockPairs& pairs, unsigned threads,
+                   const RigidBlocks& blocks, const BlockPairs& pairs, unsigned threads,
                    Scene& scene) {
-  const TriangleBlocks& blocks = *rigid.of;
-  const std::vector<std::uint32_t> some = blocks_in(pairs, blocks.ranges.size());
+  const std::vector<std::uint32_t> some = blocks_in(pairs, blocks.of->ranges.size());
   for_chunks(
       some.size(), chunks_for(some.size(), 128, threads),
       [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-          const TriangleBlock& range = blocks.ranges[some[k]];
-          const RigidMotion& motion = motions[rigid.object_of[some[k]]];
-          for (std::uint32_t i = 0; i < range.count; ++i) {
-            for (const std::uint32_t v : scene.triangles[blocks.triangle(range.first + i)]) {
-              const Vec3 to = moved(motion, resting[v]);
-              // Another block may have the vertex too, and its thread the same numbers.
-              for (Eigen::Index axis = 0; axis < 3; ++axis)
-                std::atomic_ref(scene.vertices[v][axis]).store(to[axis], std::memory_order_relaxed);
-            }
+          const RigidMotion& motion = motions[blocks.object_of[some[k]]];
+          const std::uint32_t next = some[std::min(k + 1, end - 1)];
+          for (const std::uint32_t v : blocks.vertices_of(next)) {
+            __builtin_prefetch(resting[v].data());
+            __builtin_prefetch(scene.vertices[v].data(), 1);
+          }
+          for (const std::uint32_t v : blocks.vertices_of(some[k])) {
+            const Vec3 to = moved(motion, resting[v]);
+            // Another block may have the vertex too, and its thread the same numbers.
+            for (Eigen::Index axis = 0; axis < 3; ++axis)
+              std::atomic_ref(scene.vertices[v][axis]).store(to[axis], std::memory_order_relaxed);
           }
         }
       });

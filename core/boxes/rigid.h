@@ -46,12 +46,19 @@ bool keeps_finite(const RigidMotion& motion, const Box& box);
 
 /// The blocks of the objects of a scene, and trees over them, each object in its own frame.
 struct RigidBlocks {
-  /// Without boxes and lanes; blocks that are near each other have numbers that are. `objects` and
-  /// `origin` are those of the last motions.
+  /// In the order of spatial_order(), without boxes and lanes. `objects` and `origin` are those of
+  /// the last motions.
   std::shared_ptr<TriangleBlocks> of;
-  std::vector<std::uint32_t> object_of;  // per block
-  std::vector<BoxTree<double>> trees;    // per object, over its blocks; not grown
+  std::vector<std::uint32_t> object_of;     // per block
+  std::vector<std::uint32_t> first_vertex;  // per block, and one behind the last: into `vertices`
+  std::vector<std::uint32_t> vertices;      // of each block, each once
+  std::vector<BoxTree<double>> trees;       // per object, over its blocks; not grown
   std::vector<WideBoxes<double>> nodes;
+
+  std::span<const std::uint32_t> vertices_of(std::uint32_t block) const {
+    return std::span(vertices).subspan(first_vertex[block],
+                                       first_vertex[block + 1] - first_vertex[block]);
+  }
 };
 
 /// threads: 0 for as many as there are cores.
