@@ -75,7 +75,8 @@ RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
     at[o + 1] = at[o] + blocks_of_tree(blocks.first[o + 1] - blocks.first[o]);
   out.nodes.resize(at.back());
   for_each_shared(objects, threads, [&](std::size_t o) {
-    const auto [name, first, count, self] = scene.objects[o];
+    const std::uint32_t first = scene.objects[o].first_triangle,
+                        count = scene.objects[o].triangle_count;
     std::vector<Box> boxes(count);
     for (std::uint32_t k = 0; k < count; ++k) boxes[k] = grown_box(scene, first + k, 0);
     const auto order = std::span(blocks.order).subspan(first, count);
