@@ -54,6 +54,7 @@ enum class Reason : std::uint8_t {
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // k were compared, since a corner moved; empty: all
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
+  moved_pairs,     // the same, but boxes of blocks were kept, and moved with their objects
   boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
   boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
   no_boxes_overlap,     // no two objects' boxes overlap (k as above, none tested against itself)

@@ -163,6 +163,7 @@ struct BlockMeetings {
                                    // which nothing moved; those are not listed
   std::uint64_t meetings = 0;      // that these decide: of two objects, or of one with itself
   std::uint64_t triangles = 0;     // in all blocks of a pair
+  bool moved = false;  // boxes were kept, and moved with their objects (core/boxes/rigid.h)
   bool empty() const { return meetings == 0; }
 };
 

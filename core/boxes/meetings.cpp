@@ -199,8 +199,8 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
 // Oriented boxes are used if, in a sample, they leave at most this many pairs for each triangle.
 constexpr std::size_t kOrientedPerTriangle = 64;
 
-// Whether more than `often` pairs of boxes of triangles overlap for each triangle, by a sample of
-// the pairs of blocks.
+}  // namespace
+
 bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
                     std::size_t often) {
   constexpr std::size_t kSampled = 64;  // pairs of blocks
@@ -216,6 +216,8 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
   return each * static_cast<double>(all) > static_cast<double>(often * meetings.triangles);
 }
+
+namespace {
 
 // All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,

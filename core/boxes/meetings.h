@@ -76,6 +76,11 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 
+/// Whether more than `often` pairs of boxes of triangles overlap for each triangle in a block of
+/// these meetings, by a sample of the pairs of blocks. Reads only vertices of their blocks.
+bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
+                    std::size_t often);
+
 /// Triangles in all blocks of some pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 

@@ -71,7 +71,7 @@ void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, Fra
 }  // namespace
 
 BoxesPlan plan_boxes(const Scene& scene, const BoxesSettings& settings, unsigned threads,
-                     FrameMemory* memory) {
+                     FrameMemory* memory, const BlockDecision* decided) {
   if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
     throw std::logic_error("plan_boxes: the clearance is negative or not finite");
   }
@@ -86,6 +86,8 @@ BoxesPlan plan_boxes(const Scene& scene, const BoxesSettings& settings, unsigned
   const bool known = memory && knows_last_frame(settings, *memory);
   if (settings.full) {
     plan.decision.tree = Reason::join_all;
+  } else if (decided) {
+    plan.decision = *decided;
   } else if (known) {
     plan.decision = decide_next_frame(scene, threads, *memory);
   } else {
@@ -113,7 +115,9 @@ Stage planned_stage(const BoxesPlan& plan) {
   const std::size_t compared = decision.blocks.pairs.size();
   return {.kind = StageKind::blocks,
           .ran = true,
-          .reason = decision.blocks.oriented ? Reason::oriented_pairs : Reason::block_pairs,
+          .reason = decision.blocks.oriented ? Reason::oriented_pairs
+                    : decision.blocks.moved  ? Reason::moved_pairs
+                                             : Reason::block_pairs,
           .n = decision.blocks.overlaps,
           .m = decision.blocks.meetings,
           .k = compared < decision.blocks.overlaps ? std::optional<std::uint64_t>(compared)

@@ -41,10 +41,11 @@ struct BoxesPlan {
 /// Decides what finds the pairs. threads: 0 for as many as there are cores. memory: keeps the
 /// scene's last frame, if that was planned and found with the same object; null: nothing is kept.
 /// Precondition: memory->moved.update(scene) began this frame. The memory may change what finds the
-/// pairs, but loses no colliding one. Throws Error for a scene that is too large, std::logic_error
-/// for a clearance that is negative or not finite.
+/// pairs, but loses no colliding one. decided: the answer of decide_by_motions() for this scene and
+/// these settings, used unless settings.full, and without a memory; null: none. Throws Error for a
+/// scene that is too large, std::logic_error for a clearance that is negative or not finite.
 BoxesPlan plan_boxes(const Scene& scene, const BoxesSettings& settings, unsigned threads = 0,
-                     FrameMemory* memory = nullptr);
+                     FrameMemory* memory = nullptr, const BlockDecision* decided = nullptr);
 
 /// The stage that find_boxes() will go through.
 Stage planned_stage(const BoxesPlan& plan);

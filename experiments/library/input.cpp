@@ -267,23 +267,20 @@ void require_good(std::span<const Pose> poses, std::size_t objects) {
   }
 }
 
-Vec3 moved(const Pose& pose, const Vec3& p) {
-  const auto& [r, t] = pose;
-  return {((r[0] * p.x() + r[1] * p.y()) + r[2] * p.z()) + t[0],
-          ((r[3] * p.x() + r[4] * p.y()) + r[5] * p.z()) + t[1],
-          ((r[6] * p.x() + r[7] * p.y()) + r[8] * p.z()) + t[2]};
-}
+RigidMotion motion_of(const Pose& pose) { return {pose.r, pose.t}; }
 
 // Moves the vertices. Vertices of objects whose pose is that of the last call are left as they
 // are, unless `all` is true.
 void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
   std::vector<bool> moves(poses.size(), true);
   for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];
+  std::vector<RigidMotion> motions(poses.size());
+  std::ranges::transform(poses, motions.begin(), motion_of);
   taken.scene.vertices.resize(taken.unmoved.size(), Vec3::Zero());
   for (std::uint32_t v = 0; v < taken.unmoved.size(); ++v) {
     const std::uint32_t o = taken.object_of[v];
     if (o != kNoObject && !moves[o]) continue;
-    const Vec3 to = o == kNoObject ? taken.unmoved[v] : moved(poses[o], taken.unmoved[v]);
+    const Vec3 to = o == kNoObject ? taken.unmoved[v] : moved(motions[o], taken.unmoved[v]);
     Vec3& at = taken.scene.vertices[v];
     if (std::memcmp(at.data(), to.data(), sizeof(Vec3)) == 0) continue;
     if (!all_finite({to.data(), 3}))
@@ -295,16 +292,37 @@ void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange*
     if (change) change->vertices.push_back(v);
   }
   taken.poses.assign(poses.begin(), poses.end());
+  taken.stale = false;
+}
+
+bool are_alone(const Input& input) {
+  return input.vertices.empty() && input.triangles.empty() && input.wide_triangles.empty() &&
+         input.object_starts.empty();
+}
+
+// Whether to move vertices of blocks alone. triangles: in blocks that overlap, all of which are
+// tested then; of_moved: those of objects in another pose.
+//
+// If the results of the last call are kept, load_input() costs the triangles that moved. Else it
+// costs all triangles once, and from then on those that move. A loss is what is tested beyond
+// these; if all losses since then reach the cost of all triangles, the results of a call are kept
+// again.
+bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, TakenInput& taken) {
+  if (keeps_frames) return triangles < of_moved;
+  const auto all = static_cast<double>(taken.scene.triangles.size());
+  const auto cost = static_cast<double>(triangles);
+  taken.loss += std::max(0.0, cost - static_cast<double>(of_moved));
+  return cost < all && taken.loss < all;
 }
 
 // Copies and moves input with poses. Returns as copy().
 bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change, bool asked) {
-  const bool alone = input.vertices.empty() && input.triangles.empty() &&
-                     input.wide_triangles.empty() && input.object_starts.empty();
+  const bool alone = are_alone(input);
   const bool had_poses = !taken.poses.empty();
   bool same = true;
   if (!alone) {
+    taken.rigid.reset();
     same = copy(input, self, self_objects, taken, taken.unmoved, nullptr, asked);
   } else if (taken.scene.objects.empty()) {
     throw Error("poses", "are given without triangles, and there are none of an earlier call",
@@ -314,7 +332,7 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
   }
   require_good(input.poses, taken.scene.objects.size());
   if (!same || !had_poses) taken.object_of = objects_of_vertices(taken.scene, taken.unmoved.size());
-  move(input.poses, !alone || !had_poses, taken, change);
+  move(input.poses, !alone || !had_poses || taken.stale, taken, change);
   return same;
 }
 
@@ -324,17 +342,58 @@ void load_input(const Input& input, bool self, const std::vector<bool>& self_obj
                 TakenInput& taken, FrameChange* change, bool asked) {
   try {
     bool same = false;
+    taken.loss = 0;
     if (input.poses.empty()) {
       same = copy(input, self, self_objects, taken, taken.scene.vertices, change, asked);
       taken.unmoved = {};
       taken.object_of = {};
       taken.poses = {};
+      taken.stale = false;
+      taken.rigid.reset();
     } else {
       same = copy_posed(input, self, self_objects, taken, change, asked);
     }
     if (change) change->same = same;
   } catch (...) {
     taken = {};  // nothing that was not checked stays, and the next scene is not the same
+    throw;
+  }
+}
+
+std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
+                                        TakenInput& taken) {
+  Scene& scene = taken.scene;
+  if (!are_alone(input) || taken.poses.size() != input.poses.size() || has_self(scene))
+    return std::nullopt;
+  std::vector<RigidMotion> motions(input.poses.size());
+  std::ranges::transform(input.poses, motions.begin(), motion_of);
+  for (const auto& [r, t] : motions) {
+    if (!all_finite(r) || !all_finite(t) || !is_invertible(r)) return std::nullopt;
+  }
+  std::uint64_t of_moved = 0;
+  for (std::size_t o = 0; o < motions.size(); ++o)
+    of_moved += input.poses[o] != taken.poses[o] ? scene.objects[o].triangle_count : 0;
+  const bool keeps_frames = question.keeps_frames && !taken.stale;
+  if (keeps_frames && of_moved == 0) return std::nullopt;
+  try {
+    if (!taken.rigid) {
+      scene.vertices.swap(taken.unmoved);
+      taken.rigid = make_rigid_blocks(scene, question.threads);
+      scene.vertices.swap(taken.unmoved);
+    }
+    auto decision = decide_by_motions(scene, motions, question.clearance, question.ignored,
+                                      question.threads, *taken.rigid);
+    if (!decision) return std::nullopt;
+    if (!pays(decision->blocks.triangles, of_moved, keeps_frames, taken)) return std::nullopt;
+    taken.stale = true;
+    move_vertices(taken.unmoved, motions, *taken.rigid, decision->blocks.pairs, question.threads,
+                  scene);
+    if (overlaps_often(scene, decision->blocks, question.clearance, kOverlapsPerTriangle))
+      return std::nullopt;
+    taken.poses.assign(input.poses.begin(), input.poses.end());
+    return decision;
+  } catch (...) {
+    taken = {};
     throw;
   }
 }

@@ -16,6 +16,7 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stage.h"
+#include "core/boxes/rigid.h"
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
@@ -93,12 +94,17 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// The input of the last call, and what moves its objects.
 struct TakenInput {
-  Scene scene;                    // with the poses applied
+  Scene scene;                    // with the poses applied, but see `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   // The rest is empty if the last call had no poses.
   std::vector<Vec3> unmoved;             // the vertices before the poses
   std::vector<std::uint32_t> object_of;  // of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
+  /// True: only the vertices of some blocks are moved by these poses; the others of the scene are
+  /// finite, but from earlier poses.
+  bool stale = false;
+  std::optional<RigidBlocks> rigid;  // of the unmoved vertices; null: not made yet
+  double loss = 0;                   // as load_poses() counts it
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 
@@ -109,6 +115,22 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 /// `taken` empty then.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
+
+/// How load_poses() finds out which vertices it has to move.
+struct PosesQuestion {
+  double clearance = 0;
+  std::span<const ObjectPair> ignored;  // as ignored_of()
+  unsigned threads = 0;
+  /// The results of the last call are kept, so that objects in their last pose cost nothing if
+  /// load_input() takes these poses.
+  bool keeps_frames = false;
+};
+/// Takes poses alone, and moves only the vertices of blocks that overlap, which it returns. Null:
+/// load_input() has to take this input. That is so if there is more than poses, or no earlier call
+/// that had poses or arrays, if the poses are bad or boxes do not decide, or if moving all vertices
+/// of objects in another pose costs less. Both give the same answer.
+std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
+                                        TakenInput& taken);
 
 /// Throws Error naming an option that is bad for any input.
 void check(const Options& options);

@@ -42,6 +42,7 @@ struct Collider::State {
   Session session;
   TakenInput taken;  // of the last call
   FrameChange change;
+  std::optional<BlockDecision> decided;  // by poses alone; null: all vertices are moved
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
@@ -58,8 +59,21 @@ void Collider::State::take_scene(const Input& input) {
   // Remembering takes more memory, which is of no use to a single call.
   if (++calls == 2) session.remember_frames();
   const FrameMemory* const memory = session.frame_memory();
-  const bool compares = memory && !memory->moved.waits();
   change = {};
+  decided.reset();
+  if (!taken.poses.empty() && !input.poses.empty()) {
+    const std::vector<ObjectPair> ignored = ignored_of(options.ignore, taken.scene.objects.size());
+    const bool keeps = memory && memory->frame && !memory->moved.waits();
+    decided = load_poses(input,
+                         {.clearance = options.clearance,
+                          .ignored = ignored,
+                          .threads = session.threads(),
+                          .keeps_frames = keeps},
+                         taken);
+    if (decided) return;
+  }
+  // What is new is not known if vertices of the last call were left as they were.
+  const bool compares = memory && !memory->moved.waits() && !taken.stale;
   load_input(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }
 
@@ -67,9 +81,11 @@ Result Collider::State::find(const Stopwatch& start, const FloatingPoint& caller
                              const Progress& progress) {
   run.ignored = ignored_of(options.ignore, taken.scene.objects.size());
   require_asked(taken.scene, run.ignored, "ignore", "test objects against themselves (self)");
-  const Record record = farcull::run(
-      taken.scene, run, session, progress,
-      {.answer_only = true, .change = &change, .decide_neighbours = options.neighbours});
+  const Record record = farcull::run(taken.scene, run, session, progress,
+                                     {.answer_only = true,
+                                      .change = &change,
+                                      .decided = decided ? &*decided : nullptr,
+                                      .decide_neighbours = options.neighbours});
   Result out;
   Report& report = out.report;
   report.candidates_ms = start.ms() - record.ms.exact - record.ms.contacts;

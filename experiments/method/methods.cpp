@@ -221,7 +221,7 @@ void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& 
                                 // The accounting is about all candidates.
                                 .lists = options.verify,
                                 .ignored = options.ignored},
-                               threads, plan.memory);
+                               threads, plan.memory, plan.decided);
   plan.trace = boxes.trace;
   plan.ahead.push_back(planned_stage(boxes));
   plan.work = std::move(boxes);

@@ -18,7 +18,7 @@ std::vector<Stage> Plan::stages() const {
 }
 
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads, const Progress& progress,
-          FrameMemory* memory) {
+          FrameMemory* memory, const BlockDecision* decided) {
   const FloatingPointGuard guard;
   const Stopwatch watch;
   validate(options);
@@ -31,6 +31,7 @@ Plan plan(const Scene& scene, const RunOptions& options, unsigned threads, const
     all = in_order(std::move(all));
   }
   out.memory = memory;
+  out.decided = decided;
   const Traits& method = traits(options.method);
   method.plan(scene, threads, progress, out);
   const bool always = options.full || !method.culls;

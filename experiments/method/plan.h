@@ -33,17 +33,20 @@ struct Plan {
   std::vector<Stage> trace;  // the stages of planning itself: they have run
   std::vector<Stage> ahead;  // the stages to come, in order; those that pixels decide are marked
   double ms = 0;             // time of planning
-  FrameMemory* memory = nullptr;  // of the scene's last frame, for boxes
+  FrameMemory* memory = nullptr;           // of the scene's last frame, for boxes
+  const BlockDecision* decided = nullptr;  // as plan_boxes(); used only while planning
 
   /// The stages of `trace`, then those of `ahead`.
   std::vector<Stage> stages() const;
 };
 
 /// Plans the run. The same scene and options give the same plan. No device is opened. threads: of
-/// the CPU; 0: as many as there are cores. memory: as plan_boxes(). Throws Error for options that
-/// are out of range or contradict each other, and for a scene that the method cannot use.
+/// the CPU; 0: as many as there are cores. memory, decided: as plan_boxes(). Throws Error for
+/// options that are out of range or contradict each other, and for a scene that the method cannot
+/// use.
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
-          const Progress& progress = {}, FrameMemory* memory = nullptr);
+          const Progress& progress = {}, FrameMemory* memory = nullptr,
+          const BlockDecision* decided = nullptr);
 
 /// Throws Error if an object is tested against itself and the method cannot do that, or if none is
 /// and the method can do nothing else.

@@ -157,24 +157,25 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
 
 // Plans and finds. The plan's memory is freed on return, for the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
-                const ExactQuestion& question, bool filters, const FrameChange* change, bool marks,
-                Record& record) {
+                const ExactQuestion& question, const RunUse& use, Record& record) {
   const Stopwatch comparing;
-  FrameMemory* const memory = session.frame_memory();
-  if (memory) memory->moved.update(scene, change);
+  FrameMemory* const memory = use.decided ? nullptr : session.frame_memory();
+  if (memory) memory->moved.update(scene, use.change);
   const double compared_ms = comparing.ms();
-  const Plan planned = plan(scene, record.options, session.threads(), progress, memory);
+  const Plan planned =
+      plan(scene, record.options, session.threads(), progress, memory, use.decided);
   record.options = planned.options;
   record.plan = planned.stages();
   // A filter and a limit need the list of all candidates.
-  const bool limits = record.options.limit > 0, lists = filters || limits;
+  const bool filters = static_cast<bool>(use.filter), limits = record.options.limit > 0;
   if (limits && !filters && !memory &&
       is_crowded(scene, planned, question, session.cpu_threads())) {
     record.trace = planned.trace;
     record.ms.cull = planned.ms;
     return search_first(scene, session, progress, question, record);
   }
-  record.found = find(scene, planned, session, progress, lists ? nullptr : &question, marks);
+  record.found = find(scene, planned, session, progress, filters || limits ? nullptr : &question,
+                      !use.answer_only);
   record.trace = planned.trace;
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   record.ms.setup = record.found.setup_ms;
@@ -183,7 +184,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
 
 // Decides the candidates, or takes the answers if they were decided as they were found.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
-                  const ExactQuestion& question, Record& record) {
+                  const ExactQuestion& question, bool keeps_frames, Record& record) {
   if (record.limited) return;  // decided in the search
   const RunOptions& options = record.options;
   Stage stage{.kind = StageKind::exact,
@@ -206,7 +207,8 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     if (progress) progress(StageKind::exact);
     const Stopwatch watch;
     const std::vector<TrianglePair>& pairs = record.found.pairs;
-    FrameDecider* const frames = options.limit == 0 ? session.frame_decider() : nullptr;
+    FrameDecider* const frames =
+        keeps_frames && options.limit == 0 ? session.frame_decider() : nullptr;
     FirstCollisions first =
         frames ? FirstCollisions{.collisions = frames->decide(
                                      scene, pairs, session.frame_memory()->moved, question),
@@ -218,7 +220,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     ran(watch.ms());
   }
   record.trace.push_back(stage);
-  if (FrameMemory* const memory = session.frame_memory())
+  if (FrameMemory* const memory = keeps_frames ? session.frame_memory() : nullptr)
     memory->moved.notify(mostly_unmoved(memory->moved, record.found.pairs));
 }
 
@@ -308,8 +310,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   const ExactQuestion question{.clearance = options.clearance,
                                .threads = session.cpu_threads(),
                                .neighbours = options.neighbours && use.decide_neighbours};
-  find_stage(scene, session, progress, question, static_cast<bool>(use.filter), use.change,
-             !use.answer_only, record);
+  find_stage(scene, session, progress, question, use, record);
   Candidates& found = record.found;
   if (!use.answer_only) {
     record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;
@@ -325,7 +326,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   // If the method returns only pairs, their triangles are counted here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
   if (only_pairs && !use.answer_only) count_kept(scene, found);
-  decide_stage(scene, session, progress, question, record);
+  decide_stage(scene, session, progress, question, !use.decided, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
   // A method that culls nothing has decided all pairs, also those beyond the limit. For other

@@ -41,6 +41,9 @@ struct RunUse {
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
   /// compared. Used only if the session remembers frames.
   const FrameChange* change = nullptr;
+  /// Blocks that overlap, as decide_by_motions() gives them, if the caller knows; for boxes. Then
+  /// only vertices of these blocks are read, and the session neither uses nor keeps frames.
+  const BlockDecision* decided = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
 };
 

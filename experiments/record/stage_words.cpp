@@ -99,6 +99,10 @@ std::string reason_of(const Stage& stage) {
     case Reason::oriented_pairs:
       return "pairs of blocks (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
              n + moved + "; pairs of objects, and objects with themselves: " + m;
+    case Reason::moved_pairs:
+      return "pairs of blocks (of at most 16 triangles) whose boxes, moved with their objects, "
+             "overlap: " +
+             n + "; pairs of objects: " + m;
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::boxes_decide_little:

@@ -8,6 +8,7 @@
 #include "experiments/library/input.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/flat.h"
+#include "tests/lab/motions.h"
 
 namespace farcull {
 namespace {
@@ -112,6 +113,111 @@ TEST(LibraryPoses, FramesAreAsFresh) {
   }
   EXPECT_GT(changes, 20);
   EXPECT_GT(alone, 10);
+}
+
+Pose pose_by(RandomNumbers& random, int kind) {
+  const RigidMotion motion = lab::random_motion(random, kind);
+  return {motion.r, motion.t};
+}
+
+// Whether boxes moved with their objects.
+bool moved_boxes(const Result& result) {
+  return std::ranges::any_of(result.report.stages, [](const Report::Stage& stage) {
+    return has_text(stage.reason, "moved with their objects");
+  });
+}
+
+// Poses alone, of all kinds, between calls with arrays. The answers are those of new calls,
+// contacts and candidates as well, whether boxes or all vertices move.
+TEST(LibraryPoses, AloneAreAsFresh) {
+  RandomNumbers random(test_seed(42));
+  const int frames = trials(4) == 4 ? 10'000 : 300;  // 4 of 4: in a campaign
+  int by_boxes = 0, with_pairs = 0, limited = 0;
+  std::array<int, lab::kMotionKinds> of_kind{};
+  std::optional<Collider> collider;
+  Options options;
+  std::optional<Flat> flat;
+  std::vector<Pose> poses;
+  for (int frame = 0; frame < frames; ++frame) {
+    if (frame % 25 == 0) {
+      flat.emplace(make_builtin_scene(frame % 50 == 0 ? "two-spheres" : "crowd:12"));
+      options = {.threads = 2,
+                 .clearance = random.below(3) == 0 ? 0.01 : 0,
+                 .contacts = random.below(2) == 0 ? Contacts::segments : Contacts::none,
+                 .limit = random.below(4) == 0 ? 20u : 0u};
+      if (random.below(3) == 0 && flat->starts.size() > 2) options.ignore = {{0, 1}, {2, 1}};
+      collider.emplace(options);
+      poses.assign(flat->starts.size(), Pose());
+      Input first = flat->input();
+      if (random.below(2) == 0) first.poses = poses;
+      collider->find(first);
+    }
+    int kind = random.below(lab::kMotionKinds);
+    if (kind == lab::kTinyMotion && options.clearance > 0) kind = 0;  // else all pairs collide
+    for (Pose& pose : poses)
+      if (random.below(8) > 0) pose = pose_by(random, kind);
+    Input input;
+    switch (random.below(12)) {
+      case 0:  // other arrays
+        for (double& x : flat->vertices) x += 0.001 * random.between(-1, 1);
+        input = flat->input();
+        break;
+      case 1:  // the same arrays again
+        input = flat->input();
+        break;
+      default:
+        break;
+    }
+    if (input.vertices.empty() || random.below(2) == 0) input.poses = poses;
+    Input whole = flat->input();
+    whole.poses = input.poses;
+    const Result found = collider->find(input), fresh = collide(whole, options);
+    ASSERT_EQ(found.pairs, fresh.pairs) << frame << " kind " << kind;
+    ASSERT_EQ(found.contacts, fresh.contacts) << frame;
+    ASSERT_EQ(found.complete, fresh.complete) << frame;
+    ASSERT_EQ(found.neighbour_pairs, fresh.neighbour_pairs) << frame;
+    limited += !found.complete;
+    with_pairs += !found.pairs.empty();
+    if (!moved_boxes(found)) continue;
+    ++by_boxes;
+    of_kind[static_cast<std::size_t>(kind)] += !found.pairs.empty();
+  }
+  EXPECT_GT(by_boxes, frames / 4);
+  EXPECT_GT(with_pairs, frames / 4);
+  EXPECT_GT(limited, 0);
+  for (const int pairs : of_kind) EXPECT_GT(pairs, 0);
+}
+
+// A vertex that the boxes left where it was is moved when a later call needs it.
+TEST(LibraryPoses, VerticesThatWereLeftBehindAreMovedLater) {
+  RandomNumbers random(43);
+  const Flat flat(make_builtin_scene("two-spheres"));
+  Collider collider;
+  collider.find(flat.input());
+  std::vector<Pose> poses(2);
+  const auto find_by_boxes = [&] {
+    bool by_boxes = false;
+    for (int frame = 0; frame < 8 && !by_boxes; ++frame) {
+      poses[1] = random_pose(random, 0.01);
+      by_boxes = moved_boxes(collider.find({.poses = poses}));
+    }
+    return by_boxes;
+  };
+  ASSERT_TRUE(find_by_boxes());
+  // The same arrays without poses, and poses that flatten nothing but are too large for boxes.
+  EXPECT_EQ(collider.find(flat.input()).pairs, collide(flat.input()).pairs);
+  EXPECT_EQ(collider.find(flat.input()).pairs, collide(flat.input()).pairs);
+  ASSERT_TRUE(find_by_boxes());
+  for (Pose& pose : poses) {
+    pose = Pose();
+    for (double& x : pose.r) x *= 0x1p1022;
+  }
+  Input whole = flat.input();
+  whole.poses = poses;
+  const Result large = collider.find({.poses = poses});
+  EXPECT_FALSE(moved_boxes(large));
+  EXPECT_EQ(large.pairs, collide(whole).pairs);
+  EXPECT_FALSE(large.pairs.empty());
 }
 
 TEST(LibraryPoses, RefuseWhatIsBadAndGoOn) {

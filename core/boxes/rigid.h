@@ -1,0 +1,83 @@
+// Objects that move as a whole. In a frame of its own the triangles of an object rest, so their
+// blocks and a tree of boxes over them are made once. A motion then moves boxes, and after that
+// only the vertices of blocks whose moved boxes overlap.
+//
+// No margin is needed. A corner of a moved box comes from the operations that move a vertex, and
+// each of these rounds monotonically: so the moved box contains every moved vertex
+// (docs/reliability.md, "Objects that move as a whole").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/boxes/block.h"
+#include "core/boxes/meetings.h"
+#include "core/boxes/triangle_blocks.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Moves a point p to r p + t. Any finite numbers: it may mirror, scale, shear and flatten.
+struct RigidMotion {
+  std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
+  std::array<double, 3> t = {0, 0, 0};
+};
+
+/// A coordinate of a moved point: each product and each sum is rounded, in this order. row: of r.
+inline double moved_coordinate(const double* row, double x, double y, double z, double t) {
+  return ((row[0] * x + row[1] * y) + row[2] * z) + t;
+}
+inline Vec3 moved(const RigidMotion& motion, const Vec3& p) {
+  const double* const r = motion.r.data();
+  return {moved_coordinate(r, p.x(), p.y(), p.z(), motion.t[0]),
+          moved_coordinate(r + 3, p.x(), p.y(), p.z(), motion.t[1]),
+          moved_coordinate(r + 6, p.x(), p.y(), p.z(), motion.t[2])};
+}
+/// A closed box that contains moved(motion, p) for each point p of the box. Preconditions: the box
+/// is not empty, and the motion keeps it finite.
+Box moved(const RigidMotion& motion, const Box& box);
+/// Whether no number that occurs while a point of the box is moved is above a quarter of the
+/// largest double. An empty box is kept finite.
+bool keeps_finite(const RigidMotion& motion, const Box& box);
+
+/// The blocks of the objects of a scene, and trees over them, each object in its own frame.
+struct RigidBlocks {
+  /// In the order of spatial_order(), without boxes and lanes. `objects` and `origin` are those of
+  /// the last motions.
+  std::shared_ptr<TriangleBlocks> of;
+  std::vector<std::uint32_t> object_of;     // per block
+  std::vector<std::uint32_t> first_vertex;  // per block, and one behind the last: into `vertices`
+  std::vector<std::uint32_t> vertices;      // of each block, each once
+  std::vector<BoxTree<double>> trees;       // per object, over its blocks; not grown
+  std::vector<WideBoxes<double>> nodes;
+
+  std::span<const std::uint32_t> vertices_of(std::uint32_t block) const {
+    return std::span(vertices).subspan(first_vertex[block],
+                                       first_vertex[block + 1] - first_vertex[block]);
+  }
+};
+
+/// threads: 0 for as many as there are cores.
+RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads);
+
+/// As decide_by_blocks() for the scene after each object was moved, but without its vertices, which
+/// are not read. Null: these boxes do not decide, so decide_by_blocks() has to. That is so if an
+/// object is tested against itself, a motion does not keep it finite, or too many boxes overlap.
+/// motions: one for each object. ignored: as find_meetings().
+std::optional<BlockDecision> decide_by_motions(const Scene& scene,
+                                               std::span<const RigidMotion> motions,
+                                               double clearance,
+                                               std::span<const ObjectPair> ignored,
+                                               unsigned threads, RigidBlocks& blocks);
+
+/// Writes to scene.vertices the moved vertices of the triangles of all blocks of the pairs; leaves
+/// the others as they are. resting: all vertices in the frames of their objects.
+void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> motions,
+                   const RigidBlocks& blocks, const BlockPairs& pairs, unsigned threads,
+                   Scene& scene);
+
+}  // namespace farcull
