@@ -59,7 +59,7 @@ std::optional<std::vector<TrianglePair>> pairs_by_motions(const Scene& scene,
 std::vector<TrianglePair> all_pairs(const Scene& scene, const BoxesSettings& settings) {
   BoxesSettings all = settings;
   all.full = true;
-  return pairs_by_boxes(scene, all);
+  return lab::pairs_by_boxes(scene, all);
 }
 
 TEST(RigidBlocks, GiveThePairsOfTheMovedScene) {
