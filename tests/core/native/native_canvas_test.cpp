@@ -307,9 +307,9 @@ Drawables waiting(const Scene& scene, const Window& window, const Fattener& fatt
 TEST(NativeCanvas, ProxiesThatWaitAreSeenAsPlainLoopsSeeThem) {
   // Twins: outlines that are wrong by a few pixels, in depth or in the plane.
   using Change = void (*)(ProxyOutline & outline);
-  const Change twins[] = {
-      [](ProxyOutline& o) { o.nearest += 100; }, [](ProxyOutline& o) { o.farthest -= 8; },
-      [](ProxyOutline& o) { o.depth += 8; }, [](ProxyOutline& o) { o.x = o.range.x0; }};
+  const Change twins[] = {[](ProxyOutline& o) { o.farthest -= 8; },
+                          [](ProxyOutline& o) { o.depth += 8; },
+                          [](ProxyOutline& o) { o.x = o.range.x0; }};
   const int seeds = trials(40);
   on_every_target([&] {
     int different[std::size(twins)] = {}, too_far = 0;
@@ -348,6 +348,34 @@ TEST(NativeCanvas, ProxiesThatWaitAreSeenAsPlainLoopsSeeThem) {
     }
     for (std::size_t t = 0; t < std::size(twins); ++t) EXPECT_GT(different[t], 0) << "twin " << t;
     EXPECT_GT(too_far, 0);
+  });
+}
+
+/// What is seen of a triangle that lies behind a small one and before a large one, where the
+/// outline of the small one is this much too far away.
+std::vector<std::uint8_t> seen_between(const Fattener& fattener, float too_far) {
+  const Window window = lab::window(66, 100);
+  const auto flat = [](double size, double z) {
+    return reference::Triangle{Vec3(-size, -size, z), Vec3(size, -size, z), Vec3(0, size, z)};
+  };
+  const Scene scene = reference::scene_of({{flat(30, 50), flat(0.2, 0), flat(0.2, 20)}});
+  Drawables drawables = waiting(scene, window, fattener, 0.72, 0.71);
+  drawables.outlines[1].nearest += too_far;
+  Pass pass;
+  pass.slots = 1;
+  pass.draws = {{0, 0}, {1, 0}, {2, 0}};
+  pass.steps = {{Verb::store, 0, 1}, {Verb::store, 1, 1}, {Verb::ask, 2, 1}};
+  NativeCanvas canvas(fattener.mode, fattener.solid);
+  canvas.begin(window, drawables);
+  return canvas.run(pass);
+}
+
+TEST(NativeCanvasTwin, AnOutlineThatIsTooFarAwayLosesWhatIsStored) {
+  on_every_target([] {
+    for (const Fattener& fattener : fatteners()) {
+      EXPECT_EQ(seen_between(fattener, 0), std::vector<std::uint8_t>{1});
+      EXPECT_EQ(seen_between(fattener, 60), std::vector<std::uint8_t>{0});
+    }
   });
 }
 
