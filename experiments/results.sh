@@ -8,7 +8,7 @@
 #                                                    tenth by far. Hours on one core. --quick: 200 triangles, 12 frames, seconds.
 #   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
-#   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 20 scenes.
+#   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 19 scenes.
 # OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
 # the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
 # then simulated again from its start.

@@ -524,12 +524,6 @@ def add_kept(chapter, rows, pairs):
                      f"{counted(runs.scene.map(scene_base).nunique(), 'scene', 'scenes')}{words}; " + (
                          risk_text(rows, runs) if drawn else
                          "no view was drawn, so these tested no radius, pixel or depth") + ".")
-    drawn = pairs[used > 0]
-    shares = [(name, culled_shares(of)) for name, of in by(drawn, without_size)]
-    if shares:
-        chapter.find("Culled where views decided, of all triangles: " + listed(
-            f"{name} {rounded(boxes)} % by boxes and {rounded(views)} % by views" for name, (boxes, views) in shares) +
-            ".")
 
 
 def add_gaps(chapter, study):

@@ -125,8 +125,7 @@ def page_markdown(page):
         out += ("**Broken.** What must never happen has happened:\n\n" +
                 bullets(f"{chapter.title}: {printed(finding)}" for chapter, finding in broken(page)))
     out += (f"All of this page is made from the store of results by `farcull report {shlex.quote(page.folder)}`, figures, "
-            "tables and sentences: no number was typed. A single study is measured again by the command that "
-            "stands below it. Counts are the same, bit for bit, on the same device and CPU "
+            "tables and sentences: no number was typed. Counts are the same, bit for bit, on the same device and CPU "
             "features; times are of the machine that stands [at the end](#where-it-was-measured).\n\n")
     out += "".join(section(i + 1, drawn, count) for i, drawn in enumerate(page.chapters))
     return out + "## Where it was measured\n\n" + markdown_table(runs_table(page)).rstrip("\n") + "\n"

@@ -13,14 +13,14 @@ $1 ~ /^control-/ { next }
     else sub(/^noticed: /, "", result)
   } else if (result == "SURVIVED" && $4 != "") {
     explained++
-    result = "survives. " $4
+    result = "survives"
   } else if (result == "not measured") {
     waiting++
   } else {
     open++
     result = "**" result "**"
   }
-  rows = rows "| " part " | `" $1 "`: " $3 " | " result " | " $6 " |\n"
+  rows = rows "| " part " | `" $1 "` | " result " | " $6 " |\n"
 }
 END {
   while ((getline line < page) > 0) {
@@ -30,6 +30,6 @@ END {
     inside = 1
     printf "\n%d mutants: %d noticed, %d explained, %d open, %d not measured. Building and testing them took %.0f minutes.\n\n",
            total, noticed, explained, open, waiting, spent / 60
-    printf "| part | change | noticed by | s |\n|---|---|---|---|\n%s\n", rows
+    printf "| part | mutant | noticed by | s |\n|---|---|---|---|\n%s\n", rows
   }
 }

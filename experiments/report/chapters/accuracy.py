@@ -4,7 +4,7 @@ from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "Boxes")
 SHOWN = (", one round", ", one round, conservative", ", one round, all views, conservative")  # forms with lines
-SIZED = ("CULLIDE, one round", "FAR (OBB)", "CULLIDE, one round, conservative")  # told at each size of triangles
+SIZED = ("FAR (OBB)", *(f"CULLIDE{form}" for form in SHOWN))  # told at each size of triangles
 LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
 
 
@@ -102,6 +102,9 @@ def forms_table(chapter, rows):
         forms = [(name, form.loc[common]) for name, form in forms.items()]
         forms.sort(key=lambda form: (total(form[1], "missed"), total(form[1], "candidates")))
         far = rows[rows.contestant == rival]
+        exact = rows[rows.method == "exact"].drop_duplicates("scene")
+        boxes = dict(zip(exact.scene, column(exact, "candidates")))
+        of_boxes = sum(boxes.get(scene, NONE) for scene, _ in common)  # they have no resolution
         count = counted(len(forms), "form", "forms")
         if common and all(at in far.index for at in common):
             forms.append((rival + ", there", far.loc[common]))
@@ -110,8 +113,16 @@ def forms_table(chapter, rows):
         if common:
             chapter.find(f"The best of {count} of {start.split('|')[0].upper()}, the form as published, and FAR, at the same "
                          f"scenes and resolutions: {'; '.join(said)}.")
+        if of_boxes > 0:
+            taken = [f"{rounded(share(of_boxes - total(runs, 'candidates'), of_boxes), 2)} % of them with "
+                     f"{name.removesuffix(', there')}" for name, runs in forms if name in (forms[0][0], "FAR (OBB), there")]
+            chapter.find(f"Boxes of triangles alone leave {grouped(of_boxes)} candidates there; drawing takes away "
+                         f"{listed(taken)}.")
         out.rows += [[name, grouped(len(runs)), missed_of(runs), grouped(total(runs, "missed_penetrating")),
                       grouped(total(runs, "candidates"))] for name, runs in forms]
+        if of_boxes > 0:
+            out.rows.append(["boxes of triangles alone, there", grouped(len(common)),
+                             of_all(0, total(forms[0][1], "colliding")), "0", grouped(of_boxes)])
     return out
 
 
@@ -121,7 +132,7 @@ def add_sizes(chapter, rows):
     for size, here in sized.groupby([float(m.split("@")[1].split("px")[0]) for m in sized.method]):
         words = [f"{name} misses {of_rows(of, 'missed', 'colliding')}" for name, of in here.groupby("form")]
         chapter.find(f"Where a triangle covers {rounded(size)} {'pixel' if size == 1 else 'pixels'} on average: "
-                     f"{'; '.join(words)}. The forms of CULLIDE draw the same pixels without a ball.")
+                     f"{'; '.join(words)}.")
 
 
 def add_sums(chapter, rows):
@@ -144,9 +155,8 @@ def pictures_of(rows):
     return [Picture(
         "accuracy-compare", "What CULLIDE misses, and FAR beside it",
         f"Both on {row.scene} at {row.resolution} px, where CULLIDE misses {of_all(row.missed, row.colliding)} colliding "
-        f"pairs and FAR {grouped(row.missed_far)}. Missed pairs are drawn in the colour that nothing else has. What collides "
-        "and was found is coloured, what was kept and does not collide is faint. With `--html FILE` the command makes a page "
-        "in which one can look around.",
+        f"pairs and FAR {grouped(row.missed_far)}. This is the form that misses most; the table names the others. Missed "
+        "pairs are red. What collides and was found is coloured, what was kept and does not collide is faint.",
         [row.scene, "--compare", f"cullide:{row.resolution},far:{row.resolution}", "--size", "900x760"])
         for row in both.head(1).itertuples()]
 

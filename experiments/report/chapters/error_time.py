@@ -206,7 +206,7 @@ def figure_of(groups):
 
 def front_table(groups):
     out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are medians "
-                f"of the ratios of runs in the same turn, with their intervals. {sample_of(groups)}",
+                "of the ratios of runs in the same turn, with their intervals",
                 columns(["scene", "method"], ["ms", "time over that of exact", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()

@@ -27,8 +27,7 @@ def figure_of(rows):
 
 def table_of(rows):
     return table_of_rows(
-        "offsets", "Boxes and exact offsets; times are medians of the runs with their intervals. " +
-        sample_text(rows), rows,
+        "offsets", "Boxes and exact offsets; times are medians of the runs with their intervals", rows,
         {"scene": "=scene", "resolution (px)": lambda row: str(row.resolution), "method": "=contestant",
          "kept triangles": "kept_triangles", "candidates": "candidates", "false positives": "~false_positives",
          "fragments": "fragments", "time (ms)": estimate_cell})

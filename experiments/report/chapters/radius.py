@@ -81,9 +81,10 @@ def miss_figure(runs):
 
 def lemma_table(lemmas):
     out = Table("radius", "Violated points at the published and at the budget radius, and the least factor on the budget "
-                "from which on none is, of every generator",
+                "from which on none is, of every generator; those that violate nothing at either radius are one row",
                 columns(["depth", "generator"], ["points", "published", "budget", "least factor",
                                                  "published: farthest outside (px)"]))
+    clean = {}  # of each surface, the points and least factors of generators without a violation
     for (surface, generator), rows in groups(lemmas, ["surface", "generator"]):
         published, others = rows[rows.published], rows[~rows.published]
         budget, bad = others[others.factor == 1], others.factor[column(others, "violations") > 0].max()
@@ -91,8 +92,16 @@ def lemma_table(lemmas):
         far = column(published, "largest_px").fillna(math.inf).max()
         counts = [grouped(total(of, name)) if len(of) else "-" for of, name in (
             (budget, "points"), (published, "violations"), (budget, "violations"))]
-        out.rows.append([surface, generator, *counts, f"{safe:.4g}" if safe == safe else "-",
-                         rounded(max(0.0, far)) if len(published) else "-"])
+        row = [surface, generator, *counts, f"{safe:.4g}" if safe == safe else "-",
+               rounded(max(0.0, far)) if len(published) else "-"]
+        if counts[1:] == ["0", "0"] and row[-1] == "0" and safe == safe:
+            clean.setdefault(surface, []).append((total(budget, "points"), safe))
+        else:
+            out.rows.append(row)
+    for surface, of in clean.items():
+        least = sorted({f"{safe:.4g}" for _, safe in of}, key=float)
+        out.rows.append([surface, f"{counted(len(of), 'other', 'others')}, all points of them", grouped(sum(n for n, _ in of)),
+                         "0", "0", " to ".join(least[:1] + least[-1:][:len(least) - 1]), "0"])
     return out
 
 
@@ -160,11 +169,14 @@ def add_headline(chapter, runs, placements):
         if len(smaller) and len(bare):
             chapter.find(f"Pairs at risk in these scenes, views and pixels: {of_rows(smaller, 'missed', 'colliding')} are "
                          f"missed with 0.9 of the budget radius, and {grouped(total(bare, 'missed'))} without a ball.")
+    said = []
     for bits, rows in groups(placements[placements.published], "bits"):
         longest = rounded(column(rows, "largest_miss_px").max())
-        more = f"; the longest intersection that it missed is {longest} px long" if total(rows, "missed") else ""
-        chapter.find(f"Of patches placed into each other at random, {bits_text(bits)}, the published radius missed "
-                     f"something in {rate_of_rows(rows)} placements{more}.")
+        more = f", the longest of them {longest} px long," if total(rows, "missed") else ""
+        said.append(f"{rate_of_rows(rows)}{more} with {bits_text(bits)}")
+    if said:
+        chapter.find("Of patches placed into each other at random, the published radius missed something in "
+                     f"{listed(said)}.")
     # Gives a rate of 0 a meaning: the misses of smaller radii in the same placements.
     words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
              for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
@@ -194,15 +206,21 @@ def placement_figure(placements):
         "measured with other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
+def cell_of(rate):
+    """rate_text() without the words that the caption has."""
+    return rate.replace(", 95 % interval ", "; ").replace("95 % bound: ", "")
+
+
 def placement_table(placements):
     out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
-                "collides, of both kinds of patches and of contacts together",
+                "collides, of both kinds of patches and of contacts together. In brackets the rate with its 95 % interval, or "
+                "the 95 % bound",
                 columns(["radius"], ["side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
                                      "largest miss (px)"]))
     for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
             radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
-            rate_of_rows(rows), of_rows(rows, "missed", "colliding"),
+            cell_of(rate_of_rows(rows)), of_rows(rows, "missed", "colliding"),
             rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out
 

@@ -1,7 +1,6 @@
 """All scenes of the studies: where they come from, and how large their triangles are in pixels."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-RESOLUTIONS = (64, 128, 256, 512, 1024, 2048, 4096)  # px
 MESHES, SIMULATED, DRAWN, CONSTRUCTED = "scanned or modelled", "simulated", "drawn", "constructed"
 
 
@@ -33,16 +32,15 @@ def self_text(row):
 def table_of(rows, at):
     return Table(
         "scenes", "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, "
-        "without neighbours inside an object. Then the pixels that the median triangle covers at each "
-        "resolution: the area of its image in the views x, y and z. The median is that of the triangles whose "
-        "box meets another object's or whose object is tested against itself. Of a scene that moves, the frame "
-        "that is named. The CSV of all rows also has the smallest tenth, nine tenths, and the hash of the triangles",
-        columns(["scene", "source", "self"], ["frame", "objects", "triangles", "colliding"] +
-                [f"{side} px" for side in RESOLUTIONS]),
+        "without neighbours inside an object. Then the pixels that the median triangle covers at "
+        f"{at} px: the area of its image in the views x, y and z; at twice the resolution it covers four times as many. "
+        "The median is that of the triangles whose box meets another object's or whose object is tested against itself. "
+        "Of a scene that moves, the frame that is named",
+        columns(["scene", "source", "self"], ["frame", "objects", "triangles", "colliding", f"{at} px"]),
         [[row.scene, f"{DRAWN}, seed {row.drawn_with}" if row.source == DRAWN else row.source, self_text(row),
           str(row.frame) if row.frame >= 0 else "-"] +
          [count_cell(row, name) for name in ("objects", "triangles", "colliding")] +
-         [pixels_text(value(row, "pixels_half") * (side / at)**2) for side in RESOLUTIONS] for row in rows.itertuples()])
+         [pixels_text(value(row, "pixels_half"))] for row in rows.itertuples()])
 
 
 def fill(chapter, study):

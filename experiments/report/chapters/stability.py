@@ -142,6 +142,8 @@ def fill(chapter, study):
         "shares are those of this layout.",
         "In gaps nothing collides but small triangles at two corners of the scene: this family shows what is kept of pairs "
         "that nearly meet, and what is reported wrongly.",
+        "CULLIDE is run as it is by default, until nothing changes; its strict form, which misses least, is in the study of "
+        "accuracy.",
         "CULLIDE is measured between objects, so it sees the cloth against the sphere; S-CULLIDE, FAR and boxes also "
         "see it against itself.",
         "The cloth here is small, and looked at in a few frames. The study cloth (farcull experiment cloth, hours) goes "
