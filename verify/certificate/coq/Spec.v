@@ -1,5 +1,5 @@
 (** What the checker of certificates proves: the question alone, without a way to answer it.
-    docs/verified.md explains each definition to readers who do not know Coq. *)
+    docs/verified.md answers questions about the definitions. *)
 From Coq Require Import ZArith QArith List Bool.
 Import ListNotations.
 Open Scope Q_scope.
