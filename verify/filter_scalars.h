@@ -224,26 +224,31 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 
 using Corners = std::array<Vec3, 3>;
 
+/// What a point is a mean of: edge 0 to 2 (from corner i to the next), corner i as kCorner + i, or
+/// the face.
+constexpr int kCorner = 3, kFace = 6;
+
 /// The best guess so far.
 struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
+  int of_a = kCorner, of_b = kCorner;  // what the points lie on
+  double s = 0, t = 0;  // of edges: how far along that of a and that of b; of a face: the weights
+                        // of its corners 1 and 2
 
-  void offer(const Vec3& d) {
-    const double s = d.squaredNorm();
-    if (s < squared) {
-      squared = s;
-      difference = d;
-    }
+  void offer(const Vec3& d, int on_a, int on_b, double along_a, double along_b) {
+    const double square = d.squaredNorm();
+    if (square < squared) *this = {square, d, on_a, on_b, along_a, along_b};
   }
 };
 
 inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // 0 for NaN
 
 /// Offers the difference from p + s u to q + t v, two points of the segments that are closest
-/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
-inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
-                           Closest& closest) {
+/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1]. The segments are edge i of
+/// a and edge j of b.
+inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Closest& closest) {
+  const Vec3 &p = a[i], &p_end = a[(i + 1) % 3], &q = b[j], &q_end = b[(j + 1) % 3];
   const Vec3 u = p_end - p;
   const Vec3 v = q_end - q;
   const Vec3 w = p - q;
@@ -255,12 +260,13 @@ inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, cons
     t = clamped(t);
     s = uu > 0 ? clamped((uv * t - uw) / uu) : 0;
   }
-  closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s));
+  closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s), i, j, s, t);
 }
 
-/// Offers the difference from a corner p to the face of t if p lies over the face; with `sense` -1,
-/// the opposite vector.
-inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest) {
+/// Offers the difference from corner i of a triangle to the face of t if the corner lies over the
+/// face; with `sense` -1, where the triangle is b and t is a, the opposite vector.
+inline void offer_face(const Corners& of, int i, const Corners& t, double sense, Closest& closest) {
+  const Vec3& p = of[i];
   const Vec3 e = t[1] - t[0];
   const Vec3 f = t[2] - t[0];
   const Vec3 w = p - t[0];
@@ -270,7 +276,9 @@ inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& c
   const double m = (ee * fw - ef * ew) / det;
   if (!(l >= 0 && m >= 0 && l + m <= 1)) return;
   const double k = std::max(1 - l - m, 0.0);
-  closest.offer(sense * ((t[0] * k + t[1] * l + t[2] * m) - p));
+  const int corner = kCorner + i;
+  closest.offer(sense * ((t[0] * k + t[1] * l + t[2] * m) - p), sense > 0 ? corner : kFace,
+                sense > 0 ? kFace : corner, l, m);
 }
 
 /// The largest |coordinate| per axis of all corners.
@@ -297,12 +305,12 @@ inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      offer_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], closest);
+      offer_segments(s, i, t, j, closest);
     }
   }
   for (int i = 0; i < 3; ++i) {
-    offer_face(s[i], t, 1, closest);
-    offer_face(t[i], s, -1, closest);
+    offer_face(s, i, t, 1, closest);
+    offer_face(t, i, s, -1, closest);
   }
   return out;
 }
@@ -344,8 +352,7 @@ struct DistanceBounds {
 /// quotient does not underflow: a gap above 0 is a multiple of the last bit of the doubt, hence
 /// above 2^-104 |d|^2 (no |d_k| is much more than twice the extent), and |d| is at least 2^-450.
 template <class Bounds>
-DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  const Near near = near_points(a, b);
+DistanceBounds distance_bounds(const Near& near) {
   const double squared = near.closest.squared;
   const Vec3 extent = extent_of(near.s, near.t);
   const double length = std::sqrt(std::max(squared, kLeastSquare));
@@ -356,6 +363,11 @@ DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Ve
   const double lower = gap_along<Bounds>(near, extent) / length * (1 - kNeededRounding);
   if (lower > 0) out.lower = lower;
   return out;
+}
+
+template <class Bounds>
+DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return distance_bounds<Bounds>(near_points(a, b));
 }
 
 }  // namespace farcull::filters

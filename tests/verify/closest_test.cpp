@@ -4,6 +4,8 @@
 #include "tests/lab/closest.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
+#include "verify/filter.h"
+#include "verify/near_contact.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -11,6 +13,7 @@ namespace {
 
 using closest_reference::is_rounded;
 using closest_reference::is_rounded_root;
+using reference::kTiny;
 using reference::Rational;
 using reference::RationalPoint;
 using reference::Triangle;
@@ -248,6 +251,147 @@ TEST(SquaredDistance, ComparesAndPrintsFractions) {
   EXPECT_GT(squared_distance(a, point(2, 2)), squared_distance(a, point(-0.25, 1)));
   EXPECT_EQ(squared_distance(a, point(2, 2)), squared_distance(point(2, 2), a));
   EXPECT_LT(squared_distance(a, point(2, 2)), squared_distance(a, point(-0x1.7p-1, 1)));
+}
+
+// ---- contacts (verify/near_contact.h)
+
+Rational absolute(const Rational& x) { return x < 0 ? Rational(-x) : x; }
+
+/// The largest difference of two coordinates on one axis.
+double extent(const Triangle& a, const Triangle& b) {
+  Box box = Box::empty();
+  for (const Triangle* t : {&a, &b})
+    for (const Vec3& p : *t) box.add(p);
+  return (box.hi - box.lo).maxCoeff();
+}
+
+/// The point of the weights: the first corner, and the others relative to it.
+RationalPoint mean(const Triangle& t, const Vec3& weights) {
+  RationalPoint out;
+  for (int k = 0; k < 3; ++k) {
+    out[k] = t[0][k];
+    for (int i = 1; i < 3; ++i)
+      out[k] += Rational(weights[i]) * (Rational(t[i][k]) - Rational(t[0][k]));
+  }
+  return out;
+}
+
+/// Counts what verify/near_contact.h promises of contact_within() and does not hold.
+int broken_promises(const Triangle& a, const Triangle& b, const NearContact& got,
+                    const Closest& exact) {
+  constexpr double kU = 0x1p-53;
+  const Rational reach = Rational(0x1p-45) * Rational(extent(a, b));
+  const bool meet = exact.squared.is_zero();
+  int broken = (got.distance == 0) != (exact.distance == 0);
+  const Rational squared = rational(exact.squared), d = got.distance;
+  const Rational off = d * Rational(0x1p-32) + Rational(kTiny) / 2;
+  broken += (d > off && (d - off) * (d - off) > squared) || (d + off) * (d + off) < squared;
+  for (int side = 0; side < 2; ++side) {
+    const Vec3& weights = got.weights[side];
+    const RationalPoint at = mean(side == 0 ? a : b, weights);
+    Rational apart = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Rational x = got.points[side][k];
+      const Rational beyond = absolute(x - at[k]) - absolute(x) * Rational(kU) - kTiny;
+      if (beyond > 0) apart += beyond * beyond;
+    }
+    broken += apart > reach * reach;
+    broken += !(weights.minCoeff() >= 0) || std::abs(weights.sum() - 1) > 6 * kU;
+    unsigned corners = 0;
+    for (int i = 0; i < 3; ++i) corners |= (weights[i] != 0 ? 1u : 0u) << i;
+    const Feature& f = got.features[side];
+    const unsigned named = f.kind == FeatureKind::vertex ? 1u << f.index
+                           : f.kind == FeatureKind::edge ? 1u << f.index | 1u << (f.index + 1) % 3
+                                                         : 7u;
+    broken += (corners & ~named) != 0;
+  }
+  if (meet) return broken + (got.points[0] != got.points[1] || !got.normal.isZero(0));
+  Rational between = 0, rounding = 2 * reach + off;
+  for (int k = 0; k < 3; ++k) {
+    const Rational x = Rational(got.points[1][k]) - Rational(got.points[0][k]);
+    between += x * x;
+    rounding += Rational(kU) * (absolute(got.points[0][k]) + absolute(got.points[1][k])) + kTiny;
+  }
+  broken += between > (d + rounding) * (d + rounding);
+  broken += d > rounding && between < (d - rounding) * (d - rounding);
+  return broken + ((got.normal - exact_contact(a, b, exact).normal).norm() > 0x1p-15);
+}
+
+TEST(NearContact, KeepsItsPromisesOnPairsOfEveryKind) {
+  const auto all = generators();
+  RandomDraws random(test_seed(31));
+  int in_doubles = 0, crossing = 0, exactly = 0;
+  for (std::size_t n = 0; more_cases(n, trials(20000, 2000), in_doubles > 100); ++n) {
+    if (HasFailure()) return;
+    const auto& [name, make] = all[n % all.size()];
+    const auto [a, b] = make(random);
+    SCOPED_TRACE(name + " " + std::to_string(n) + " " + reference::text(a, b));
+    if (!hard_pairs::finite({a, b})) continue;
+    const Closest exact = closest_points(a, b);
+    const double d = exact.distance, most = std::numeric_limits<double>::max();
+    for (const double within :
+         {d, std::nextafter(d, 0.0), std::nextafter(d, most), 2 * d + 1, 0.0}) {
+      if (!std::isfinite(within)) continue;
+      const auto got = contact_within(a, b, within, filter_planes(a, b, within));
+      ASSERT_EQ(got.has_value(), exact.squared <= SquaredDistance::of(within));
+      if (!got) continue;
+      EXPECT_EQ(broken_promises(a, b, *got, exact), 0);
+      in_doubles += got->distance != d;
+      crossing += d == 0 && got->points != exact.points;
+      exactly += got->points == exact.points;
+    }
+  }
+  EXPECT_GT(std::min({in_doubles, crossing, exactly}), 100);
+}
+
+// The twin: doubles are believed however far apart their bounds are.
+TEST(NearContactTwin, WithoutATolerancePromisesAreBroken) {
+  const auto all = generators();
+  RandomDraws random(test_seed(32));
+  int broken = 0;
+  for (std::size_t n = 0; more_cases(n, 0, broken > 3, 20000); ++n) {
+    const auto [a, b] = all[n % all.size()].second(random);
+    if (!hard_pairs::finite({a, b})) continue;
+    const Closest exact = closest_points(a, b);
+    const double within = 2 * exact.distance + 1;
+    if (!std::isfinite(within)) continue;
+    const auto got = contact_within(a, b, within, filter_planes(a, b, within), HUGE_VAL);
+    broken += got && broken_promises(a, b, *got, exact) > 0;
+  }
+}
+
+TEST(NearContact, ExactOnesAreRoundedOnce) {
+  const auto all = generators();
+  RandomDraws random(test_seed(33));
+  int faces = 0;
+  for (std::size_t n = 0; more_cases(n, trials(8000, 500), faces > 20); ++n) {
+    if (HasFailure()) return;
+    const auto& [name, make] = all[n % all.size()];
+    const auto [a, b] = make(random);
+    SCOPED_TRACE(name + " " + std::to_string(n) + " " + reference::text(a, b));
+    if (!hard_pairs::finite({a, b})) continue;
+    const NearContact got = exact_contact(a, b, closest_points(a, b));
+    const auto want = closest_reference::closest_points(a, b);
+    for (int side = 0; side < 2; ++side) {
+      const Triangle& t = side == 0 ? a : b;
+      const RationalPoint at = mean(t, got.weights[side]);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LE(absolute(at[k] - want.points[side][k]),
+                  Rational(0x1p-51) * Rational(extent(t, t)) + 3 * Rational(kTiny));
+      faces += got.features[side].kind == FeatureKind::face;
+    }
+    const RationalPoint w = reference::minus(want.points[1], want.points[0]);
+    for (int k = 0; k < 3; ++k) {
+      if (want.squared == 0) {
+        EXPECT_EQ(got.normal[k], 0);
+        continue;
+      }
+      const Rational square = w[k] * w[k] / want.squared,
+                     n2 = Rational(got.normal[k]) * got.normal[k];
+      EXPECT_LE(absolute(n2 - square), square * Rational(0x1p-48) + Rational(0x1p-1000));
+      EXPECT_GE(w[k] * Rational(got.normal[k]), 0);
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,201 @@
+// Contacts: near triangles by the filter of distances (verify/filter_scalars.h), which keeps the
+// weights of its points; crossing ones by an edge that passes through a face; the rest exactly.
+#include "verify/near_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "verify/closest_features.h"
+#include "verify/filter_scalars.h"
+#include "verify/scaled.h"
+#include "verify/squared_distance.h"
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+using Integer = mpz_class;
+
+// ---- in doubles
+//
+// Distance. distance_bounds() proves lower <= D <= upper of the exact distance D, from the computed
+// length L of the difference of two points: upper is L plus a bound, and lower is L minus one
+// (less, if the points are not nearest). So |L - D| <= upper - lower, and where this is at most
+// 2^-33 lower, L is off by 2^-32 D at most; the factor 2 covers the roundings of that comparison.
+//
+// Normal. Let w* be the exact difference of nearest points, |w*| = D, and x that of the exact
+// points with the same weights (divided by their sum). The computed difference is off from x by at
+// most upper - lower <= 2^-33 D, so |x| <= D (1 + 2^-32). w* is the point of a convex set, b minus
+// a, that is nearest to 0, and x is in the set: so (x - w*) . w* >= 0, and |x - w*|^2 <= |x|^2 -
+// |w*|^2 < 2^-30.9 D^2. With the error of x the computed difference is off from w* by less than
+// 2^-15.4 D. Scaling both to length 1 at most doubles nothing: the directions of two vectors that
+// differ by e D, one of length D, differ by an angle of at most asin(e); so the unit vectors differ
+// by less than 2^-15.3, and by some u for the roundings of the quotient.
+//
+// Points. With weights l_1, l_2 and corners c_0 to c_2 the point is c_0 + ((c_1 - c_0) l_1 +
+// (c_2 - c_0) l_2). The differences are off by u R, products and sums by 3 u R more, each for
+// weights that sum to at most 1 + u, and a weight of c_0 that was below 0 by rounding, and is 0,
+// moves the point by 2 u R: less than 8 u R, and then comes the sum with c_0.
+
+/// What the point of these weights lies on.
+Feature feature_of(const Vec3& weights) {
+  const unsigned corners = (weights[0] != 0) + 2u * (weights[1] != 0) + 4u * (weights[2] != 0);
+  constexpr std::array<Feature, 8> kOf = {{{FeatureKind::face, 0},
+                                           {FeatureKind::vertex, 0},
+                                           {FeatureKind::vertex, 1},
+                                           {FeatureKind::edge, 0},
+                                           {FeatureKind::vertex, 2},
+                                           {FeatureKind::edge, 2},
+                                           {FeatureKind::edge, 1},
+                                           {FeatureKind::face, 0}}};
+  return kOf[corners];
+}
+
+Vec3 edge_weights(int edge, double along) {
+  Vec3 out = Vec3::Zero();
+  out[edge] = 1 - along;
+  out[(edge + 1) % 3] = along;
+  return out;
+}
+
+/// The point `on` a triangle, as filters::Closest numbers them; along: how far along the edge.
+Vec3 weights_of(int on, double along, double l, double m) {
+  if (on == filters::kFace) return {std::max(1 - l - m, 0.0), l, m};
+  return on < filters::kCorner ? edge_weights(on, along) : edge_weights(on - filters::kCorner, 0);
+}
+
+/// + 0.0 turns -0.0 into 0.0.
+Vec3 mean(const Corners& t, const Vec3& weights) {
+  for (int i = 0; i < 3; ++i) {
+    if (weights[i] == 1) return t[i].array() + 0.0;
+  }
+  return t[0] + ((t[1] - t[0]) * weights[1] + (t[2] - t[0]) * weights[2]);
+}
+
+NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3, 2>& weights) {
+  return {.points = {mean(a, weights[0]), mean(b, weights[1])},
+          .weights = weights,
+          .features = {feature_of(weights[0]), feature_of(weights[1])}};
+}
+
+/// An edge of one triangle that passes through the face of the other one.
+struct Passing {
+  double least = -HUGE_VAL;  // the least weight of the point in the face
+  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of a and of b
+  int side = 0;                                                // of the edge
+  double gap = HUGE_VAL;  // between the points of the edge and of the face, summed over axes
+};
+
+/// Keeps the edge of x (a or b, by `side`) whose point on y's plane is deepest in y.
+void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) {
+  const Vec3 e = y[1] - y[0], f = y[2] - y[0], n = e.cross(f);
+  const double nn = n.squaredNorm();
+  const std::array<double, 3> height = {n.dot(x[0] - y[0]), n.dot(x[1] - y[0]), n.dot(x[2] - y[0])};
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    if ((height[i] > 0) == (height[j] > 0)) continue;
+    const double along = height[i] / (height[i] - height[j]);
+    const Vec3 at = x[i] * (1 - along) + x[j] * along, w = at - y[0];
+    double l = n.dot(w.cross(f)) / nn, m = n.dot(e.cross(w)) / nn;
+    const double least = std::min({l, m, 1 - l - m});
+    if (!(least > best.least)) continue;
+    l = std::max(l, 0.0);
+    m = std::max(m, 0.0);
+    const double sum = std::max(l + m, 1.0);
+    const Vec3 in_face = weights_of(filters::kFace, 0, l / sum, m / sum);
+    best = {.least = least, .side = side};
+    best.weights[side] = edge_weights(i, along);
+    best.weights[1 - side] = in_face;
+    best.gap = (y[0] * in_face[0] + y[1] * in_face[1] + y[2] * in_face[2] - at).cwiseAbs().sum();
+  }
+}
+
+/// The contact of triangles that cross; empty if the point of an edge, which is the answer, may be
+/// farther than 64 u R from the other triangle.
+std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
+  Corners s, t;
+  for (int i = 0; i < 3; ++i) {
+    s[i] = a[i] - a[0];
+    t[i] = b[i] - a[0];
+  }
+  Passing best;
+  offer_passing(s, t, 0, best);
+  offer_passing(t, s, 1, best);
+  const double bound = FilterBounds::point * filters::extent_of(s, t).maxCoeff();
+  if (!(best.gap < bound && bound < HUGE_VAL)) return {};
+  NearContact out = contact_at(a, b, best.weights);
+  out.points[1 - best.side] = out.points[best.side];
+  if (!out.points[0].allFinite()) return {};
+  return out;
+}
+
+}  // namespace
+
+NearContact exact_contact(const Corners& a, const Corners& b, const Closest& closest) {
+  NearContact out{
+      .distance = closest.distance, .points = closest.points, .features = closest.features};
+  const Scaled pair(a, b);
+  closest::Found<Integer> found;
+  const auto& [of_a, of_b] = closest.features;
+  if (!closest::find(pair.a, of_a, pair.b, of_b, found))
+    throw std::logic_error("exact_contact: these are no closest features");
+  for (int side = 0; side < 2; ++side) {
+    const Feature& feature = closest.features[side];
+    const Feature& other = closest.features[1 - side];
+    Vec3& weights = out.weights[side];
+    weights = edge_weights(feature.index, 0);
+    if (feature.kind == FeatureKind::vertex) continue;
+    auto [l, m] = found.multiples[side];
+    Integer below = found.below;
+    if (feature.kind == FeatureKind::edge) {
+      weights[feature.index] = rounded_quotient(below - l, below, 0);
+      weights[closest::edge_end(feature.index)] = rounded_quotient(l, below, 0);
+      continue;
+    }
+    if (other.kind == FeatureKind::edge) {  // it passes through the face, whose multiples these are
+      const Scaled::Corners& face = side == 0 ? pair.a : pair.b;
+      const auto e = closest::minus(face[1], face[0]), f = closest::minus(face[2], face[0]);
+      const auto n = closest::cross(e, f);
+      auto w = closest::point_of(side == 0 ? pair.b : pair.a, other, found, 1 - side);
+      for (int k = 0; k < 3; ++k) w[k] -= face[0][k] * below;
+      l = closest::dot(n, closest::cross(w, f));
+      m = closest::dot(n, closest::cross(e, w));
+      below *= closest::dot(n, n);
+    }
+    weights = {rounded_quotient(below - l - m, below, 0), rounded_quotient(l, below, 0),
+               rounded_quotient(m, below, 0)};
+  }
+  if (closest.squared.is_zero()) return out;
+  // Each coordinate is rounded once to a double of at most 1, and the length has 4 roundings more.
+  long bits = 0;
+  for (const Integer& x : found.direction)
+    bits = std::max(bits, static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)));
+  for (int k = 0; k < 3; ++k) out.normal[k] = rounded(found.direction[k], -bits);
+  out.normal /= out.normal.norm();
+  return out;
+}
+
+std::optional<NearContact> contact_within(const Corners& a, const Corners& b, double within,
+                                          Triage planes, double tolerance) {
+  if (planes == Triage::no) return {};
+  if (planes == Triage::yes) {
+    if (auto crossing = crossing_contact(a, b)) return crossing;
+  } else {
+    const filters::Near near = filters::near_points(a, b);
+    const filters::DistanceBounds bounds = filters::distance_bounds<FilterBounds>(near);
+    if (bounds.lower > within) return {};
+    if (bounds.upper <= within && bounds.upper - bounds.lower <= tolerance * bounds.lower) {
+      const auto& [squared, difference, of_a, of_b, s, t] = near.closest;
+      NearContact out = contact_at(a, b, {weights_of(of_a, s, s, t), weights_of(of_b, t, s, t)});
+      out.distance = std::sqrt(squared);
+      out.normal = (difference / out.distance).array() + 0.0;  // never -0.0
+      if (out.points[0].allFinite() && out.points[1].allFinite()) return out;
+    }
+  }
+  const Closest closest = closest_points(a, b);
+  if (closest.squared > SquaredDistance::of(within)) return {};
+  return exact_contact(a, b, closest);
+}
+
+}  // namespace farcull
