@@ -213,10 +213,23 @@ class SceneFile {
       if (rotate.contains("quaternion")) {
         check_keys(rotate, at, {"quaternion"});
         const json& q = rotate["quaternion"];
-        const std::string of = at + ".quaternion", four = "write [X, Y, Z, W], not all of them 0";
-        require(q.is_array() && q.size() == 4, of, "must be an array of 4 numbers", four);
+        const std::string of = at + ".quaternion";
+        const std::string four =
+            "write {\"w\": W, \"x\": X, \"y\": Y, \"z\": Z} or [X, Y, Z, W], not all of them 0";
         std::array<double, 4> values{};
-        for (std::size_t i = 0; i < 4; ++i) values[i] = number(q[i], fmt::format("{}[{}]", of, i));
+        if (q.is_object()) {
+          check_keys(q, of, {"w", "x", "y", "z"});
+          for (std::size_t i = 0; i < 4; ++i) {
+            const std::string key(1, "xyzw"[i]);
+            require(q.contains(key), of + "." + key, "is missing", four);
+            values[i] = number(q[key], of + "." + key);
+          }
+        } else {
+          require(q.is_array() && q.size() == 4, of, "is neither four named numbers nor an array",
+                  four);
+          for (std::size_t i = 0; i < 4; ++i)
+            values[i] = number(q[i], fmt::format("{}[{}]", of, i));
+        }
         require(values != std::array<double, 4>{}, of, "is 0", four);
         placement.rotate = Placement::Rotation{.quaternion = values};
       } else {

@@ -213,6 +213,12 @@ TEST(SceneFile, TakesAMatrixAndAQuaternion) {
   const std::vector<Vec3> turned =
       placed(", \"rotate\": {\"quaternion\": [0, 0, 3, 3]}, \"translate\": [5, 0, 0]");
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((turned[k] - expected[k]).norm(), 1e-15);
+  // The same with names, in any order; the twin takes the array with its real part first.
+  EXPECT_EQ(placed(", \"rotate\": {\"quaternion\": {\"w\": 3, \"x\": 0, \"z\": 3, \"y\": 0}}, "
+                   "\"translate\": [5, 0, 0]"),
+            turned);
+  EXPECT_NE(placed(", \"rotate\": {\"quaternion\": [2, 1, 0, 3]}"),
+            placed(", \"rotate\": {\"quaternion\": {\"w\": 2, \"x\": 1, \"y\": 0, \"z\": 3}}"));
   for (const char* identity : {", \"matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
                                ", \"rotate\": {\"quaternion\": [0, 0, 0, -2]}"})
     EXPECT_TRUE(std::signbit(placed(identity)[2].z()));
@@ -221,6 +227,8 @@ TEST(SceneFile, TakesAMatrixAndAQuaternion) {
         ", \"matrix\": [[0,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
         ", \"scale\": 1, \"matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
         ", \"rotate\": {\"quaternion\": [0, 0, 0, 0]}", ", \"rotate\": {\"quaternion\": [0, 0, 1]}",
+        ", \"rotate\": {\"quaternion\": {\"w\": 1, \"x\": 0, \"y\": 0}}",
+        ", \"rotate\": {\"quaternion\": {\"w\": 1, \"x\": 0, \"y\": 0, \"z\": 0, \"u\": 0}}",
         ", \"rotate\": {\"quaternion\": [0, 0, 0, 1], \"angle\": 1}"})
     EXPECT_TRUE(has_text(error_of([&] { placed(bad); }).reason, "objects[0].")) << bad;
 }
