@@ -29,9 +29,9 @@ using Integer = mpz_class;
 // most upper - lower <= 2^-33 D, so |x| <= D (1 + 2^-32). w* is the point of a convex set, b minus
 // a, that is nearest to 0, and x is in the set: so (x - w*) . w* >= 0, and |x - w*|^2 <= |x|^2 -
 // |w*|^2 < 2^-30.9 D^2. With the error of x the computed difference is off from w* by less than
-// 2^-15.4 D. Scaling both to length 1 at most doubles nothing: the directions of two vectors that
-// differ by e D, one of length D, differ by an angle of at most asin(e); so the unit vectors differ
-// by less than 2^-15.3, and by some u for the roundings of the quotient.
+// 2^-15.4 D. Two vectors that differ by e D, one of them of length D, differ by an angle of at most
+// asin(e), so the unit vectors differ by less than 2^-15.3, and by some u more for the roundings of
+// the quotient.
 //
 // Points. With weights l_1, l_2 and corners c_0 to c_2 the point is c_0 + ((c_1 - c_0) l_1 +
 // (c_2 - c_0) l_2). The differences are off by u R, products and sums by 3 u R more, each for

@@ -14,6 +14,12 @@
 // Link farcull::farcull (CMake: find_package(farcull)) or `pkg-config farcull`. C++20.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "farcull needs C++20: compile with -std=c++20 (CMake: link farcull::farcull)"
+#include "farcull needs C++20"  // not there: ends the compilation, so that nothing else is said
+#endif
+
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstdint>
@@ -97,6 +103,15 @@ struct Pair {
   std::uint32_t b = 0;
   auto operator<=>(const Pair&) const = default;
 };
+
+/// The object of a triangle, by the object_starts of the input (empty: object 0).
+inline std::uint32_t object_of(std::span<const std::uint32_t> object_starts,
+                               std::uint32_t triangle) {
+  const auto after = std::upper_bound(object_starts.begin(), object_starts.end(), triangle);
+  return after == object_starts.begin()
+             ? 0
+             : static_cast<std::uint32_t>(after - object_starts.begin() - 1);
+}
 
 /// How the triangles A and B of a pair meet.
 struct Contact {

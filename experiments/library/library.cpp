@@ -8,6 +8,7 @@
 #include "core/base/stopwatch.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
+#include "experiments/method/contacts_within.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 #include "experiments/record/stage_words.h"
@@ -174,19 +175,30 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
   return out;
 }
 
-DistanceAnswer to_public(const Distance& d) {
-  const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
-  return {.object_a = d.objects.a,
-          .object_b = d.objects.b,
-          .triangle_a = d.triangles.a,
-          .triangle_b = d.triangles.b,
-          .distance = d.closest.distance,
-          .squared = d.closest.squared.text(),
-          .point_a = point(d.closest.points[0]),
-          .point_b = point(d.closest.points[1]),
-          .feature_a = to_string(d.closest.features[0]),
-          .feature_b = to_string(d.closest.features[1]),
-          .inside = static_cast<DistanceInside>(d.inside)};
+DistanceAnswer to_public(const ObjectPair& objects, const TrianglePair& triangles,
+                         const NearContact& contact) {
+  const auto three = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
+  return {.object_a = objects.a,
+          .object_b = objects.b,
+          .triangle_a = triangles.a,
+          .triangle_b = triangles.b,
+          .distance = contact.distance,
+          .squared = {},
+          .point_a = three(contact.points[0]),
+          .point_b = three(contact.points[1]),
+          .weights_a = three(contact.weights[0]),
+          .weights_b = three(contact.weights[1]),
+          .normal = three(contact.normal),
+          .feature_a = to_string(contact.features[0]),
+          .feature_b = to_string(contact.features[1])};
+}
+
+DistanceAnswer to_public(const Scene& scene, const Distance& d, bool exact) {
+  const auto a = scene.corners(d.triangles.a), b = scene.corners(d.triangles.b);
+  DistanceAnswer out = to_public(d.objects, d.triangles, exact_contact(a, b, d.closest));
+  if (exact) out.squared = d.closest.squared.text();
+  out.inside = static_cast<DistanceInside>(d.inside);
+  return out;
 }
 
 }  // namespace
@@ -214,13 +226,23 @@ std::vector<DistanceAnswer> DistanceFinder::find(const Input& input) {
     Scene& scene = state.taken.scene;
     scene.ignored = ignored_of(state.given.ignore, scene.objects.size());
     require_asked(scene, {}, "ignore", "give `self`");
-    const DistanceRecord record = watched(state.given.may_go_on, [&](const Progress& progress) {
-      return distances(scene, state.options, progress, &state.memory);
+    return watched(state.given.may_go_on, [&](const Progress& progress) {
+      std::vector<DistanceAnswer> out;
+      const DistanceOptions& options = state.options;
+      if (options.pairs == DistancePairs::all && !state.given.exact) {
+        const auto parts =
+            contacts_within(scene, options.within, options.threads, options.most_pairs, progress);
+        for (const auto& part : parts) {
+          for (const TriangleContact& c : part)
+            out.push_back(to_public(c.objects, c.triangles, c.contact));
+        }
+        return out;
+      }
+      const DistanceRecord record = distances(scene, options, progress, &state.memory);
+      for (const Distance& d : record.distances)
+        out.push_back(to_public(scene, d, state.given.exact));
+      return out;
     });
-    std::vector<DistanceAnswer> out;
-    out.reserve(record.distances.size());
-    for (const Distance& d : record.distances) out.push_back(to_public(d));
-    return out;
   });
 }
 

@@ -115,20 +115,22 @@ constexpr std::array kFeatures = {"vertex 0", "vertex 1", "vertex 2", "edge 0",
 constexpr std::array kInside = {"unknown", "none", "a", "b", "not closed"};
 
 std::uint8_t feature_code(const std::string& feature) {
-  return static_cast<std::uint8_t>(std::find(kFeatures.begin(), kFeatures.end(), feature) -
-                                   kFeatures.begin());
+  if (feature == "face") return 6;
+  return static_cast<std::uint8_t>((feature[0] == 'e' ? 3 : 0) + (feature.back() - '0'));
 }
 
-// A column for each member of DistanceAnswer.
-py::dict columns_of(const std::vector<DistanceAnswer>& answers) {
+// A column for each member of DistanceAnswer; without `exact`, none for `squared`.
+py::dict columns_of(const std::vector<DistanceAnswer>& answers, bool exact) {
   const auto count = static_cast<py::ssize_t>(answers.size());
   constexpr py::ssize_t kTwo = 2, kThree = 3;
   py::array_t<std::int64_t> objects({count, kTwo}), triangles({count, kTwo});
   py::array_t<double> distance(count), points({count, kTwo, kThree});
+  py::array_t<double> weights({count, kTwo, kThree}), normals({count, kThree});
   py::array_t<std::uint8_t> features({count, kTwo}), inside(count);
-  py::list squared(answers.size());
+  py::list squared(exact ? answers.size() : 0);
   std::int64_t *object = objects.mutable_data(), *triangle = triangles.mutable_data();
-  double* point = points.mutable_data();
+  double *point = points.mutable_data(), *weight = weights.mutable_data();
+  double* normal = normals.mutable_data();
   std::uint8_t* feature = features.mutable_data();
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const DistanceAnswer& d = answers[k];
@@ -136,15 +138,17 @@ py::dict columns_of(const std::vector<DistanceAnswer>& answers) {
     object = std::ranges::copy(std::array{d.object_a, d.object_b}, object).out;
     triangle = std::ranges::copy(std::array{d.triangle_a, d.triangle_b}, triangle).out;
     point = std::ranges::copy(d.point_b, std::ranges::copy(d.point_a, point).out).out;
+    weight = std::ranges::copy(d.weights_b, std::ranges::copy(d.weights_a, weight).out).out;
+    normal = std::ranges::copy(d.normal, normal).out;
     *feature++ = feature_code(d.feature_a);
     *feature++ = feature_code(d.feature_b);
     distance.mutable_at(at) = d.distance;
     inside.mutable_at(at) = static_cast<std::uint8_t>(d.inside);
-    squared[k] = py::str(d.squared);
+    if (exact) squared[k] = py::str(d.squared);
   }
   return py::dict("objects"_a = objects, "triangles"_a = triangles, "distance"_a = distance,
-                  "squared"_a = squared, "points"_a = points, "features"_a = features,
-                  "inside"_a = inside);
+                  "squared"_a = squared, "points"_a = points, "weights"_a = weights,
+                  "normals"_a = normals, "features"_a = features, "inside"_a = inside);
 }
 
 template <class Names>
@@ -188,7 +192,8 @@ void add_distances(py::module_& module) {
   py::class_<KeptDistances>(module, "DistanceFinder")
       .def(py::init([](const std::string& kind, std::size_t k, std::optional<double> within,
                        bool self, const std::vector<bool>& self_objects, bool inside,
-                       const std::vector<std::array<std::uint32_t, 2>>& ignore, unsigned threads) {
+                       const std::vector<std::array<std::uint32_t, 2>>& ignore, unsigned threads,
+                       bool exact) {
         return std::make_unique<KeptDistances>("DistanceFinder",
                                                DistanceFinderOptions{.kind = kind_of(kind),
                                                                      .k = k,
@@ -196,12 +201,13 @@ void add_distances(py::module_& module) {
                                                                      .self = self,
                                                                      .self_objects = self_objects,
                                                                      .inside = inside,
+                                                                     .exact = exact,
                                                                      .ignore = ignore,
                                                                      .threads = threads});
       }))
       .def("find", [](KeptDistances& kept, const py::array& vertices, const py::array& triangles,
                       const py::array& starts, const py::array& poses) {
-        return columns_of(kept.find(vertices, triangles, starts, poses));
+        return columns_of(kept.find(vertices, triangles, starts, poses), kept.options.exact);
       });
   module.attr("features") = names_of(kFeatures);
   module.attr("inside") = names_of(kInside);

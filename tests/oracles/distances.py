@@ -149,7 +149,7 @@ def scene(rng, spoil):
     V = np.ldexp(V + (0 if power else rng.choice([0, 1 << 40])), power)
     unit = Fraction(2) ** power
     inside = rng.choice([True, False]) if question["kind"] != "all" else True
-    found = farcull.distances(V, F, starts_of(sizes), kind=question["kind"], k=question["k"], self=question["self"], inside=inside,
+    found = farcull.distances(V, F, starts_of(sizes), kind=question["kind"], k=question["k"], self=question["self"], inside=inside, exact=True,
                               within=None if question["within"] is None else float(question["within"] * unit),
                               ignore=sorted(question["ignore"]) or None, threads=1)
     tuples = as_tuples(triangles)

@@ -119,6 +119,15 @@ class Grouped:
         by = np.lexsort((named[:, 1], named[:, 0]))
         return (named[by], *(None if other is None else other[by] for other in others))
 
+    def objects(self, pairs: np.ndarray) -> np.ndarray:
+        """The objects of triangles in the caller's numbers, by labels where there are some."""
+        if self.order is not None:
+            place = np.empty(len(self.order), np.int64)
+            place[self.order] = np.arange(len(self.order))
+            pairs = place[pairs]
+        out = np.maximum(np.searchsorted(self.starts, pairs, side="right") - 1, 0)
+        return out if self.labels is None else self.labels[out]
+
     def ignored(self, given: Any) -> Any:
         """Pairs of objects, by their labels where there are some, as pairs of numbers."""
         if self.labels is None or given is None:

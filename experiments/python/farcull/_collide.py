@@ -45,6 +45,8 @@ class Result:
     pairs: NDArray[np.int64]
     """(k, 2), in each row the lower number first, rows sorted, each once: of different objects, or of
     one that is tested against itself and no neighbours."""
+    objects: NDArray[Any]
+    """(k, 2): the objects of each of ``pairs``, as numbers from 0 or as labels. Neighbours are of one object."""
     neighbour_pairs: NDArray[np.int64]
     """The same of neighbours: triangles of one object that share a vertex position, and that meet in
     more than the shared positions and the edge between them."""
@@ -193,6 +195,7 @@ class Collider:
             ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
         ):
             found.update(zip(names, grouped.pairs(*(found[name] for name in names))))
+        found["objects"] = grouped.objects(found["pairs"])
         return Result(**{**found, "report": Report(**found["report"])}, _input=shown)
 
 

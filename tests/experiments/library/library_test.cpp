@@ -255,9 +255,9 @@ void expect_same(const std::vector<DistanceAnswer>& found, const DistanceRecord&
 
 TEST(LibraryDistances, AreThoseOfTheMethodSceneAfterScene) {
   rational::Draws random(1);
-  DistanceFinder all_pairs;
-  DistanceFinder near({.kind = DistanceKind::nearest, .k = 2});
-  DistanceFinder within({.kind = DistanceKind::all, .within = 3, .threads = 2});
+  DistanceFinder all_pairs({.exact = true});
+  DistanceFinder near({.kind = DistanceKind::nearest, .k = 2, .exact = true});
+  DistanceFinder within({.kind = DistanceKind::all, .within = 3, .exact = true, .threads = 2});
   for (int k = 0; k < 20; ++k) {
     Scene scene = distance_lab::random_scene(random, 4, 12);
     for (Object& object : scene.objects) object.self = false;
@@ -274,10 +274,55 @@ TEST(LibraryDistances, AreThoseOfTheMethodSceneAfterScene) {
   }
 }
 
+// Contacts in doubles name the pairs of the exact ones, in their order, with numbers that are as
+// near as distance.h says (tests/verify/closest_test.cpp has each promise).
+TEST(LibraryDistances, ContactsAreThoseOfExactArithmetic) {
+  rational::Draws random(2);
+  std::size_t apart = 0, meet = 0, fewer = 0;
+  for (int k = 0; k < 20; ++k) {
+    Scene scene = distance_lab::random_scene(random, 4, 12);
+    std::erase_if(scene.objects, [](const Object& object) { return object.triangle_count == 0; });
+    if (scene.objects.size() < 3) continue;
+    const Flat flat(scene);
+    Box box = Box::empty();
+    for (const Vec3& p : scene.vertices) box.add(p);
+    const double size = (box.hi - box.lo).maxCoeff();
+    DistanceFinderOptions options{.kind = DistanceKind::all, .within = size / 8, .self = true};
+    if (k % 2 == 0) options.ignore = {{2, 1}};
+    const std::vector<DistanceAnswer> found = distances(flat.input(), options);
+    options.exact = true;
+    const std::vector<DistanceAnswer> exact = distances(flat.input(), options);
+    ASSERT_EQ(found.size(), exact.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const DistanceAnswer &x = found[i], &y = exact[i];
+      EXPECT_EQ(std::tie(x.object_a, x.object_b, x.triangle_a, x.triangle_b),
+                std::tie(y.object_a, y.object_b, y.triangle_a, y.triangle_b));
+      EXPECT_EQ(object_of(flat.starts, x.triangle_a), x.object_a);
+      EXPECT_EQ(object_of(flat.starts, x.triangle_b), x.object_b);
+      EXPECT_LE(std::abs(x.distance - y.distance), 0x1p-31 * y.distance);
+      EXPECT_TRUE(x.squared.empty() && !y.squared.empty());
+      double length = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(x.normal[axis], y.normal[axis], 0x1p-15);
+        length += x.normal[axis] * x.normal[axis];
+      }
+      EXPECT_NEAR(length, x.distance > 0, 1e-12);
+      (x.distance > 0 ? apart : meet) += 1;
+    }
+    // The twin: another distance.
+    options.within = size / 32;
+    fewer += distances(flat.input(), options).size() < exact.size();
+  }
+  EXPECT_GT(apart, 100u);
+  EXPECT_GT(meet, 0u);
+  EXPECT_GT(fewer, 5u);
+  EXPECT_EQ(object_of({}, 7), 0u);
+}
+
 TEST(LibraryDistances, OfObjectsThatAreAskedAboutByThemselves) {
   Scene scene = make_builtin_scene("degenerate");
   scene.objects[1].self = true;
-  DistanceFinder finder({.self_objects = {false, true}});
+  DistanceFinder finder({.self_objects = {false, true}, .exact = true});
   expect_same(finder.find(Flat(scene).input()), distances(scene, {}));
   EXPECT_THROW(DistanceFinder({.self_objects = {true}}).find(Flat(scene).input()), Error);
 }
@@ -285,7 +330,7 @@ TEST(LibraryDistances, OfObjectsThatAreAskedAboutByThemselves) {
 TEST(LibraryDistances, LeaveIgnoredObjectsOut) {
   Scene scene = make_builtin_scene("cylinders:3");
   const Flat flat(scene);
-  const auto answers = distances(flat.input(), {.ignore = {{2, 0}, {0, 2}}});
+  const auto answers = distances(flat.input(), {.exact = true, .ignore = {{2, 0}, {0, 2}}});
   scene.ignored = {{0, 2}};
   expect_same(answers, distances(scene, {}));
   EXPECT_EQ(answers.size(), 2u);

@@ -81,7 +81,7 @@ TEST(LibraryPoses, FramesAreAsFresh) {
   Flat flat(make_builtin_scene("two-spheres"));
   std::vector<Pose> poses(2);
   Collider collider({.self_objects = {true, false}});
-  DistanceFinder finder({.inside = false});
+  DistanceFinder finder({.inside = false, .exact = true});
   TakenInput kept;
   int changes = 0, alone = 0;
   bool arrays = true;
@@ -107,7 +107,7 @@ TEST(LibraryPoses, FramesAreAsFresh) {
     ASSERT_EQ(found.pairs, fresh.pairs) << frame;
     ASSERT_EQ(found.neighbour_pairs, fresh.neighbour_pairs) << frame;
     ASSERT_EQ(finder.find(input)[0].squared,
-              distances(expected.input(), {.inside = false})[0].squared)
+              distances(expected.input(), {.inside = false, .exact = true})[0].squared)
         << frame;
     changes += found.pairs != last;  // so what is not moved, or moved twice, gives another answer
     last = found.pairs;
@@ -281,8 +281,8 @@ TEST(LibraryMayGoOn, IsAskedInTheThreadOfTheCallerAndChangesNothing) {
   std::fesetround(FE_TONEAREST);
   EXPECT_EQ(found.pairs, collide(flat.input()).pairs);
   EXPECT_EQ(found.report.callers_arithmetic, "rounds upward, keeps subnormals");
-  EXPECT_EQ(distances(flat.input(), {.may_go_on = may_go_on})[0].squared,
-            distances(flat.input())[0].squared);
+  EXPECT_EQ(distances(flat.input(), {.exact = true, .may_go_on = may_go_on})[0].squared,
+            distances(flat.input(), {.exact = true})[0].squared);
   EXPECT_GE(asked, 2);
   EXPECT_TRUE(here);
 }
@@ -329,8 +329,8 @@ TEST(LibraryEigen, MatricesOfAnyTypeAndOrderAnswerAsArrays) {
   ASSERT_FALSE(expected.empty());
   EXPECT_EQ(collide(V, F, flat.starts).pairs, expected);
   EXPECT_EQ(collide(by_columns, F.cast<std::int64_t>(), flat.starts).pairs, expected);
-  EXPECT_EQ(distances(EigenInput(V, F, flat.starts))[0].squared,
-            distances(flat.input())[0].squared);
+  EXPECT_EQ(distances(EigenInput(V, F, flat.starts), {.exact = true})[0].squared,
+            distances(flat.input(), {.exact = true})[0].squared);
   // Twins: rows for columns, and an index below 0.
   EXPECT_EQ(refusal([&] { collide(V.transpose(), F, flat.starts); })[0], "vertices");
   EXPECT_EQ(refusal([&] { collide(V, F.transpose(), flat.starts); })[0], "triangles");

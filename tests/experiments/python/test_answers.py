@@ -39,17 +39,37 @@ def as_objects(found):
         farcull.Distance(
             tuple(found.objects[k].tolist()), tuple(found.triangles[k].tolist()), float(found.distance[k]),
             found.squared[k], tuple(tuple(p) for p in found.points[k].tolist()),
+            tuple(tuple(w) for w in found.weights[k].tolist()), tuple(found.normals[k].tolist()),
             tuple(farcull.FEATURES[f] for f in found.features[k]), farcull.INSIDE[found.inside[k]])
         for k in range(len(found.distance))]
 
 
+def known(found):
+    """What the program says of distances too."""
+    return [(d.objects, d.triangles, d.distance, d.squared, d.points, d.features, d.inside) for d in found]
+
+
 def of_program(program, *words):
-    """The distances that the program answers, as objects."""
+    """The distances that the program answers, as known() has them."""
     record = json.loads(asked("distance", *sorted(program.folder.glob("*.off")), "--json", "-", *words))
-    return [farcull.Distance(
+    return [(
         (d["a"], d["b"]), tuple(OBJECTS[o] + t for o, t in zip((d["a"], d["b"]), d["triangles"])), d["distance"],
         d["squared"], tuple(map(tuple, d["witness"])), tuple(d["features"]), d["inside"] or "unknown")
         for d in record["pairs"]]
+
+
+def require_contacts(V, F, found):
+    """Weights are those of the points, and the normal leads from one to the other."""
+    assert (found.weights >= 0).all() and np.allclose(found.weights.sum(2), 1, rtol=0, atol=1e-15)
+    corners = V[F[found.triangles]]
+    assert np.allclose(np.einsum("kti,ktix->ktx", found.weights, corners), found.points, rtol=0, atol=1e-13)
+    apart = found.distance > 0
+    reach = found.points[:, 1] - found.points[:, 0]
+    assert np.allclose(found.normals * found.distance[:, None], reach, rtol=0, atol=1e-12) and not found.normals[~apart].any()
+    assert np.allclose(np.linalg.norm(found.normals[apart], axis=1), 1, rtol=0, atol=1e-15)
+    # Where points lie, by the weights that are not 0.
+    names = np.array(farcull.FEATURES)[found.features]
+    assert np.array_equal((found.weights > 0).sum(2) == 1, np.char.startswith(names, "vertex"))
 
 
 QUESTIONS = [dict(kind="objects"), dict(kind="objects", self=True), dict(kind="nearest", k=2), dict(kind="all", within=0.75)]
@@ -60,19 +80,33 @@ def test_arrays_of_distances_are_the_objects_of_the_program(scene, question):
     V, F, program = scene
     words = ["--pairs", question["kind"]] + ["--self"] * ("self" in question)
     words += [f"--{name}={question[name]}" for name in ("k", "within") if name in question]
-    found = farcull.distances(V, F, OBJECTS, **question)
+    found = farcull.distances(V, F, OBJECTS, exact=True, **question)
     truth = of_program(program, *words)
-    assert as_objects(found) == list(found) == truth and len(found) == len(truth) > 2
+    assert as_objects(found) == list(found) and known(found) == truth and len(found) == len(truth) > 2
     assert found.objects.dtype == found.triangles.dtype == np.int64
+    require_contacts(V, F, found)
+    # Without exact=True all but the texts: with "all" in doubles.
+    quick = farcull.distances(V, F, OBJECTS, **question)
+    require_contacts(V, F, quick)
+    assert np.array_equal(quick.triangles, found.triangles) and np.array_equal(quick.objects, found.objects)
+    assert np.array_equal(quick.inside, found.inside) and all(text is None for text in quick.squared)
+    assert np.allclose(quick.distance, found.distance, rtol=2**-32, atol=0)
+    assert np.allclose(quick.normals, found.normals, rtol=0, atol=2**-15)
+    assert question["kind"] == "all" or known(quick) == [d[:3] + (None,) + d[4:] for d in truth]
     # Twin: two columns exchanged in one row are noticed.
     found.triangles[1] = found.triangles[1, ::-1].copy()
-    assert list(found) != truth
+    assert known(found) != truth
+    with pytest.raises(AssertionError):
+        require_contacts(V, F, found[:2])
 
 
 def test_the_table_of_distances_is_that_of_the_program(scene):
     pytest.importorskip("pandas")
     V, F, program = scene
-    table = farcull.distances(V, F, OBJECTS, self=True).to_pandas()
+    table = farcull.distances(V, F, OBJECTS, self=True, exact=True).to_pandas()
+    more = table.columns[-9:]
+    assert list(more) == ["weight_a0", "weight_a1", "weight_a2", "weight_b0", "weight_b1", "weight_b2", "normal_x", "normal_y", "normal_z"]
+    table = table.drop(columns=more)
     files = sorted(program.folder.glob("*.off"))
     rows = list(csv.reader(io.StringIO(asked("distance", *files, "--self", "--csv", "-"))))
     assert list(table.columns) == rows[0]
@@ -104,13 +138,13 @@ def test_objects_that_are_ignored_have_no_distance(scene):
     V, F, program = scene
     truth = of_program(program, "--ignore", "o0:o2,o3:o1")
     for ignore in ([(0, 2), (3, 1)], [(2, 0), (1, 3), (0, 2)]):
-        found = list(farcull.distances(V, F, OBJECTS, ignore=ignore))
-        assert found == truth == list(farcull.DistanceFinder(ignore=ignore).find(V, F, OBJECTS))
+        found = known(farcull.distances(V, F, OBJECTS, ignore=ignore, exact=True))
+        assert found == truth == known(farcull.DistanceFinder(ignore=ignore, exact=True).find(V, F, OBJECTS))
     labels = np.repeat([7, 5, 3, 9], 40)  # the objects 2, 1, 0 and 3
-    labelled = farcull.distances(V, F, labels=labels, ignore=[(7, 3), (5, 9)])
-    assert sorted(d.squared for d in labelled) == sorted(d.squared for d in truth)
+    labelled = farcull.distances(V, F, labels=labels, ignore=[(7, 3), (5, 9)], exact=True)
+    assert sorted(d.squared for d in labelled) == sorted(d[3] for d in truth)
     # Twin: other objects, and none.
-    assert list(farcull.distances(V, F, OBJECTS, ignore=[(0, 1), (3, 1)])) != truth
+    assert known(farcull.distances(V, F, OBJECTS, ignore=[(0, 1), (3, 1)], exact=True)) != truth
     assert len(truth) == 4 and len(farcull.distances(V, F, OBJECTS)) == 6
     assert refused(farcull.distances, V, F, OBJECTS, ignore=[("o0", "o1")]) == "ignore"
     assert refused(farcull.DistanceFinder(ignore=[(0, 2)]).find, V, F, labels=labels) == "labels"

@@ -128,7 +128,7 @@ def test_labels_group_triangles_in_any_order():
     V, F, starts = scene.vertices, scene.triangles, scene.object_starts
     count = len(F)
     expected = farcull.collide(V, F, starts, contacts=True)
-    assert len(expected.pairs) == 282
+    assert len(expected.pairs) == 282 and expected.objects.tolist() == [[0, 1]] * 282
     labels = np.repeat([3, 7], [starts[1], count - starts[1]])
     order = np.random.default_rng(20261127).permutation(count)
     place = np.argsort(order)  # where the triangle k is now
@@ -138,6 +138,8 @@ def test_labels_group_triangles_in_any_order():
         assert same_pairs(farcull.collide(V, F, labels=names), expected)
         mixed = farcull.collide(V, F[order], labels=names[order], contacts=True)
         assert mixed.pairs.tolist() == wanted
+        assert np.array_equal(mixed.objects, names[order][mixed.pairs]) and mixed.objects.dtype == names.dtype
+        assert not np.array_equal(mixed.objects, names[mixed.pairs])  # the twin: of triangles as they were
         assert sorted(mixed.kinds) == sorted(expected.kinds)
         (answer,) = farcull.distances(V, F[order], labels=names[order])
         assert answer.objects == tuple(np.unique(names).tolist()) and list(sorted(answer.triangles)) in wanted
@@ -224,12 +226,12 @@ def test_join_makes_one_scene_of_several_meshes():
 def test_distances():
     apart = V + 0
     apart[3:6, 2] += 1.5
-    first, second, third = farcull.distances(apart, F, OBJECTS)
+    first, second, third = farcull.distances(apart, F, OBJECTS, exact=True)
     assert first.objects == (0, 1) and first.distance == 0.5 and first.squared == "1/4"
     assert first.points == ((1.0, 1.0, 0.0), (1.0, 1.0, 0.5))
     assert second.objects == (0, 2) and third.objects == (1, 2)
     for change in (dict(kind="far"), dict(k=0), dict(k=-1), dict(within=-1), dict(within=math.nan), dict(kind="all"),
-                   dict(self=True, kind="nearest"), dict(inside="no"), dict(threads=-1), dict(object_starts=None),
+                   dict(self=True, kind="nearest"), dict(inside="no"), dict(exact=1), dict(threads=-1), dict(object_starts=None),
                    dict(V=V * math.nan)):
         arguments = {**dict(V=apart, F=F, object_starts=OBJECTS), **change}
         where = error_of(farcull.distances, **arguments).where

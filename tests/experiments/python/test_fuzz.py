@@ -72,7 +72,7 @@ def one_call(rng):
     call = rng.choice([farcull.collide, farcull.collide, farcull.distances])
     options = {
         farcull.collide: ("self", "clearance", "neighbours", "threads", "contacts", "ignore", "limit", "poses"),
-        farcull.distances: ("self", "kind", "k", "within", "inside", "threads", "ignore", "poses"),
+        farcull.distances: ("self", "kind", "k", "within", "inside", "threads", "ignore", "poses", "exact"),
     }[call]
     for name in options:
         if rng.random() < 0.12:
