@@ -41,16 +41,35 @@ by_cmake() {
     >"$work/log" || fail "$(cat "$work/log")"
   grep -q "farcull_DIR:PATH=$1/" "$work/by_cmake/CMakeCache.txt" || fail "another farcull than in $1 was found"
   "$cmake" --build "$work/by_cmake" >"$work/log" || fail "$(cat "$work/log")"
-  "$work/by_cmake/example"
+  "$work/by_cmake/main"
+  "$work/by_cmake/contacts"
 }
 by_cmake "$work/prefix" >"$work/cmake.txt"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name farcull.pc)")
 export PKG_CONFIG_PATH
-# shellcheck disable=SC2046 # several words
-"$cxx" -std=c++20 -Wall -Wextra -Werror "$source/docs/example/main.cpp" \
-  $(pkg-config --cflags --libs farcull) -o "$work/example"
-"$work/example" >"$work/pkg_config.txt"
+for example in main contacts; do
+  # shellcheck disable=SC2046 # several words
+  "$cxx" -std=c++20 -Wall -Wextra -Werror "$source/docs/example/$example.cpp" \
+    $(pkg-config --cflags --libs farcull) -o "$work/example"
+  "$work/example"
+done >"$work/pkg_config.txt"
+
+# The loop of docs/library.md is that of the example.
+sed 's/^ *//' "$source/docs/example/contacts.cpp" >"$work/lines"
+loop=$(sed -n '/^    farcull::DistanceFinder finder({.kind = /,/^$/s/^ *//p' "$source/docs/library.md")
+[[ $(wc -l <<<"$loop") -gt 9 ]] || fail "docs/library.md has no loop of poses"
+while read -r line; do
+  grep -qxF -e "$line" "$work/lines" || fail "docs/library.md has a line that the example has not: $line"
+done <<<"$loop"
+
+# An older standard: one line says what to do.
+for header in farcull distance; do
+  ! echo "#include <farcull/$header.h>" | "$cxx" -std=c++17 -fsyntax-only -I "$work/prefix/include" -x c++ - 2>"$work/log" ||
+    fail "<farcull/$header.h> compiles as C++17"
+  [[ $(grep -c 'error: #error "farcull needs C++20: ' "$work/log") == 1 && $(grep -c 'error:' "$work/log") == 2 ]] ||
+    fail "as C++17 <farcull/$header.h> says: $(cat "$work/log")"
+done
 
 cmp "$work/cmake.txt" "$work/pkg_config.txt" || fail 'the two examples differ'
 expected="farcull $(pkg-config --modversion farcull)"$'
@@ -58,7 +77,17 @@ pairs: 1
 frame 1: 1\n  0 and 1
 frame 2: 0
 frame 3: 0
-distance: 1.19'
+distance: 1.19
+step 0
+step 1
+  objects 0 and 1: 0.5 along (0, 0, 1)
+    weights of triangle 0: 0.5, 0.25, 0.25
+step 2
+  objects 0 and 1: 0.25 along (0, 0, 1)
+    weights of triangle 0: 0.5, 0.25, 0.25
+step 3
+  objects 0 and 1: 0 along (0, 0, 0)
+    weights of triangle 0: 0.5, 0.25, 0.25'
 [[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
 
 # The package. CPack would build everything first; with this generator it takes what is built.
