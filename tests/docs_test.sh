@@ -4,6 +4,5 @@
 # the files of a release (docs/extending.md).
 #   tests/docs_test.sh [ROOT]      checks ROOT (default: this repository). It prints one line for each violation, and then exits
 #                                  with status 1.
-#   tests/docs_test.sh --publish   says what is still open before a release, such as authors that are a placeholder; status 1 then
 #   tests/docs_test.sh --self-test breaks each rule in a copy and checks that this is reported
 exec python3 "${BASH_SOURCE[0]%.sh}.py" "$@"
