@@ -26,8 +26,8 @@ if [[ $short ]]; then
   work=$(mktemp -d)
   # shellcheck disable=SC2064  # the folder's name as it is now
   trap "rm -rf '$work'" EXIT
-  rsvg-convert -f pdf -o "$work/error-time.pdf" "$root/docs/results/figures/error-time.svg"
-  sed "s#(results/figures/error-time.svg)#($work/error-time.pdf){height=88mm}#" "$root/docs/paper.md" |
+  rsvg-convert -f pdf -o "$work/headline.pdf" "$root/docs/results/figures/headline.svg"
+  sed "s#(results/figures/headline.svg)#($work/headline.pdf){height=88mm}#" "$root/docs/paper.md" |
     pandoc --citeproc --bibliography "$root/docs/references.bib" -V papersize=a4 -V geometry:margin=22mm -V fontsize=10pt \
       --output "${out:-$root/build/paper-short.pdf}"
   echo "paper: ${out:-$root/build/paper-short.pdf}"

@@ -3,14 +3,15 @@
 # ended), makes the report, and copies page, figures and pictures into docs/results.
 #   bash experiments/results.sh [OPTIONS]            studies.md: every study of `farcull experiment all`. About twenty minutes on
 #                                                    two cores without a GPU; the page was measured on such a machine.
+#   bash experiments/results.sh headline [OPTIONS]   headline.md: the figure and the table of README.md and of the paper. Minutes.
 #   bash experiments/results.sh cloth [OPTIONS]      cloth.md: 500 frames of a cloth of 20,000 triangles at each of four
 #                                                    stiffnesses, every frame accounted for pair by pair by boxes, and every
 #                                                    tenth by far. Hours on one core. --quick: 200 triangles, 12 frames, seconds.
 #   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
 #   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 19 scenes.
-# OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
-# the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
+# OPTIONS are those of `farcull experiment`. With --quick headline, cloth and proximity copy nothing. A measurement can be ended at
+# any time; the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
 # then simulated again from its start.
 # Exit status: 0; 1 if a method that promises missed a pair or lost a neighbour, or a distance was not exact; 2 if the measurements
 # did not complete.
@@ -21,7 +22,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 cd "$farcull_root"
 
 study=all page=studies title="Results of the studies"
-if [[ ${1-} == cloth || ${1-} == proximity ]]; then
+if [[ ${1-} == headline || ${1-} == cloth || ${1-} == proximity ]]; then
   study=$1 page=$1 title="Results of the study $1"
   shift
 fi
@@ -35,15 +36,13 @@ commit=$(build/farcull --version)
 commit=${commit##* }
 out=build/results-$commit
 case $study in
-  all) bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out" ;;
-  cloth)
-    out=build/cloth/$commit
-    ;;
-  proximity) out=build/proximity/$commit ;;
+  all | headline) bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out" ;;&
+  all) ;;
+  *) out=build/$study/$commit ;;
 esac
 quick=
 if [[ $study != all && " $* " == *" --quick "* ]]; then quick=yes; fi
-if [[ $study == proximity && $quick ]]; then out+=-quick; fi
+if [[ $quick ]]; then out+=-quick; fi
 status=0
 build/farcull experiment "$study" --out "$out" --resume "$@" || status=$?
 if ((status > 1)); then exit "$status"; fi
@@ -53,5 +52,12 @@ if [[ $study == all ]] || { ((status == 0)) && [[ ! $quick ]]; }; then
   call=${0##*/}
   if [[ $study != all ]]; then call+=" $study"; fi
   farcull_keep_report "$page" "$title" "$out/report" "$call"
+  if [[ $study == headline ]]; then
+    for copy in README.md docs/paper.md; do  # their table is that of the page
+      awk -v head='^[|] method [|] two-bunnies' 'NR == FNR { on = $0 ~ head || (on && /^[|]/); if (on) table = table $0 "\n"; next }
+        $0 ~ head { printf "%s", table; old = 1 } old && /^[|]/ { next } { old = 0; print }' docs/results/headline.md "$copy" >"$out/copy"
+      cat "$out/copy" >"$copy"
+    done
+  fi
 fi
 exit "$status"

@@ -248,18 +248,18 @@ farcull_build_beside() {
 }
 
 # farcull_keep_report NAME TITLE REPORT [CALL]: the page of a report becomes docs/results/NAME.md, with the
-# figures and pictures that it shows. Those that no page there shows are removed.
+# figures, pictures and tables that it shows or links. Those that no page there has are removed.
 farcull_keep_report() {
   local results=$farcull_root/docs/results file
-  mkdir -p "$results/figures" "$results/pictures"
+  mkdir -p "$results"/{figures,pictures,tables}
   {
     printf '# %s\n\nMade again by\n\n    bash experiments/%s\n' "$2" "${4:-${0##*/}}"
     tail -n +2 "$3/results.md"
   } >"$results/$1.md"
-  for file in "$3"/figures/*.svg "$3"/pictures/*.png; do
+  for file in "$3"/figures/*.svg "$3"/pictures/*.png "$3"/tables/*.csv; do
     if grep -qF "(${file#"$3/"})" "$results/$1.md"; then cp "$file" "$results/${file#"$3/"}"; fi
   done
-  for file in "$results"/figures/* "$results"/pictures/*; do
+  for file in "$results"/{figures,pictures,tables}/*; do
     grep -qF "(${file#"$results/"})" "$results"/*.md || rm -f "$file"
   done
   echo "$1: made docs/results/$1.md"

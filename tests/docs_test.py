@@ -201,10 +201,18 @@ def check_first_screens():
         yield f'docs/CONTRIBUTING.md: has {lines} lines, more than a screen'
 
 
+def check_headline():
+    """README and the paper have the table of docs/results/headline.md."""
+    table = re.search(r'^\| method.*\n(\|.*\n)+', read('docs/results/headline.md'), re.MULTILINE)[0]
+    yield from (f'{page}: its table is not that of docs/results/headline.md (bash experiments/results.sh headline)'
+                for page in ('README.md', 'docs/paper.md') if table not in read(page))
+
+
 def check():
     texts = list(referring())
     said = [*check_labels(), *check_references(texts), *check_sections(texts), *check_tests(), *check_citations(),
-            *check_symbols(), *check_proofs(), *check_map(), *check_kit(), *check_claims(), *check_first_screens()]
+            *check_symbols(), *check_proofs(), *check_map(), *check_kit(), *check_claims(), *check_first_screens(),
+            *check_headline()]
     return '\n'.join(said) or f'docs: {len(labels())} numbered statements, and what refers to them', bool(said)
 
 
@@ -235,6 +243,7 @@ BROKEN = [
      'mesh.sh is not there'),
     ('a function that is gone, in the recipe', 'docs/Containerfile', 'farcull_setup', 'farcull_packages', 'setup.sh has no farcull_p'),
     ('a script that is gone, in a claim', 'docs/claims.md', 'tests/mutants.sh', 'tests/mutant.sh', 'mutant.sh is not there'),
+    ('another count in the table of README', 'README.md', r'\| 3,219 \|', '| 3,218 |', 'README.md: its table is not that'),
     ('a claim without minutes', 'docs/claims.md', r'\| 110 \|', '| hours |', 'lacks a cell: The tests notice faults'),
     ('a figure that no chapter draws', 'docs/claims.md', 'figure error-time,', 'figure errors,', 'no chapter has errors'),
     ('a second table of claims', 'docs/results/README.md', r'^\| page \|', '| claim |', 'has claims of its own'),

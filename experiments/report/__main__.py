@@ -20,7 +20,7 @@ import sys
 # A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
-FIRST, LAST = ["error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
+FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
 
 
 class Refusal(Exception):

@@ -196,6 +196,8 @@ def values_along(panel, side):
 
 def columns_for(figure):
     panels = len(figure.panels)
+    if figure.named:
+        return 1
     if 0 < figure.columns <= 4 and panels % figure.columns == 0:
         return figure.columns
     if panels in (1, 2, 4):
@@ -215,12 +217,12 @@ class Drawer:
     def __init__(self, figure):
         self.figure, self.looks, panels = figure, looks_of(figure), figure.panels
         columns = columns_for(figure)
-        self.key = self.handles()
+        self.key = [] if figure.named else self.handles()
         widest = max([0] + [text_width(line.get_label()) for line in self.key])
         single = len(panels) == 1 and not panels[0].strip
-        figure.narrow = single and widest + 34 < SINGLE - 8
+        figure.narrow = figure.named or single and widest + 34 < SINGLE - 8
         self.width = SINGLE if figure.narrow else DOUBLE
-        self.high = 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
+        self.high = 118.0 if figure.named else 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
         if len(panels) > 2 * columns:
             self.high = min(self.high, 105.0) - 20 * bool(panels[0].strip)
         self.wide = self.width / columns - 60
@@ -275,8 +277,35 @@ class Drawer:
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "no valid measurement", transform=ax.transAxes, ha="center", va="center", color="#666666")
+        if self.figure.named:
+            self.names(ax, panel)
         lowest = self.strip(ax, panel, cells[1], strip, first or not same_rows(self.figure)) if panel.strip else ax
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
+
+    def names(self, ax, panel):
+        """Writes the name of each point: beside it, or, near 0, on a line of its own below 0, from left to right ever
+        lower, so that no leader crosses a name. The x axis begins where all names have room."""
+        points = sorted((s.x[0], s.y[0], s.name) for s in panel.series)
+        near, last, (low, high) = [p for p in points if p[1] < 10], 0, map(math.log, ax.get_xlim())
+        heights = []
+        for x, _, name in points:
+            part = (text_width(name) + 8) / self.wide
+            low = min(low, (math.log(x) - part * high) / (1 - part))
+        ax.set_xlim(math.exp(low), math.exp(high))
+        below = 100 * (len(near) + 0.5) * LINE / (self.high - (len(near) + 0.5) * LINE)
+        ax.set_ylim(-below, 104)
+        ax.axhline(0, color="#999999", linewidth=0.6, zorder=0.6)
+        for x, y, name in points:
+            down, look = 3, {"color": self.looks[name].colour, "linewidth": 0.6, "arrowstyle": "-", "shrinkA": 0}
+            if y < 10:
+                last += LINE
+                down = last + y / 100 * self.high
+                ax.annotate("", (x, y), (0, -down + 3), textcoords="offset points", arrowprops=look)
+            else:
+                while any(abs(y / 100 * self.high - down - height) < LINE for height in heights):
+                    down -= LINE
+                heights.append(y / 100 * self.high - down)
+            ax.annotate(name, (x, y), (-5, -down), textcoords="offset points", ha="right", color=look["color"])
 
     def bars(self, ax, look, along, across, low, high, side):
         ends = [[max(0.0, b - a) if a == a and b == b else math.nan for a, b in zip(*pair)]

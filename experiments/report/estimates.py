@@ -37,12 +37,6 @@ def cut_of(n):
     return max((cut for cut in range(n // 2) if holds_again(n, cut) >= 0.95), default=0)
 
 
-@functools.lru_cache(maxsize=None)
-def coverage(n):
-    """The probability that the interval of n runs holds the true median: each run is below it with probability 1/2."""
-    return 1 - 2 * sum(math.comb(n, below) for below in range(cut_of(n) + 1)) / 2**n
-
-
 def median_estimate(values, rounds=()):
     """The median with its interval (cut_of()), widened to hold the median of each round."""
     ordered, cut = sorted(values), cut_of(len(values))
@@ -56,14 +50,6 @@ def ratio_estimate(over, under):
     rounds = [tuple(a / b for a, b in zip(*both)) for both in zip(over, under)]
     ratios = [ratio for of in rounds for ratio in of]
     return median_estimate(ratios, rounds) if ratios else None
-
-
-def interval_text(n):
-    """What the interval of n runs is and holds."""
-    cut = cut_of(n)
-    ends = "from the fastest run to the slowest" if cut == 0 else f"from run {cut + 1} to run {n - cut} by time"
-    return (f"its interval goes {ends}, and were the runs independent it would hold the true median with "
-            f"{100 * coverage(n):.3g} % and the median of another {n} runs with {100 * holds_again(n, cut):.0f} %")
 
 
 def median(values):

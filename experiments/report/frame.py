@@ -4,9 +4,9 @@ How to write a chapter. The file chapters/NAME.py (dashes become underscores) is
 study NAME, and has one function `fill(chapter, study)`, which returns nothing:
 
 - `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)`
-  and `chapter.find_broken(text)` (a broken promise), what the study does not show to
-  `chapter.limits`, and Figure, Table, Picture and files to their lists. In text, put `backticks`
-  around commands. Broken findings are put first afterwards.
+  and `chapter.find_broken(text)` (a broken promise), what was not measured to
+  `chapter.limits` (what a study cannot show is in docs/experiments.md), and Figure, Table,
+  Picture and files to their lists. In text, put `backticks` around commands. Broken findings are put first afterwards.
 - `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid.
   `study.all_rows` also has the rows that say in `left_out` why nothing was measured;
   `study.points` is the whole grid. There is a column for each
@@ -40,7 +40,7 @@ import pandas as pd
 
 from estimates import *  # noqa: F401,F403: chapters take numbers from here
 from estimates import (FEWEST_FOR_INTERVAL, NONE, Estimate, counted, estimate_text, exponent_of, exponent_text, grouped,
-                       interval_text, listed, median_estimate, of_all, rounded, share)
+                       listed, median_estimate, of_all, rounded, share)
 
 
 class Damaged(ValueError):
@@ -102,6 +102,7 @@ class Figure:
     panels: list = field(default_factory=list)
     columns: int = 0      # of panels, up to 4; 0: draw.py chooses
     narrow: bool = False  # one column of two wide (draw.py)
+    named: bool = False   # each series is one point with its name beside it; no key
 
 
 @dataclass
@@ -129,7 +130,7 @@ class Chapter:
     question: str
     command: str  # measures the study again
     findings: list = field(default_factory=list)  # pairs: broken, text
-    limits: list = field(default_factory=list)    # what the study does not show
+    limits: list = field(default_factory=list)    # what was not measured
     figures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     pictures: list = field(default_factory=list)
@@ -317,8 +318,7 @@ def missed_of(rows):
 
 
 def sample_text(rows):
-    """The size of the sample, and what the intervals of its times hold: `n = 24 points, each the
-    median of 9 runs in 3 rounds; its interval ..`."""
+    """The size of the sample: `n = 24 points, each the median of 9 runs in 3 rounds`."""
     runs = sorted({max(len(r), 1) for r in rows.runs}) if len(rows) else []
     out = "n = " + counted(len(rows), "point", "points")
     if not runs:
@@ -327,9 +327,7 @@ def sample_text(rows):
         return out + ", each of 1 run"
     several = str(runs[0]) if len(runs) == 1 else f"{runs[0]} to {runs[-1]}"
     rounds = max(len(of) for of in rows.rounds) if "rounds" in rows else 1
-    least = next(n for n in runs if n > 1)
-    return (f"{out}, each the median of {several} runs" + (f" in {rounds} rounds" if rounds > 1 else "") +
-            (f"; of {least} runs " if len(runs) > 1 else "; ") + interval_text(least))
+    return f"{out}, each the median of {several} runs" + (f" in {rounds} rounds" if rounds > 1 else "")
 
 
 # ---- series and tables of rows
@@ -424,6 +422,16 @@ def breaks(row):
     return row.left_out == "" and flag(row, "promises") and failures(row) > 0
 
 
+def add_broken(chapter, rows):
+    """Adds a broken promise for each of these rows, which promise, that failed."""
+    for row in rows.itertuples():
+        if breaks(row):
+            part = of_all(failures(row), number(row, "points" if is_lemma(row) else "colliding"))
+            chapter.find_broken(describe(row) + (
+                f": {part} points are violated, and the lemmas promise none." if is_lemma(row)
+                else f" misses {part} colliding pairs, and promises to miss none."))
+
+
 def add_promises(chapter, study):
     """Adds a broken promise for each row that promises and failed; if there is none, how many pairs
     and points could have been missed. Reports rows that promise and lack the count separately."""
@@ -431,12 +439,7 @@ def add_promises(chapter, study):
     lost = pd.Series([failures(row) for row in rows.itertuples()], rows.index, float)
     silent, known = int(lost.isna().sum()), rows[lost.notna()]
     lemma = known.method.str.startswith("lemma")
-    for row in known.itertuples():
-        if breaks(row):
-            part = of_all(failures(row), number(row, "points" if is_lemma(row) else "colliding"))
-            chapter.find_broken(describe(row) + (
-                f": {part} points are violated, and the lemmas promise none." if is_lemma(row)
-                else f" misses {part} colliding pairs, and promises to miss none."))
+    add_broken(chapter, known)
     pairs, points = known[~lemma], known[lemma]
     if len(pairs) and not (lost[pairs.index] > 0).any():
         add_kept(chapter, study.rows, pairs)

@@ -11,6 +11,8 @@ from draw import inline_svg
 from estimates import grouped, of_all, sentence
 from frame import Table, columns
 
+FRONT = "headline"  # the study of the first page
+MOST_ROWS = 16  # of a table on the page; longer ones are files alone
 MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
 
 
@@ -112,23 +114,41 @@ def section(number, drawn, count):
         out += (f"![{markdown_prose(f.title)}](figures/{f.name}.svg)\n\n{label('Figure', f.title)} " +
                 markdown_prose(f"{sentence(f.caption)} Measured by `{chapter.command}`.") + "\n\n")
     for t in chapter.tables:
-        out += f"{label('Table')} {markdown_prose(sentence(t.caption))}\n\n{markdown_table(t)}"
-    out += items("What it does not show", chapter.limits)
+        out += f"{label('Table')} {markdown_prose(sentence(t.caption))}\n\n" + (
+            markdown_table(t) if len(t.rows) <= MOST_ROWS else f"[{len(t.rows)} rows](tables/{t.name}.csv)\n\n")
+    out += items("Not measured", chapter.limits)
     return out + markdown_prose(
         f"Measured by `{chapter.command}` ({'quick' if study.quick else 'full'} grid, seed {study.seed}, {points}), drawn by "
         "`farcull report`.") + "\n\n"
 
 
-def page_markdown(page):
-    out, count = "# Results\n\n", collections.Counter()
+def front_markdown(page):
+    """What a reader sees first: broken promises, then the study "headline" as a figure, a table and its sentences."""
+    out = "# Results\n\n"
     if broken(page):
         out += ("**Broken.** What must never happen has happened:\n\n" +
                 bullets(f"{chapter.title}: {printed(finding)}" for chapter, finding in broken(page)))
-    out += (f"All of this page is made from the store of results by `farcull report {shlex.quote(page.folder)}`, figures, "
-            "tables and sentences: no number was typed. Counts are the same, bit for bit, on the same device and CPU "
-            "features; times are of the machine that stands [at the end](#where-it-was-measured).\n\n")
-    out += "".join(section(i + 1, drawn, count) for i, drawn in enumerate(page.chapters))
+    for chapter in [drawn.chapter for drawn in page.chapters if drawn.chapter.study == FRONT]:
+        out += "".join(f"![{markdown_prose(f.title)}](figures/{f.name}.svg)\n\n" for f in chapter.figures)
+        out += "".join(map(markdown_table, chapter.tables)) + bullets(printed(finding) for finding in chapter.findings)
+        out += "".join(f"{markdown_prose(f.caption)} Measured by `{chapter.command}`.\n\n" for f in chapter.figures)
+    return out
+
+
+def rest_markdown(page):
+    """All other studies, each a chapter, and where they were measured."""
+    count = collections.Counter()
+    out = (f"All of this page is made from the store of results by `farcull report {shlex.quote(page.folder)}`: no number "
+           "was typed. Counts are the same, bit for bit, on the same device and CPU features; times are of the machine "
+           "[at the end](#where-it-was-measured). What each study cannot show, and what its intervals hold, is in "
+           "docs/experiments.md.\n\n")
+    chapters = [drawn for drawn in page.chapters if drawn.chapter.study != FRONT]
+    out += "".join(section(i + 1, drawn, count) for i, drawn in enumerate(chapters))
     return out + "## Where it was measured\n\n" + markdown_table(runs_table(page)).rstrip("\n") + "\n"
+
+
+def page_markdown(page):
+    return front_markdown(page) + rest_markdown(page)
 
 
 # ---- HTML
@@ -196,12 +216,13 @@ def page_html(page):
         for p in drawn.pictures:
             images[f"pictures/{p.picture.name}.png"] = (
                 f'<img src="data:image/png;base64,{base64.b64encode(p.png).decode()}" alt="">')
-    body = "".join(block_html(block, images) for block in page_markdown(page).strip("\n").split("\n\n"))
+    front, body = ("".join(block_html(block, images) for block in part.strip("\n").split("\n\n"))
+                   for part in (front_markdown(page), rest_markdown(page)))
     contents = "".join(f'<li><a href="#{name}">{title}</a></li>\n' for name, title in re.findall('<h2 id="(.*?)">(.*?)</h2>', body))
     return (  # a browser looks for an icon beside a page without its own
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n<title>Results of farcull</title>\n'
-        f'<link rel="icon" href="data:,">\n<style>\n{STYLE}</style>\n</head>\n<body>\n'
+        f'<link rel="icon" href="data:,">\n<style>\n{STYLE}</style>\n</head>\n<body>\n{front}'
         f'<p>farcull {html_text(page.commit[:12] or "of no commit")}, written {html_text(page.written)}. Figures, tables as CSV and '
         f'LaTeX, and all rows lie beside this page in figures/ and tables/.</p>\n<nav>\n<ul>\n{contents}</ul>\n</nav>\n{body}'
         '</body>\n</html>\n')

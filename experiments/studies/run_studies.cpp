@@ -515,9 +515,9 @@ std::string summary_table(const StudiesSummary& summary) {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all = {
-      scenes_study(),    accuracy_study(),  error_time_study(), radius_study(), offsets_study(),
-      precision_study(), culling_study(),   stability_study(),  cloth_study(),  efficiency_study(),
-      scaling_study(),   libraries_study(), proximity_study(),  model_study()};
+      headline_study(),   scenes_study(),    accuracy_study(),  error_time_study(), radius_study(),
+      offsets_study(),    precision_study(), culling_study(),   stability_study(),  cloth_study(),
+      efficiency_study(), scaling_study(),   libraries_study(), proximity_study(),  model_study()};
   return all;
 }
 

@@ -55,6 +55,7 @@ const Study& study_named(const std::string& name);
 Study on_devices(const Study& study);
 
 /// The studies; each is defined in one of the .cpp files beside this one.
+Study headline_study();
 Study scenes_study();
 Study accuracy_study();
 Study error_time_study();

@@ -167,13 +167,6 @@ def fill(chapter, study):
     forms = forms_table(chapter, rows)
     add_sizes(chapter, rows)
     add_sums(chapter, rows)
-    chapter.limits = [
-        "Scenes are few and still, so that no miss is no proof; the proof is in docs/reliability.md.",
-        "Pairs of one scene do not collide independently of each other, and scenes were chosen by hand, so that shares "
-        "have no intervals.",
-        "FAR is measured between objects; against themselves objects are tested by S-CULLIDE and boxes alone.",
-        "How much CULLIDE misses depends on how a device samples: other devices give other counts.",
-        "The published radius may miss nothing in these scenes and pairs in others (see the study of the radius)."]
     add_gaps(chapter, study)
     if len(rows):
         chapter.figures = [figure for figure in (missed_figure(rows), kept_figure(rows)) if figure.panels]

@@ -139,12 +139,6 @@ def fill(chapter, study):
     for name, (pairs, _, wanted) in courses.items():
         if len(pairs) != wanted:
             chapter.find(f"At {name} N/m {grouped(len(pairs))} of {wanted} frames have been run.")
-    chapter.limits = [
-        "One cloth, one fall: the settings are those of docs/cloth.md, and only the stiffness of the springs differs.",
-        "FAR culls few triangles of a cloth: nearly every one touches neighbours, and a pair of neighbours in two patches "
-        "keeps both. So its misses say less than those of boxes, which culls pairs.",
-        "The cloth does not resist itself, so that its folds pass through each other.",
-        "The study is not among `farcull experiment all`, since it takes hours on one core."]
     add_gaps(chapter, study)
     if courses:
         chapter.figures, chapter.tables = [figure_of(courses)], [table_of(courses)]

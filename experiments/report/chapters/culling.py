@@ -50,12 +50,6 @@ def fill(chapter, study):
     scenes = {scene: {row.way: row for row in of.itertuples()} for scene, of in by(rows, "scene")}
     add_promises(chapter, study)
     add_join(chapter, scenes)
-    chapter.limits = [
-        "Fewer candidates are not less time: where boxes leave few pairs for each that collides, exact predicates on "
-        "all of them take less time than finer boxes.",
-        "FCL refuses degenerate triangles. Libraries leave out neighbours that share an index, boxes those that "
-        "share a position: where a mesh has a vertex twice, the libraries' candidates hold a few more.",
-        "Inside an object boxes leaves neighbours to the predicates as well. They are not counted here."]
     add_gaps(chapter, study)
     if len(rows):
         chapter.tables = [table_of(scenes)]

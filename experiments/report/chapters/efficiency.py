@@ -100,14 +100,6 @@ def fill(chapter, study):
     add_factors(chapter, scenes)
     add_missed(chapter, study.rows)
     add_quick(chapter, scenes)
-    chapter.limits = [
-        "Scenes are far smaller than in the papers, so that a software device can draw them.",
-        "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
-        "FAR and CULLIDE are measured between objects; scenes with objects that are tested against themselves are "
-        "measured by I-COLLIDE and boxes alone.",
-        "Boxes of triangles are our addition to I-COLLIDE; as published it ends with objects.",
-        "On a software device the times of methods that draw say nothing about graphics hardware; queries and draws "
-        "carry over."]
     add_gaps(chapter, study)
     if scenes:
         chapter.figures, chapter.tables = [figure_of(scenes)], [table_of(scenes)]

@@ -273,18 +273,6 @@ def fill(chapter, study):
         if len(of):
             chapter.find(f"{name} misses {of_rows(of, 'missed', 'colliding')} colliding pairs and reports "
                          f"{grouped(total(of, 'wrong'))} that do not collide, in {grouped(len(of))} scenes.")
-    chapter.limits = [
-        "Times are one machine's. On a software device those of methods that draw say nothing about graphics hardware, "
-        "and the front is another there.",
-        "Every method may use all cores; FCL's traversal of two objects has one thread, and so has ODE.",
-        "Embree and CGAL give candidates; they are right because exact tests follow, whose time is in theirs. What FCL "
-        "and ODE take includes their own test of triangles.",
-        "At equal time the form and the resolution of CULLIDE were chosen by the same runs that are shown, which "
-        "favours CULLIDE.",
-        "Contexts, shaders and Embree's device are made before; hierarchies and boxes belong to the run.",
-        "On a scene tested against itself libraries leave pairs that share a vertex out, ours count those that collide "
-        "beyond it. So on such a scene our times include the exact tests of all neighbours, which those of libraries "
-        "do not. farcull bench leaves neighbours out for all."]
     add_gaps(chapter, study)
     if groups:
         chapter.figures = [figure_of(groups)]

@@ -315,12 +315,6 @@ def add_file(chapter, table):
 
 def fill(chapter, study):
     rows = with_families(study.rows)
-    chapter.limits = [
-        "The families are made to be hard. A rate here is no rate on the scenes of a user: the table says which "
-        "questions a contestant gets wrong, not how often they come.",
-        "Where the documentation of a library does not say whether touching counts, only pairs that cross or are apart count. "
-        "Where it does not take degenerate triangles, they are left out.",
-        "How each was called, what its documentation says, and all rates by kind and family are in `tables/libraries-*.csv`."]
     add_gaps(chapter, study)
     if rows.empty:
         return

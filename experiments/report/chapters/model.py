@@ -141,16 +141,6 @@ def fill(chapter, study):
         add_share(chapter, of[of.method != "far"], f"CULLIDE and Quick-CULLIDE, {scenes}")
         add_share(chapter, of[of.method == "far"], f"FAR without fattening and below its radius, {scenes}")
     add_worst(chapter, rows)
-    chapter.limits = [
-        "The model has one constant, which was fitted to random triangles on random grids and to no scene; so no scene "
-        f"here was used to fit it. The formula was found while looking at {len(LOOKED_AT)} of the scenes.",
-        "Where nearly all pairs are missed, any model that says so is right. So the sentences count the other points "
-        "apart.",
-        "The model treats what hides a triangle as independent of what hides its partner, and views as independent of "
-        "one another. It says nothing of conservative rasterization, of objects that are tested against themselves, "
-        "and of `--level objects`.",
-        "Positions of the grid are moved by two tiny objects beside the scene, which lengthen windows by up to two "
-        "pixels."]
     add_gaps(chapter, study)
     chapter.figures = [figure for figure in (figure_of(rows), resolution_figure(rows)) if figure.panels]
     chapter.tables = [table_of(rows)]

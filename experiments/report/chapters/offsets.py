@@ -71,11 +71,6 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_order(chapter, rows)
     add_comparison(chapter, rows, EXACT, BOX)
-    chapter.limits = [
-        "Fragments are those of one drawing; a run draws what is left several times.",
-        "FAR with exact offsets draws boxes first and exact offsets on what these leave; where boxes leave few "
-        "triangles it draws no exact offset.",
-        "On a software device times say nothing about graphics hardware; counts carry over."]
     add_gaps(chapter, study)
     if len(rows):
         chapter.figures, chapter.tables = [figure_of(rows)], [table_of(rows)]

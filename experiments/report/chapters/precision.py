@@ -93,14 +93,6 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_violations(chapter, rows)
     add_deep_windows(chapter, rows)
-    chapter.limits = [
-        "A violation is decided on what the buffer holds against the exact depth of the point under the exact depth "
-        "map. What a monotone rounding explains is counted apart, because asked and stored depths are rounded alike.",
-        "The buffer of 16 bits is that of the native canvas, whose depths are rounded to multiples of 1 / (2^16 - 1) "
-        "after drawing; no run of a whole scene has it.",
-        "Fixed-function depth promises nothing: that its surface bounds every point here at the budget radius is this "
-        "device's interpolation, for which GL gives no bound.",
-        "The published radius grows with the depth step, so in deep scenes it is larger than the budget's."]
     add_gaps(chapter, study)
     if len(rows):
         chapter.figures = [figure_of(rows, study.constants["depth_rounding"])]

@@ -227,13 +227,6 @@ def fill(chapter, study):
     sizes = sorted({cells for scene in rest for _, cells in scene.sums.index if cells > 0})
     add_kept_promises(chapter, rows)
     add_sets(chapter, rest, sizes)
-    chapter.limits = [
-        "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It "
-        "runs on one thread of the CPU, so that its times say nothing about graphics hardware.",
-        "Objects of one scene are not independent, so that shares of them have no intervals.",
-        "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",
-        "Most of the time of a library is that of building its trees, which a program that asks again would build "
-        "once."]
     add_gaps(chapter, study)
     exponents = exponents_table("proximity-exponents", "the number of objects")
     figures = [lost_figure(rest), size_figure(rest),

@@ -234,17 +234,6 @@ def fill(chapter, study):
     add_headline(chapter, runs, placements)
     add_promises(chapter, study)
     add_lemmas(chapter, lemmas)
-    chapter.limits = [
-        "The points are drawn to find violations, so a share of violated points is no probability in a scene.",
-        "Placements are of patches of eight triangles alone, which meet by construction. A rate over them is no rate "
-        "over the pairs of a scene, where other triangles keep many of them.",
-        "Devices that snap are stood in for: the native canvas draws proxies whose corners are rounded to the nearest "
-        "subpixel. A2 allows a device twice that error.",
-        "Below the budget a radius that violates nothing here is not thereby safe: another device may use the slack "
-        "that this one leaves.",
-        "Fixed-function depth is read from the depth buffer, and what rounding of the depth map explains is no "
-        "violation (core/canvas/canvas.h, depth_rounding); fragment depth is what the shader computes, and must bound "
-        "exactly."]
     add_gaps(chapter, study)
     if len(lemmas):
         chapter.figures.append(lemma_figure(lemmas))

@@ -44,15 +44,6 @@ def fill(chapter, study):
         figure.panels += [times_panel(title, axis, "at", methods, exponents, plot)] * bool(methods)
     if said := [f"{row[-1]} over {row[0]}" for row in exponents.rows if row[1] == "Boxes"]:
         chapter.find(f"Exponents of the time of boxes, with 95 % intervals: {listed(said)}.")
-    chapter.limits = [
-        "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and the growing "
-        "number of rounds steepen large ones. The interval is of the straight line through the medians, not of another "
-        "machine.",
-        "More objects in `crowd:N` stand at the same density, more triangles in `torii:N` are of the same six objects, "
-        "so that what collides grows with both.",
-        "I-COLLIDE sorts anew in each run here; from frame to frame it would mend what it has sorted.",
-        "Fragment work runs on the CPU where the device is software: there, resolution costs what graphics hardware "
-        "does side by side."]
     add_gaps(chapter, study)
     if drawn:
         figure.caption = caption_of(rows, pd.concat(drawn).drop_duplicates("position"))

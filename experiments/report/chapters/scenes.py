@@ -57,9 +57,4 @@ def fill(chapter, study):
         chapter.find(f"At {at} px the median triangle covers less than a pixel in {int((pixels < 1).sum())} of "
                      f"{int(pixels.notna().sum())} scenes.")
         chapter.tables = [table_of(rows, at)]
-    chapter.limits = [
-        "The generated scenes are ours. The meshes are a few that many papers use, scanned or modelled at one "
-        "resolution each.",
-        "A window is as large as the place where objects can meet. A method that divides a scene into several windows "
-        "has smaller pixels there."]
     add_gaps(chapter, study)

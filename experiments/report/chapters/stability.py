@@ -136,23 +136,6 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_power(chapter, study.rows, tracks, names)
     add_failures(chapter, study.rows)
-    chapter.limits = [
-        "Contacts are made to be lost: each lies at the corner of a pixel, in a cell of its own. Every other cell holds "
-        "two triangles that only a view can tell apart, so that about half of the triangles can be culled. The "
-        "shares are those of this layout.",
-        "In gaps nothing collides but small triangles at two corners of the scene: this family shows what is kept of pairs "
-        "that nearly meet, and what is reported wrongly.",
-        "CULLIDE is run as it is by default, until nothing changes; its strict form, which misses least, is in the study of "
-        "accuracy.",
-        "CULLIDE is measured between objects, so it sees the cloth against the sphere; S-CULLIDE, FAR and boxes also "
-        "see it against itself.",
-        "The cloth here is small, and looked at in a few frames. The study cloth (farcull experiment cloth, hours) goes "
-        "through 500 frames of 20,000 triangles.",
-        "FCL leaves neighbours in one object out, so these are no misses of its; of the others they count.",
-        "Where an input is already beyond what a library's type can hold, its misses are those of the rounding to it: "
-        "FCL is asked in float, as it is mostly used.",
-        f"Where {study.constants['few_triangles']} triangles or fewer are left FAR stops culling, since testing them is "
-        "cheaper."]
     add_gaps(chapter, study)
     if tracks:
         chapter.figures = [figure_of(tracks)]

@@ -152,6 +152,27 @@ def test_void_rounds_are_left_out_and_counted():
     assert [series(of, "error-time", "Boxes").x_high[0] for of in (clean, loud)] == [6, 99]
 
 
+# ---- headline
+
+def headline_rows(lost=0, void=()):
+    ways = [row("s", "cullide --rounds 1", counts(8), resolution=64, runs=[2] * 3, void=void),
+            row("s", "cullide --rounds 1 --clear all --conservative", counts(1), resolution=64, runs=[3] * 3, void=void),
+            far(missed=lost, ms=4), far(ms=6, offset="exact")]
+    return ways + [row("s", method, counts(0, True), resolution=0, runs=[ms] * 3) for method, ms in (("boxes", 1), ("exact", 2))]
+
+
+def test_headline_says_what_was_measured():
+    chapter = chapter_of("headline", headline_rows())
+    assert len(chapter.findings) == 3 and not any("(" in text for _, text in chapter.findings)
+    assert table(chapter, "headline")[0] == ["CULLIDE as published", "8", "2"]
+    assert "misses 8 of 20 on s." in findings(chapter) and "`boxes` takes 0.50 on s" in findings(chapter)
+    assert "miss none" in findings(chapter) and "measured again" not in chapter.figures[0].caption
+    # The twins: FAR loses a pair; and no time of CULLIDE is valid.
+    assert "BROKEN" in findings(chapter_of("headline", headline_rows(2))) and "miss 2." in findings(
+        chapter_of("headline", headline_rows(2)))
+    assert "measured again" in chapter_of("headline", headline_rows(void=(0, 1, 2))).figures[0].caption
+
+
 # ---- radius
 
 def radius_rows(at_budget=0):

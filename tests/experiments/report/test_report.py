@@ -138,6 +138,17 @@ def test_files(whole, one):
     assert report(one).returncode == 0 and sum_of(one / "report" / "figures") == before, "files do not differ by the day"
 
 
+def test_the_first_page_and_the_length_of_the_report(whole):
+    text = (whole / "results.md").read_text()
+    front, *chapters = text.split("\n## ")
+    assert front.index("figures/headline.svg") < front.index("| CULLIDE as published") < front.index("\n- Of the pairs")
+    assert front.index("\n- Of the pairs") < front.index("All of this page is made") and "headline" not in chapters[0]
+    # The studies of `all`, without campaigns.
+    campaigns = ("8. A stiff", "11. What other", "12. Potential", "13. A model")
+    assert len(front.split()) + sum(len(of.split()) for of in chapters if not of.startswith(campaigns)) <= 7000
+    assert sum(of.startswith(campaigns) for of in chapters) == 4 and len(text.split()) > 7000, "the twin: with them it is longer"
+
+
 # ---- promises and gaps
 
 def test_an_incomplete_store_is_told(tmp_path):

@@ -14,7 +14,7 @@ def run_counts(missed=0, promises=False, **more):
 
 # ---- what every chapter says of gaps
 
-@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
+@pytest.mark.parametrize("study", ["headline", "offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
                                    "model", "accuracy", "error-time", "radius", "precision", "stability", "cloth"])
 def test_missing_rows_are_told(study):
     empty = chapter_of(study, [], declared=3)
