@@ -88,7 +88,7 @@ rows(r"""
 # What is refused.
 $ mkdir empty
 bad no such study | acuracy: no such command | experiment acuracy
-bad no study | experiment: no study is named; name one: all, scenes, accuracy | experiment
+bad no study | experiment: no study is named; name one: all, headline, scenes | experiment
 bad seed 0 | --seed: 0 is out of range | experiment precision --seed 0
 bad a shard that is none | --shard: '5/4' is no shard | experiment precision --shard 5/4
 bad a device that is no name | --devices: 'a/b' is no device | experiment precision --devices native,a/b
