@@ -2,12 +2,14 @@
 // reader of meshes: the number of objects, the sizes of the objects, then all coordinates.
 #include "experiments/command/check.h"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstdint>
@@ -15,6 +17,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
+#include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
@@ -66,6 +70,25 @@ std::string sha256_of_file(const std::string& path) {
   return hash.digest();
 }
 
+// Whether the output of the checker is about these files, and its verdict fits its exit status. So
+// another program in its place, or other files, prove nothing.
+void require_said(const std::string& said, const std::vector<std::string>& certificates,
+                  const std::string& scene, bool proved) {
+  std::istringstream lines(said);
+  std::vector<std::string> read, scenes;
+  std::string line, last;
+  while (std::getline(lines, line)) {
+    last = line;
+    for (auto& [mark, hashes] : {std::pair{std::string("verified   certificate sha256 "), &read},
+                                 std::pair{std::string("verified   scene       sha256 "), &scenes}})
+      if (line.starts_with(mark)) hashes->push_back(line.substr(mark.size()));
+  }
+  if (read != certificates || scenes != std::vector<std::string>(certificates.size(), scene))
+    refuse("does not say that it read these files: their SHA-256 are not in its output");
+  if (proved != last.starts_with("verified   proved: "))
+    refuse("ended with a status that is not that of its verdict");
+}
+
 }  // namespace
 
 void give_coordinates(const Scene& scene, const TakeWord& take) {
@@ -93,9 +116,13 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   words([&](std::uint64_t word) { out.add(word); });
   out.flush();
   const bool written = std::fflush(file) == 0 && std::ferror(file) == 0;
-  for (const std::string& certificate : certificates)
-    write_output("-", "checked    certificate sha256 " + sha256_of_file(certificate) + "\n");
-  write_output("-", "checked    scene       sha256 " + out.digest() + "\n");
+  std::vector<std::string> hashes;
+  for (const std::string& certificate : certificates) {
+    hashes.push_back(sha256_of_file(certificate));
+    write_output("-", "checked    certificate sha256 " + hashes.back() + "\n");
+  }
+  const std::string scene = out.digest();
+  write_output("-", "checked    scene       sha256 " + scene + "\n");
   std::fflush(stdout);
 
   std::string path = program();
@@ -112,16 +139,32 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   const bool known = ::getrlimit(RLIMIT_STACK, &stack) == 0;
   const rlimit largest{stack.rlim_max, stack.rlim_max};
   if (known) ::setrlimit(RLIMIT_STACK, &largest);
+  std::array<int, 2> pipe{};  // for the output of the checker
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) refuse(std::string("no pipe: ") + std::strerror(errno));
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
   const int error =
-      written ? ::posix_spawnp(&child, path.c_str(), nullptr, nullptr, arguments.data(), environ)
+      written ? ::posix_spawnp(&child, path.c_str(), &actions, nullptr, arguments.data(), environ)
               : EIO;
+  ::posix_spawn_file_actions_destroy(&actions);
+  ::close(pipe[1]);
   if (known) ::setrlimit(RLIMIT_STACK, &stack);
   int status = 0;
+  std::string said;
   if (error == 0) {
+    std::array<char, 4096> block;
+    for (ssize_t size = 0; (size = ::read(pipe[0], block.data(), block.size())) != 0;) {
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) break;
+      said.append(block.data(), static_cast<std::size_t>(size));
+    }
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
   }
+  ::close(pipe[0]);
   std::fclose(file);
+  write_output("-", said);
   if (error != 0) refuse(std::string("cannot be run: ") + std::strerror(error));
   constexpr int kUndecided = 3, kTooSmall = 4;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kTooSmall) {
@@ -134,6 +177,8 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
                 "not happen");
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) > kUndecided) refuse("ended without a verdict");
+  constexpr int kUnread = 2;
+  if (WEXITSTATUS(status) != kUnread) require_said(said, hashes, scene, WEXITSTATUS(status) == 0);
   return WEXITSTATUS(status);
 }
 

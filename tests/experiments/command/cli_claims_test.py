@@ -1,8 +1,10 @@
 """What the program claims and what it may overwrite: a certificate says no more than it proves and is bound to the
 list of pairs; what was not asked is said; no output is an input."""
 import hashlib
+import os
+import shutil
 
-from cli_lab import read, rows
+from cli_lab import program, read, rows, write
 
 # A run that misses pairs, and the truth.
 rows(r"""
@@ -30,6 +32,21 @@ bad an empty name of a list | --pairs: | check exact.json two-spheres --pairs ''
 $ sed 's/"version": 3/"version": 2/' exact.json >older.json
 bad a certificate of another version | older\.json: version is not 3, 4 or 5 | check older.json two-spheres
 """, sha=sha, missed=missed)
+
+# ---- another program in the place of the proved checker: it proves nothing unless it says what it read, and its verdict
+
+os.mkdir('fake')
+shutil.copy(program, 'fake/farcull')
+certificate, scene = (f'echo "verified   {name} sha256 $(sha256sum <"${k}" | cut -c1-64)"'
+                      for name, k in (('certificate', 1), ('scene      ', 2)))
+proved, wrong = 'echo "verified   proved: all"', scene.replace('cut', 'tr 0-9 1-90 | cut')
+for lines, why in (([], 'does not say that it read'), ([certificate, proved], 'does not say that it read'),
+                   ([certificate, wrong, proved], 'does not say that it read'), ([scene, proved, certificate], 'is not that of its verdict'),
+                   ([certificate, scene, proved, 'exit 1'], 'is not that of its verdict'), ([certificate, scene, proved], '')):
+    write('fake/farcull-check-verified', '\n'.join(['#!/bin/sh', *lines]) + '\n')
+    os.chmod('fake/farcull-check-verified', 0o755)
+    asked = 'fake/farcull check exact.json two-spheres --verified >said 2>why'
+    rows('$ ! {asked} && grep -q "farcull-check-verified: .*{why}" why' if why else '$ {asked} && test ! -s why', asked=asked, why=why)
 
 # ---- what was not asked: two triangles of one object that pierce each other
 

@@ -242,6 +242,8 @@ let reason = function
 let say format = Printf.ksprintf (fun text -> Printf.printf "verified   %s\n%!" text) format
 let not_proved text = say "not proved: %s" text; Error "not proved"
 let status_of = function Ok _ -> 0 | Error "undecided" -> 3 | Error _ -> 1
+let clearance_text clearance =
+  if clearance = 0. then " for pairs that meet" else Printf.sprintf " for pairs at most %.17g apart" clearance
 let hash_of has_self rows = sha256 (list_text has_self rows)
 
 let other_scene root found =
@@ -285,8 +287,8 @@ let check_file scene certificate =
       if hash <> Json.text (Json.member "list_sha256" root)
       then not_proved ("the certificate is of another list of pairs; that of the scene is " ^ hash)
       else begin
-        say "proved: the list with the hash %s is right and complete%s, %d pairs" hash (tile_text root)
-          (List.length rows);
+        say "proved: the list with the hash %s is right and complete%s%s, %d pairs" hash
+          (clearance_text clearance) (tile_text root) (List.length rows);
         Ok (piece, rows, clearance, has_self)
       end
 
@@ -310,8 +312,9 @@ let check_tiles scene certificates =
       let rec twice = function r :: (s :: _ as rest) -> key r = key s || twice rest | _ -> false in
       if twice rows then not_proved "two tiles have the same pair"
       else begin
-        say "proved: the list with the hash %s is right and complete, %d pairs of %d tiles"
-          (hash_of has_self rows) (List.length rows) (List.length proved);
+        say "proved: the list with the hash %s is right and complete%s, %d pairs of %d tiles"
+          (hash_of has_self rows) (clearance_text (List.hd clearances)) (List.length rows)
+          (List.length proved);
         Ok ()
       end
 
