@@ -122,8 +122,9 @@ class Walk {
     for (int below = levels - 1; below >= 0; --below) {
       const std::vector<std::uint32_t> nodes = blocks_in(out, blocks_.ranges.size());
       move_children(nodes, below);
-      out.between = overlapping_children(out.between);
-      if (out.between.size() > kPairsPerBlock * kWide * nodes.size()) return std::nullopt;
+      const std::size_t most = kPairsPerBlock * kWide * nodes.size();
+      out.between = overlapping_children(out.between, most);
+      if (out.between.size() > most) return std::nullopt;
     }
     return std::move(out.between);
   }
@@ -161,21 +162,32 @@ class Walk {
     for (std::uint32_t k = 0; k < kWide; ++k) set(k, children.get(k), kWide * number + k);
   }
 
-  std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs) const {
-    const std::size_t chunks = chunks_for(pairs.size(), 256, threads_);
-    std::vector<BlockFindings> found(chunks);
-    for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-      std::vector<LanePair> own;
-      own.reserve(end - begin);
-      for (std::size_t k = begin; k < end; ++k)
-        own.push_back({place_[pairs[k].a], place_[pairs[k].b], false});
-      compare_blocks({.first = lanes_, .second = {}}, {}, own, found[chunk]);
+  // If there are more than `most`: some of them, more than `most`. The order of the others does not
+  // depend on threads.
+  std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs,
+                                              std::size_t most) const {
+    constexpr std::size_t kAtOnce = 256;
+    const std::size_t portions = (pairs.size() + kAtOnce - 1) / kAtOnce;
+    const std::size_t chunks = chunks_for(portions, 1, threads_);
+    std::vector<std::vector<BlockPair>> found(chunks);
+    std::atomic<std::size_t> sum = 0;
+    for_chunks(portions, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      for (std::size_t portion = begin; portion < end && sum <= most; ++portion) {
+        std::vector<LanePair> some;
+        for (const auto& [a, b] : pairs.subspan(kAtOnce * portion)
+                                      .first(std::min(kAtOnce, pairs.size() - kAtOnce * portion)))
+          some.push_back({place_[a], place_[b], false});
+        BlockFindings own;
+        compare_blocks({.first = lanes_, .second = {}}, {}, some, own);
+        sum += own.pairs.size() + own.perhaps.size();
+        for (const auto list : {&BlockFindings::pairs, &BlockFindings::perhaps})
+          for (const auto& [a, b] : own.*list) found[chunk].push_back({a, b});
+      }
     });
+    if (chunks == 1) return std::move(found[0]);
     std::vector<BlockPair> out;
-    for (const BlockFindings& some : found) {
-      for (const auto list : {&BlockFindings::pairs, &BlockFindings::perhaps})
-        for (const auto& [a, b] : some.*list) out.push_back({a, b});
-    }
+    for (const std::vector<BlockPair>& some : found)
+      out.insert(out.end(), some.begin(), some.end());
     return out;
   }
 
