@@ -375,6 +375,12 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     of_moved += input.poses[o] != taken.poses[o] ? scene.objects[o].triangle_count : 0;
   const bool keeps_frames = question.keeps_frames && !taken.stale;
   if (keeps_frames && of_moved == 0) return std::nullopt;
+  if (taken.skips > 0) {
+    --taken.skips;
+    return std::nullopt;
+  }
+  taken.skips = taken.next_skips;  // unless boxes decide below
+  taken.next_skips = std::min(2 * taken.next_skips, kMostSkips);
   try {
     if (!taken.rigid) {
       scene.vertices.swap(taken.unmoved);
@@ -391,6 +397,8 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     if (overlaps_often(scene, decision->blocks, question.clearance, kOverlapsPerTriangle))
       return std::nullopt;
     taken.poses.assign(input.poses.begin(), input.poses.end());
+    taken.skips = 0;
+    taken.next_skips = 1;
     return decision;
   } catch (...) {
     taken = {};

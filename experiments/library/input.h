@@ -105,8 +105,11 @@ struct TakenInput {
   bool stale = false;
   std::optional<RigidBlocks> rigid;  // of the unmoved vertices; null: not made yet
   double loss = 0;                   // as load_poses() counts it
+  // Calls that load_poses() leaves to load_input(), and how many it will after it gives up again.
+  int skips = 0, next_skips = 1;
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
+inline constexpr int kMostSkips = 32;
 
 /// Copies the input into `taken`, which holds that of the last call, and reuses its memory. self:
 /// every object is tested against itself; self_objects: the same for each object, empty or one for
@@ -128,7 +131,8 @@ struct PosesQuestion {
 /// Takes poses alone, and moves only the vertices of blocks that overlap, which it returns. Null:
 /// load_input() has to take this input. That is so if there is more than poses, or no earlier call
 /// that had poses or arrays, if the poses are bad or boxes do not decide, or if moving all vertices
-/// of objects in another pose costs less. Both give the same answer.
+/// of objects in another pose costs less. Both give the same answer. After boxes moved in vain, it
+/// leaves some calls to load_input() at once, twice as many each time, up to kMostSkips.
 std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
                                         TakenInput& taken);
 

@@ -195,6 +195,90 @@ TEST(LibraryPoses, AloneAreAsFresh) {
   for (const int pairs : of_kind) EXPECT_GT(pairs, 0);
 }
 
+// Between the calls that answer, some are ended or refused, the scene changes, and some vertices
+// that no triangle uses are not finite. Nothing of these calls is left in an answer.
+TEST(LibraryPoses, AreAsFreshAfterCallsThatFailed) {
+  RandomNumbers random(test_seed(44));
+  std::vector<Flat> scenes;
+  for (const char* name : {"two-spheres", "crowd:12", "ground"}) {
+    scenes.emplace_back(make_builtin_scene(name));
+    scenes.back().vertices.insert(scenes.back().vertices.end(), 3, std::nan(""));
+  }
+  enum { answered, ended, refused, other_scene } last = answered;
+  bool may_go_on = true;
+  Collider collider({.may_go_on = [&](const std::string&) { return may_go_on; }});
+  const Flat* flat = &scenes[0];
+  std::vector<Pose> poses;
+  std::array<int, 4> by_boxes_after{};
+  bool alone = false;  // whether poses alone are enough
+  for (int frame = 0; frame < 250; ++frame) {
+    const int next = random.below(6);
+    if (next == 0) {
+      flat = &scenes[random.below(scenes.size())];
+      alone = false;
+      last = other_scene;
+    }
+    const int kind = random.below(2);
+    poses.assign(flat->starts.size(), Pose());
+    for (Pose& pose : poses)
+      if (random.below(3) > 0) pose = pose_by(random, kind);
+    Input whole = flat->input();
+    whole.poses = poses;
+    if (next == 1) {
+      std::vector<Pose> bad = poses;
+      bad.back().t[1] = std::nan("");
+      EXPECT_EQ(refusal([&] { collider.find({.poses = bad}); })[0], "poses");
+      alone = false;
+      last = refused;
+    }
+    const Input input = alone && random.below(4) > 0 ? Input{.poses = poses} : whole;
+    if (next == 2) {
+      may_go_on = false;
+      EXPECT_THROW(collider.find(input), Cancelled);
+      may_go_on = true;
+      for (Pose& pose : poses) pose = pose_by(random, kind);
+      last = ended;
+    }
+    const Result found = collider.find(next == 2 ? Input{.poses = poses} : input);
+    ASSERT_EQ(found.pairs, collide(whole).pairs) << frame << " " << next;
+    EXPECT_EQ(found.report.passed_over, 1u);
+    alone = true;
+    if (moved_boxes(found)) ++by_boxes_after[std::exchange(last, answered)];
+  }
+  for (const int calls : by_boxes_after) EXPECT_GT(calls, 3);
+}
+
+// Where boxes of blocks do not decide, they move in vain in few calls, and move again where they
+// do.
+TEST(LibraryPoses, BackOffWhereBoxesDoNotDecide) {
+  RandomNumbers random(test_seed(45));
+  const Flat flat(make_builtin_scene("needles-layers"));
+  TakenInput taken;
+  std::vector<Pose> poses(2);
+  Input first = flat.input();
+  first.poses = poses;
+  load_input(first, false, {}, taken);
+  const auto tries = [&](int calls, double apart, int& decided) {
+    int out = 0;
+    decided = 0;
+    for (int call = 0; call < calls; ++call) {
+      poses[1].t = {0, 0, apart + 1e-3 * random.between(-1, 1)};
+      const Input input{.poses = poses};
+      out += taken.skips == 0;
+      const bool by_boxes = load_poses(input, {.ignored = {}, .threads = 1}, taken).has_value();
+      decided += by_boxes;
+      if (!by_boxes) load_input(input, false, {}, taken);
+    }
+    return out;
+  };
+  int decided = 0;
+  EXPECT_EQ(tries(100, 0, decided), 7);  // calls 0, 2, 5, 10, 19, 36, 69
+  EXPECT_EQ(decided, 0);
+  EXPECT_GT(tries(100, 1e6, decided), 60);
+  EXPECT_GT(decided, 60);
+  EXPECT_EQ(taken.next_skips, 1);
+}
+
 // A vertex that the boxes left where it was is moved when a later call needs it.
 TEST(LibraryPoses, VerticesThatWereLeftBehindAreMovedLater) {
   RandomNumbers random(43);
