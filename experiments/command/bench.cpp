@@ -11,6 +11,7 @@
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/bench.h"
+#include "experiments/measure/pose_bench.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -45,9 +46,11 @@ class BenchCommand {
  private:
   BenchOptions parse() const;
   DistanceBenchOptions parse_distances(const BenchOptions& options) const;
+  PoseBenchOptions parse_poses(const BenchOptions& options) const;
+  void refuse_given_with(const char* option, const char* subject) const;
 
   SceneArguments scene_;
-  bool self_ = false;
+  bool self_ = false, poses_ = false;
   Text peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
   Outputs outputs_;
 };
@@ -77,13 +80,17 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
                 "fcl-double,fcl-float,cgal-aabb"},
                {"--within", &within_, "DISTANCE",
                 "with --distances: farther ones need not be found;\nin world units, default all"},
+               {"--poses", &poses_, "",
+                "times of frames instead in which the first object turns\nas a whole: new calls, "
+                "and what keeps trees; the peer\nis fcl-double"},
                {"--json", &outputs_.json, "FILE", kJsonHelp}},
       [] {
         return "Examples:\n"
                "  farcull bench two-bunnies\n"
                "  farcull bench needles-layers --threads 1 --peers fcl-obb,embree-low\n"
                "  farcull bench field:1000000 --peers none --methods boxes --json field.json\n"
-               "  farcull bench bunnies-far-apart --distances objects\n\n" +
+               "  farcull bench bunnies-far-apart --distances objects\n"
+               "  farcull bench two-bunnies --poses --threads 1 --repeat 30\n\n" +
                peers_text() +
                "farcull help terms explains the columns; docs/bench.md says what is\n"
                "measured. Exit status 1: two of them disagree about a pair.";
@@ -106,7 +113,7 @@ BenchOptions BenchCommand::parse() const {
   options.device = device_of(device_);
   options.self = self_;
   options.seed = seed_of(scene_.names);
-  if (!distances_) validate(options);  // --distances has other peers
+  if (!distances_ && !poses_) validate(options);  // these have other peers
   if (!is_cpu(options.device)) {
     RunOptions run;
     run.device = options.device;
@@ -127,16 +134,30 @@ DistanceBenchOptions BenchCommand::parse_distances(const BenchOptions& options) 
         number_of<double>("--within", *within_, "none", 0, std::numeric_limits<double>::max(),
                           "give a distance in world units, 0 or more");
   }
+  refuse_given_with("--distances", "distances");
+  return out;
+}
+
+PoseBenchOptions BenchCommand::parse_poses(const BenchOptions& options) const {
+  refuse_given_with("--poses", "poses");
+  return {.peers = options.peers,
+          .threads = options.threads,
+          .repeat = options.repeat,
+          .limit_s = options.limit_s};
+}
+
+void BenchCommand::refuse_given_with(const char* option, const char* subject) const {
   refuse_given(
       {{"--self", self_}, {"--methods", methods_.has_value()}, {"--device", device_.has_value()}},
-      "says nothing about distances", "leave it or --distances out");
-  return out;
+      fmt::format("says nothing about {}", subject), fmt::format("leave it or {} out", option));
 }
 
 int BenchCommand::run() {
   const BenchOptions options = parse();
   if (within_ && !distances_)
     throw Error("--within", "is a limit of distances", "add --distances objects, or leave it out");
+  if (poses_ && distances_)
+    throw Error("--poses", "is another question than --distances", "give one of them");
   check_scene(scene_.names);
   const Outputs outputs = checked(outputs_, scene_files(scene_.names));
   confine_to_cores(options.threads);
@@ -153,6 +174,17 @@ int BenchCommand::run() {
     if (outputs.json) write_json(to_json(scene, of_distances, result), *outputs.json);
     if (!outputs.to_stdout()) write_output("-", distance_bench_table(scene, of_distances, result));
     return 0;
+  }
+  if (poses_) {
+    require_nothing_ignored(scene, "farcull bench --poses");
+    const PoseBenchOptions of_poses = parse_poses(options);
+    const PoseBenchResult result = bench_poses(scene, of_poses, progress);
+    terminal.clear();
+    if (outputs.json) write_json(to_json(scene, of_poses, result), *outputs.json);
+    if (!outputs.to_stdout()) write_output("-", pose_bench_table(scene, of_poses, result));
+    const std::string disagreement = disagreement_of(result);
+    if (!disagreement.empty()) complain(disagreement);
+    return disagreement.empty() ? 0 : 1;
   }
   const BenchResult result = bench(scene, contestants(scene, options, progress), options, progress);
   terminal.clear();

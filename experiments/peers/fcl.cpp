@@ -1,5 +1,6 @@
 // FCL, in three ways: its hierarchies followed by exact decisions (broad); as its users run it,
-// with its own test of two triangles, which rounds (narrow); and its distances.
+// with its own test of two triangles, which rounds (narrow), also with hierarchies that are kept
+// while objects move (poses); and its distances.
 //
 // FCL's library holds only the templates in double, which its headers declare. Those in float are
 // instantiated here.
@@ -28,6 +29,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "experiments/peers/peer.h"
+#include "experiments/peers/pose_peer.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -95,10 +97,14 @@ struct Objects {
   }
   /// The pairs of objects whose boxes meet.
   std::vector<IndexPair> meeting() const {
-    std::vector<IndexPair> pairs;
-    if (placed.size() < 2) return pairs;
+    if (placed.size() < 2) return {};
     Manager manager;
     register_in(manager);
+    return meeting(manager);
+  }
+  /// As above, of the objects in the manager.
+  static std::vector<IndexPair> meeting(const Manager& manager) {
+    std::vector<IndexPair> pairs;
     manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
       static_cast<std::vector<IndexPair>*>(data)->emplace_back(index_of(a), index_of(b));
       return false;  // go on: there may be more pairs
@@ -157,35 +163,47 @@ BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
   return candidates.finish(build_ms);
 }
 
-/// Sets up FCL's traversal of two hierarchies.
+/// Sets up FCL's traversal of the hierarchies of two objects, where they are placed.
 template <class Node, class Volume, class Request, class Result>
-void initialize(Node& node, const Model<Volume>& a, const Model<Volume>& b, const Request& request,
-                Result& result) {
-  const auto still = fcl::Transform3<typename Volume::S>::Identity();
-  if (!fcl::detail::initialize(node, *a.hierarchy, still, *b.hierarchy, still, request, result)) {
+void initialize(Node& node, const Objects<Volume>& objects, std::size_t a, std::size_t b,
+                const Request& request, Result& result) {
+  if (!fcl::detail::initialize(node, *objects.models[a].hierarchy,
+                               objects.placed[a]->getTransform(), *objects.models[b].hierarchy,
+                               objects.placed[b]->getTransform(), request, result)) {
     throw Error(kLibrary, "compares no two of its hierarchies", "build farcull without FCL");
   }
 }
 
-/// The pairs of triangles that fcl::collide() finds between two models. This calls the function
+/// The pairs of triangles that fcl::collide() finds between two objects. This calls the function
 /// that fcl::collide() calls after it has looked up the kinds of the two models. Calling
 /// fcl::collide() would compile its table for all kinds of shapes in float, which Debian's library
 /// does not have.
 template <class Scalar>
-void collide_two(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
+void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                  std::vector<TrianglePair>& pairs) {
   const fcl::CollisionRequest<Scalar> request(std::numeric_limits<std::size_t>::max(), false);
   fcl::CollisionResult<Scalar> result;
   fcl::detail::MeshCollisionTraversalNodeOBBRSS<Scalar> node;
-  initialize(node, a, b, request, result);
+  initialize(node, objects, a, b, request, result);
   fcl::detail::collide(&node);
   std::vector<fcl::Contact<Scalar>> contacts;
   result.getContacts(contacts);
   pairs.reserve(pairs.size() + contacts.size());
   for (const fcl::Contact<Scalar>& contact : contacts) {
-    pairs.push_back({a.first + static_cast<std::uint32_t>(contact.b1),
-                     b.first + static_cast<std::uint32_t>(contact.b2)});
+    pairs.push_back({objects.models[a].first + static_cast<std::uint32_t>(contact.b1),
+                     objects.models[b].first + static_cast<std::uint32_t>(contact.b2)});
   }
+}
+
+/// The pairs that a search of each task found, sorted.
+std::vector<TrianglePair> sorted(const std::vector<std::vector<TrianglePair>>& found) {
+  std::vector<TrianglePair> out;
+  for (const std::vector<TrianglePair>& some : found) {
+    for (const TrianglePair& pair : some)
+      out.push_back({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 /// Finds pairs by FCL's own broad phase, hierarchies and test of two triangles.
@@ -203,7 +221,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   std::vector<std::vector<TrianglePair>> found(tasks.size());
   for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
     const auto [a, b] = tasks[i];
-    collide_two<Scalar>(objects.models[a], objects.models[b], found[i]);
+    collide_two(objects, a, b, found[i]);
     if (a != b) return;
     // For a model with itself, FCL reports every pair in both orders, and every triangle with
     // itself and with its neighbours.
@@ -211,26 +229,50 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
       return pair.a >= pair.b || share_position(scene.corners(pair.a), scene.corners(pair.b));
     });
   });
-  for (const std::vector<TrianglePair>& some : found) {
-    for (const TrianglePair& pair : some) {
-      answer.pairs.push_back({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});
-    }
-  }
-  std::sort(answer.pairs.begin(), answer.pairs.end());
+  answer.pairs = sorted(found);
   answer.candidates_ms = finding.ms();
   answer.candidate_pairs = answer.pairs.size();
   return answer;
 }
 
-/// The distance of two models by fcl::distance(); infinity if it finds none below `most`. This
+/// Keeps hierarchies and broad phase of the objects; a call places the objects anew.
+PoseRun set_up_poses(const Scene& scene, unsigned threads) {
+  using All = Objects<fcl::OBBRSS<double>>;
+  struct Kept {
+    All objects;
+    All::Manager manager;
+  };
+  const std::shared_ptr<Kept> kept(new Kept{All(scene, threads), {}});
+  kept->objects.register_in(kept->manager);
+  return [kept, threads](std::span<const RigidMotion> motions) {
+    const All& objects = kept->objects;
+    for (std::size_t i = 0; i < objects.placed.size(); ++i) {
+      const auto& [r, t] = motions[objects.numbers[i]];
+      fcl::Transform3<double> to = fcl::Transform3<double>::Identity();
+      to.linear() << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+      to.translation() << t[0], t[1], t[2];
+      objects.placed[i]->setTransform(to);
+      objects.placed[i]->computeAABB();
+    }
+    kept->manager.update();
+    const std::vector<IndexPair> tasks = All::meeting(kept->manager);
+    std::vector<std::vector<TrianglePair>> found(tasks.size());
+    for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
+      collide_two(objects, tasks[i].first, tasks[i].second, found[i]);
+    });
+    return sorted(found);
+  };
+}
+
+/// The distance of two objects by fcl::distance(); infinity if it finds none below `most`. This
 /// calls the function that fcl::distance() calls, for the reason that collide_two() gives.
 template <class Scalar>
-Scalar distance_of(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
+Scalar distance_of(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                    Scalar most) {
   const fcl::DistanceRequest<Scalar> request(true);  // the nearest points too
   fcl::DistanceResult<Scalar> result(most);
   fcl::detail::MeshDistanceTraversalNodeOBBRSS<Scalar> node;
-  initialize(node, a, b, request, result);
+  initialize(node, objects, a, b, request, result);
   fcl::detail::distance(&node);
   if (result.b1 == fcl::DistanceResult<Scalar>::NONE)
     return std::numeric_limits<Scalar>::infinity();
@@ -261,8 +303,7 @@ struct Search {
     const std::size_t i = Of::index_of(a), k = Of::index_of(b);
     const std::size_t other = i == search.of ? k : i;
     if (other != search.of) {
-      const auto& models = search.objects->models;
-      const Scalar found = distance_of(models[search.of], models[other], search.least);
+      const Scalar found = distance_of(*search.objects, search.of, other, search.least);
       if (found < search.least) {
         search.least = found;
         search.nearest = other;
@@ -305,9 +346,7 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
     answer.distances = distances_of_trees(
         objects.numbers, question.task, most_of<Scalar>(question.within), threads,
         [](std::size_t, std::size_t) { return Scalar(0); },
-        [&](std::size_t i, std::size_t k, Scalar most) {
-          return distance_of(objects.models[i], objects.models[k], most);
-        },
+        [&](std::size_t i, std::size_t k, Scalar most) { return distance_of(objects, i, k, most); },
         [&](Scalar found) {
           const double distance = found;
           return distance > question.within ? std::numeric_limits<double>::infinity() : distance;
@@ -344,6 +383,10 @@ LibraryPeers fcl_library() {
        .run = distances<float>,
        .refuses = refuses}};
   return out;
+}
+
+PosePeer fcl_poses() {
+  return {.name = "fcl-double", .library = kLibrary, .set_up = set_up_poses, .refuses = refuses};
 }
 
 }  // namespace farcull

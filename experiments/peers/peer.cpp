@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "experiments/peers/pose_peer.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -80,6 +81,13 @@ std::vector<PeerKind> listed(std::span<const Known> list,
 std::vector<Peer> all_peers() { return listed(kBroad, &LibraryPeers::broad); }
 std::vector<Peer> narrow_peers() { return listed(kNarrow, &LibraryPeers::narrow); }
 std::vector<DistancePeer> distance_peers() { return listed(kDistances, &LibraryPeers::distances); }
+std::vector<PosePeer> pose_peers() {
+#if FARCULL_WITH_FCL
+  return {fcl_poses()};
+#else
+  return {{.name = "fcl-double", .missing = why_missing({"fcl-double", "FCL", "libfcl-dev"})}};
+#endif
+}
 
 // ---- the preparation of a scene and the collector of candidates ----
 
