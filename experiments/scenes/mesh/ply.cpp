@@ -1,6 +1,6 @@
 // Reads PLY, ASCII and binary of either byte order. Skips elements and properties other than the
-// position of `vertex` and the index list of `face`; their declared types give their lengths. Reads
-// ASCII one element per line, as the format requires.
+// position of `vertex` and the index list of `face` or `tristrips`; their declared types give their
+// lengths. Reads ASCII one element per line, as the format requires.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 namespace farcull {
 namespace {
 
+constexpr std::string_view kStrips = "tristrips";
 constexpr const char* kDamaged = "correct the header, or get the whole file";
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
@@ -260,6 +261,27 @@ struct Faces {
   std::vector<long> lines;
 };
 
+/// The triangles of strips: each vertex makes one with the two before it, and every other one is
+/// turned, so that all face the same way. -1 begins a new strip. Triangles that name a vertex twice
+/// only lead to the next part of a strip.
+class Strip {
+ public:
+  void add(std::int64_t index, long line, Faces& faces) {
+    last_ = {last_[1], last_[2], static_cast<std::uint32_t>(index)};
+    length_ = index < 0 ? 0 : length_ + 1;
+    auto [p, q, r] = last_;
+    if (length_ < 3 || p == q || q == r || p == r) return;
+    if (length_ % 2 == 0) std::swap(p, q);
+    faces.corners.insert(faces.corners.end(), {p, q, r});
+    faces.sizes.push_back(3);
+    faces.lines.push_back(line);
+  }
+
+ private:
+  std::array<std::uint32_t, 3> last_ = {};
+  std::uint64_t length_ = 0;
+};
+
 template <class Body>
 void read_faces(Body& body, const Element& element, Faces& faces) {
   for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -270,15 +292,20 @@ void read_faces(Body& body, const Element& element, Faces& faces) {
         continue;
       }
       const std::uint64_t size = list_length(body, property);
-      faces.sizes.push_back(static_cast<std::uint32_t>(size));
-      faces.lines.push_back(body.line());
+      const bool strips = element.name == kStrips;
+      Strip strip;
+      if (!strips) faces.sizes.push_back(static_cast<std::uint32_t>(size));
+      if (!strips) faces.lines.push_back(body.line());
       for (std::uint64_t k = 0; k < size; ++k) {
         const std::int64_t index = body.integer(property.type, "a vertex index of the face");
-        if (index < 0 || index > std::int64_t{0xffffffff}) {
+        if (index < (strips ? -1 : 0) || index > std::int64_t{0xffffffff}) {
           body.fail(fmt::format("face {} names vertex {}", i, index),
                     "correct the index; PLY counts from 0");
         }
-        faces.corners.push_back(static_cast<std::uint32_t>(index));
+        if (strips)
+          strip.add(index, body.line(), faces);
+        else
+          faces.corners.push_back(static_cast<std::uint32_t>(index));
       }
     }
     body.end();
@@ -331,15 +358,11 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
     if (element.name == "vertex") {
       check_vertex(element, name);
       read_vertices(body, element, mesh);
-    } else if (element.name == "face") {
+    } else if (element.name == "face" || element.name == kStrips) {
       check_face(element, name);
       read_faces(body, element, faces);
       has_faces = true;
     } else {
-      if (element.name == "tristrips" && element.count > 0) {
-        throw Error(name, "has triangle strips, which are not read",
-                    "give the mesh of a surface, written as faces, not as strips", element.line);
-      }
       for (std::uint64_t i = 0; i < element.count; ++i) {
         body.begin();
         for (const Property& property : element.properties) skip_property(body, property);
@@ -352,7 +375,7 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
     throw Error(name,
                 fmt::format("is a cloud of {} points: {}", mesh.vertex_count(),
                             has_faces ? "it has no faces" : "there is no element 'face'"),
-                "give the mesh of a surface, written as faces, not as strips");
+                "give the mesh of a surface, written as faces or strips of triangles");
   }
 
   std::span<const std::uint32_t> corners = faces.corners;

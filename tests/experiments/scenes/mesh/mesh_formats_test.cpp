@@ -171,6 +171,18 @@ TEST(PlyReader, ReadsAsciiAndTriangulates) {
   EXPECT_EQ(mesh.vertices[2], Vec3(1, 1, 0));
 }
 
+TEST(PlyReader, ReadsStripsAsTheTrianglesThatTheyAre) {
+  const std::string header = replaced(replaced(kPlyHeader, "element face 1", "element tristrips 2"),
+                                      "uchar int", "int int");
+  // Every other triangle is turned. -1 begins a strip; a vertex named twice makes none.
+  const Mesh mesh = ply(header + kPlyVertices + "9 0 1 3 2 -1 2 3 3 0\n3 1 2 0\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 3}, {3, 1, 2}, {1, 2, 0}}));
+  EXPECT_EQ(ply(header + kPlyVertices + "5 0 1 1 3 2\n3 1 2 0\n").triangles,
+            (std::vector<Triangle>{{1, 3, 2}, {1, 2, 0}}));
+  expect_refused(ply, {{header + kPlyVertices + "3 0 1 2\n3 0 1 4\n", 16, "vertex 4"},
+                       {header + kPlyVertices + "3 0 1 -2\n3 0 1 2\n", 15, "vertex -2"}});
+}
+
 TEST(PlyReader, ReadsBothByteOrdersBitForBit) {
   for (const bool big : {false, true}) {
     const Mesh mesh = ply(binary_ply(big));
