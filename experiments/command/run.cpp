@@ -246,9 +246,8 @@ std::vector<ObjectPair> RunCommand::left_out(const Scene& scene, UnknownName lac
   std::vector<ObjectPair> out = ignored_objects(scene, ignored(), lacking);
   const Text& only = options_.text("only");
   if (!only) return out;
-  std::vector<IgnoredNames> names = parse_ignored(*only);
-  for (IgnoredNames& one : names) one.where = "--only";
-  const std::vector<ObjectPair> asked = ignored_objects(scene, names, lacking);
+  const std::vector<ObjectPair> asked =
+      ignored_objects(scene, parse_ignored(*only, "--only"), lacking);
   constexpr std::size_t kMostObjects = 5000;  // so that the list stays below 100 MB
   if (scene.objects.size() > kMostObjects) {
     throw Error("--only", fmt::format("is given for {} objects", scene.objects.size()),

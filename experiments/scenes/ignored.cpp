@@ -19,20 +19,41 @@ namespace {
 
 constexpr const char* kRemedy =
     "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
-    "the mesh file without its ending, or that in the scene file";
+    "the mesh file without its ending, or that in the scene file; write \\ before a comma, colon "
+    "or * "
+    "of a name";
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Whether a backslash makes the next character of the text one of a name.
+bool escapes(std::string_view text, std::size_t at) {
+  return text[at] == '\\' && at + 1 < text.size() &&
+         std::string_view(",:*").find(text[at + 1]) != std::string_view::npos;
+}
+
+/// The first such character from a place on that no backslash makes one of a name; npos if there is
+/// none.
+std::size_t find_plain(std::string_view text, char character, std::size_t from = 0) {
+  for (std::size_t k = from; k < text.size(); ++k) {
+    if (escapes(text, k))
+      ++k;
+    else if (text[k] == character)
+      return k;
+  }
+  return std::string_view::npos;
+}
 
 /// True if the name matches a pattern, in which a * stands for any characters. After a mismatch,
 /// the last * takes one character more.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
   while (n < name.size()) {
+    const std::size_t escape = p < pattern.size() && escapes(pattern, p);
     if (p < pattern.size() && pattern[p] == '*') {
       star = p++;
       from = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++n, ++p;
+    } else if (p < pattern.size() && pattern[p + escape] == name[n]) {
+      ++n, p += 1 + escape;
     } else if (star != std::string_view::npos) {
       p = star + 1;
       n = ++from;
@@ -95,8 +116,8 @@ void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
   std::vector<std::uint32_t> first, second;
   std::string unknown;
   int places = 0;
-  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
-       colon = text.find(':', colon + 1)) {
+  for (std::size_t colon = find_plain(text, ':'); colon != std::string_view::npos;
+       colon = find_plain(text, ':', colon + 1)) {
     const std::string_view left = text.substr(0, colon), right = text.substr(colon + 1);
     const std::vector<std::uint32_t> a = objects_of(scene, left), b = objects_of(scene, right);
     if (a.empty() || b.empty()) {
@@ -111,7 +132,7 @@ void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
         fail(fmt::format("names '{}', which {}", name, kDoubtful));
     }
   }
-  if (text.find(':') == std::string_view::npos) fail("has no colon");
+  if (find_plain(text, ':') == std::string_view::npos) fail("has no colon between two names");
   if (lacking == UnknownName::passed_over &&
       (places == 0 || (first.size() == 1 && first == second)))
     return;
@@ -149,12 +170,12 @@ std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& fir
   return pairs_of(a, b);
 }
 
-std::vector<IgnoredNames> parse_ignored(const std::string& list) {
+std::vector<IgnoredNames> parse_ignored(const std::string& list, const std::string& option) {
   std::vector<IgnoredNames> out;
   for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    out.push_back({list.substr(begin, end - begin), "--ignore"});
-    if (out.back().text.empty()) throw Error("--ignore", "a pair of names is empty", kRemedy);
+    const std::size_t end = std::min(find_plain(list, ',', begin), list.size());
+    out.push_back({list.substr(begin, end - begin), option});
+    if (out.back().text.empty()) throw Error(option, "a pair of names is empty", kRemedy);
     begin = end + 1;
   }
   return out;

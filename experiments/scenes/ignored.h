@@ -30,8 +30,10 @@ struct IgnoredNames {
   long line = 0;      // of the file, from 1; 0 without one
 };
 
-/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore if a pair is empty.
-std::vector<IgnoredNames> parse_ignored(const std::string& list);
+/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming the option if a pair is
+/// empty. Here and in files, \ before a comma, colon or * makes it a character of the name.
+std::vector<IgnoredNames> parse_ignored(const std::string& list,
+                                        const std::string& option = "--ignore");
 /// The pairs of a text file, one a line. Empty lines, lines that begin with # and a byte order mark
 /// are passed over. Throws Error naming the file if it cannot be read or names no pair.
 std::vector<IgnoredNames> read_ignored(const std::string& path);

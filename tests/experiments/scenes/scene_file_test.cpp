@@ -373,6 +373,22 @@ TEST(Ignore, NamesMayHoldColons) {
                       [&] { ignored_objects(scene, parse_ignored("C:x:y")); }));
 }
 
+TEST(Ignore, OfABackslashTakesTheNextCharacterForOneOfTheName) {
+  const Scene scene = scene_of({"C:x", "y", "C", "x:y", "100,5", "a*", "a2", "b\\c"});
+  const auto pairs = [&](const std::string& list) {
+    return ignored_objects(scene, parse_ignored(list));
+  };
+  EXPECT_EQ(pairs("C\\:x:y"), (Pairs{{0, 1}}));
+  EXPECT_EQ(pairs("C:x\\:y"), (Pairs{{2, 3}}));
+  EXPECT_EQ(pairs("100\\,5:y,C:y"), (Pairs{{1, 2}, {1, 4}}));
+  EXPECT_EQ(pairs("a\\*:y"), (Pairs{{1, 5}}));
+  EXPECT_EQ(pairs("*\\,*:a2"), (Pairs{{4, 6}}));
+  EXPECT_EQ(pairs("b\\c:y"), (Pairs{{1, 7}})) << "before other characters it is one of the name";
+  // The twins.
+  EXPECT_TRUE(refuses("'100' has no colon", [&] { pairs("100,5:y"); }));
+  EXPECT_TRUE(refuses("has no colon", [&] { pairs("C\\:x"); }));
+}
+
 TEST(Ignore, RefusesWhatNamesNothing) {
   const Scene scene = scene_of({"a", "b"});
   const auto refused = [&](const std::string& list) {
