@@ -38,12 +38,24 @@ const Vec3& farthest(const Points& points, const Vec3& direction) {
 // ---- translations that separate ----
 
 /// Whether all corners of a, moved, lie on one side of a plane across the direction, and all of b
-/// on the other. A corner that is moved and projected has 6 roundings, relative to `magnitude`.
-bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t,
-                     double magnitude) {
+/// on the other. A corner that is moved and projected has 6 roundings, relative to the magnitude.
+/// Far from the origin, corners are taken relative to a corner of the box of both: along an axis on
+/// which no coordinate is more than twice another, their differences are doubles (Sterbenz,
+/// Floating-Point Computation, 1974).
+bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
+  Vec3 origin = Vec3::Zero();
+  double magnitude = t.cwiseAbs().maxCoeff();
+  for (int k = 0; k < 3; ++k) {
+    const double lo = std::min(a.box().lo[k], b.box().lo[k]);
+    const double hi = std::max(a.box().hi[k], b.box().hi[k]);
+    if (lo > 0 && hi <= 2 * lo) origin[k] = lo;
+    if (hi < 0 && lo >= 2 * hi) origin[k] = hi;
+    magnitude = std::max({magnitude, std::abs(lo - origin[k]), std::abs(hi - origin[k])});
+  }
+  magnitude += t.cwiseAbs().maxCoeff();
   double most = -kInf, least = kInf;
-  for (const Vec3& p : a.corners()) most = std::max(most, t.dot(p + t));
-  for (const Vec3& p : b.corners()) least = std::min(least, t.dot(p));
+  for (const Vec3& p : a.corners()) most = std::max(most, t.dot(p - origin + t));
+  for (const Vec3& p : b.corners()) least = std::min(least, t.dot(p - origin));
   return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
@@ -97,7 +109,7 @@ bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   const FloatingPointGuard guard;
   const double magnitude = a.largest() + b.largest() + t.cwiseAbs().maxCoeff();
   if (!(magnitude < 0x1p500)) return false;
-  if (plane_separates(a, b, t, magnitude)) return true;
+  if (plane_separates(a, b, t)) return true;
   const auto all_outside = [](const ClosedObject& inner, const ClosedObject& outer,
                               const Vec3& move) {
     return std::ranges::all_of(inner.pieces(),
@@ -458,6 +470,23 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   }
 }
 
+/// Translations of the limit's length along its ways; one that separates is made shorter.
+void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimit& limit,
+                   Penetration& out) {
+  for (const Vec3& way : limit.ways) {
+    for (const double sign : {1.0, -1.0}) {
+      for (double length = limit.most * (1 - 32 * kU);; length /= 4) {
+        const Vec3 t = sign * length * way;
+        const double hi = t.stableNorm() * (1 + 8 * kU);
+        if (!(hi < out.hi && separates(a, b, t))) break;
+        out.hi = hi;
+        out.translation = t;
+      }
+      if (out.hi <= limit.most) return;
+    }
+  }
+}
+
 /// Points inside both objects and far from their surfaces, the farthest first; then the starts.
 Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                    const Vec3& translation) {
@@ -508,7 +537,7 @@ bool has_normal_products(const ClosedObject& solid) {
 }
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
-                        unsigned threads) {
+                        unsigned threads, const std::optional<DepthLimit>& limit) {
   // Work for each pair of objects. The larger ones get fewer cores, so that the time is about that
   // of finding their pairs of triangles.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
@@ -517,8 +546,19 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   const FloatingPointGuard guard;
   Penetration out;
   bound_by_hulls(a, b, out);
+  if (limit && out.hi <= limit->most) return out;
+  const Points seeds = out.hi < kInf ? deep_points(a, b, starts, out.translation) : Points();
+  if (limit) {
+    // A point inside both that is farther than this from both surfaces stays a common point after
+    // each such translation. So nothing shorter is looked for. This only saves time.
+    const auto deeper = [&](const ClosedObject& solid, const Vec3& p) {
+      return solid.has(p) && (solid.nearest(p) - p).norm() > limit->most;
+    };
+    if (!seeds.empty() && deeper(a, seeds[0]) && deeper(b, seeds[0])) return out;
+    bound_by_ways(a, b, *limit, out);
+    if (out.hi <= limit->most) return out;
+  }
   if (!(out.hi < kInf) || !has_normal_products(a) || !has_normal_products(b)) return out;
-  const Points seeds = deep_points(a, b, starts, out.translation);
   std::array<std::vector<Points>, 2> cores;
   for_each_shared(2, threads, [&](std::size_t side) {
     const ClosedObject &own = side == 0 ? a : b, &other = side == 0 ? b : a;
@@ -558,9 +598,13 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
     out.lo = std::max(out.lo, least);
   }
   if (covers.empty() || out.lo * 1.001 >= out.hi) return out;
-  Search search(a, b, std::move(covers), axes, out);
+  if (limit && out.lo > limit->most) return out;
+  // Only shorter translations are asked for, so the search is about those alone.
+  Penetration found = out;
+  if (limit) found.hi = limit->most;
+  Search search(a, b, std::move(covers), axes, found);
   search.search();
-  return out;
+  return limit && found.hi == limit->most ? Penetration{found.lo, out.hi, out.translation} : found;
 }
 
 }  // namespace farcull

@@ -20,6 +20,7 @@
 // World units. Preconditions of verify/exact.h.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "verify/convex_core.h"
@@ -36,9 +37,17 @@ struct Penetration {
 /// bounds of all roundings: false if the insides are too near to decide.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
+/// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? Ways: of
+/// length 1, directions in which a translation by `most` may separate, as across faces that meet.
+struct DepthLimit {
+  double most = 0;
+  std::span<const Vec3> ways = {};
+};
+
 /// starts: points inside both or near such points, such as common points of their surfaces.
-/// threads: as in for_each_shared(); changes no answer.
+/// threads: as in for_each_shared(); changes no answer. limit: the bounds are then those found when
+/// the question was decided; where `hi` is above `most`, it is not proved.
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
-                        unsigned threads = 1);
+                        unsigned threads = 1, const std::optional<DepthLimit>& limit = {});
 
 }  // namespace farcull
