@@ -31,6 +31,8 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  farcull clash parts/\n"
     "  farcull clash parts/*.stl --clearance 0.5 --unit mm --csv clashes.csv\n"
+    "  farcull clash house/ --tolerance '1e-9*size'    # rounded coordinates clash no more\n"
+    "  farcull clash house/ --only 'pipe*:wall*' --compare old.csv --csv new.csv\n"
     "  farcull clash robot.json --ignore 'link*:base,hand:cup' --fail-on clash,touch\n"
     "  farcull clash a.obj b.obj --depth --json - | jq '.pairs[0].depth'\n\n"
     "Each pair of parts has a verdict, the most serious first:\n"
@@ -42,13 +44,17 @@ constexpr const char* kExamples =
     "  touch      they meet, and it is proved that they do not overlap\n"
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
+    "With --tolerance, touch is also said of parts whose depth is proved to be the tolerance or\n"
+    "less, and of parts that are so near. What they are exactly is in the column exact.\n"
     "All coordinates are taken as the files have them, so all parts have to be in one unit.\n"
     "depth (with --depth): bounds of the shortest way by which one part has to move so that\n"
     "closed parts no longer overlap; the true one lies between. curve: length of the curve in\n"
-    "which the surfaces cross. docs/clash.md has the columns and the proofs.\n\n"
+    "which the surfaces cross. docs/clash.md has the columns and the proofs.\n"
+    "A comma, colon or * that is part of a name is written with \\ before it, as in 'a\\,b:c'.\n\n"
     "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
     "not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // of a file of --compare
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
 
 // Reads the parts. A mesh without triangles becomes a part without triangles, after the others.
@@ -83,7 +89,7 @@ class ClashCommand {
 
   SceneArguments scene_;
   bool depth_ = false;
-  Text clearance_, ignore_, ignore_file_, unit_, fail_on_;
+  Text clearance_, tolerance_, ignore_, ignore_file_, only_, unit_, fail_on_, compare_;
   Outputs outputs_;
 };
 
@@ -95,6 +101,10 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
           Rows{
               {"--clearance", &clearance_, "D",
                "parts at this distance or less are near, in world\nunits; default 0"},
+              {"--tolerance", &tolerance_, "T",
+               "an overlap proved to be at most this deep, or a gap of\nat most this, is a touch; "
+               "in "
+               "world units, or relative to\nthe box of all parts, as in 1e-9*size; default 0"},
               {"--depth", &depth_, "",
                "how deep parts are in each other, as bounds; where parts\nhave many triangles this "
                "takes longer than all else"},
@@ -102,12 +112,16 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
                "pairs of parts that may clash, as in\na:b,link*:gripper; * is any text; they are "
                "listed\nlast where they meet"},
               {"--ignore-file", &ignore_file_, "FILE", help_of_option("ignore_file")},
+              {"--only", &only_, "LIST",
+               "only these pairs of parts are examined, as in\npipe*:wall*"},
               {"--fail-on", &fail_on_, "LIST",
                "verdicts for which the exit status is 1, or none;\n"
                "with touch, pairs that touch are listed as well;\ndefault clash,contained,unknown"},
               {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
               {"--csv", &outputs_.csv, "FILE",
                "write the pairs as CSV to this file; - for standard\noutput, without the table"},
+              {"--compare", &compare_, "OLD.csv",
+               "say which pairs are new, the same or gone since this\nfile of --csv"},
               {"--json", &outputs_.json, "FILE", kJsonHelp},
               {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
       kExamples);
@@ -172,14 +186,24 @@ int ClashCommand::run() const {
   const SceneArguments files = parts();
   std::vector<NamedFile> inputs = scene_files(files.names);
   if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
+  if (compare_) inputs.push_back({"--compare", *compare_});
+  const std::string old = compare_ ? read_file(*compare_, kMostBytes) : "";
+  const WeldTolerance tolerance = parse_weld(tolerance_.value_or("0"), "--tolerance");
   const Outputs outputs = checked(outputs_, inputs);
   TerminalProgress terminal;
   const Progress progress = terminal.callback("reading the scene");
   const Stopwatch reading;
   Scene scene = read_parts(files);
+  if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
+    scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
+  const Box box = bounds(scene);
+  options.tolerance = tolerance.value * (tolerance.relative ? (box.hi - box.lo).stableNorm() : 1);
   for (Object& object : scene.objects) object.self = false;
   options.ignored =
       in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_)), scene.ignored);
+  if (only_) options.only = ignored_objects(scene, parse_ignored(*only_, "--only"));
+  if (options.only && std::ranges::includes(options.ignored, *options.only))
+    throw Error("--only", "all of these pairs are ignored", "leave out --only or --ignore");
   require_asked(scene, options.ignored, "SCENE", "");
   scene.ignored.clear();
   if (outputs.page) require_clash_page(scene);
@@ -192,12 +216,12 @@ int ClashCommand::run() const {
                                              .unit = Unit::triangles});
   record.ms += read_ms;
   terminal.clear();
-  const std::string unit = unit_.value_or("");
-  if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record));
-  if (outputs.json) write_json(clash_json(scene, record, unit, failing), *outputs.json);
-  if (outputs.page) write_output(*outputs.page, clash_page(scene, record, unit));
-  if (!outputs.to_stdout())
-    write_output("-", clash_text(scene, record, {.failing = failing, .unit = unit}));
+  ClashTable table{.failing = failing, .unit = unit_.value_or("")};
+  if (compare_) table.compared = compare_clashes(scene, record, old, *compare_);
+  if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record, table));
+  if (outputs.json) write_json(clash_json(scene, record, table), *outputs.json);
+  if (outputs.page) write_output(*outputs.page, clash_page(scene, record, table.unit));
+  if (!outputs.to_stdout()) write_output("-", clash_text(scene, record, table));
   const bool fails =
       std::ranges::any_of(failing, [&](ClashVerdict v) { return record.count(v) > 0; }) ||
       (record.examined < record.asked && fail_on_ != "none");

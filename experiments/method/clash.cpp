@@ -2,6 +2,7 @@
 // objects find the others that may lie inside one another or be near.
 #include "experiments/method/clash.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -174,22 +175,104 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
   row.proved = overlap != Overlap::unknown;
 }
 
-/// True if the insides of the objects certainly overlap, so that there is a depth.
-bool has_depth(const Objects& objects, const ClashRow& row) {
-  const bool deep =
-      (row.verdict == ClashVerdict::clash && row.proved) || row.verdict == ClashVerdict::contained;
-  return deep && objects.closed(row.objects.a) && objects.closed(row.objects.b);
+/// Finds what may be wrong with the parts themselves: copies, and units that differ.
+void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record) {
+  constexpr std::size_t kMostCopies = 100;
+  constexpr double kRounding = 1e-6, kFar = 100;  // of floats; ratio of sizes
+  const std::vector<Box>& boxes = objects.boxes();
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t o = 0; o < boxes.size(); ++o) {
+    if (scene.objects[o].triangle_count > 0) order.push_back(o);
+  }
+  const auto size = [&](std::uint32_t o) { return (boxes[o].hi - boxes[o].lo).stableNorm(); };
+  const auto count = [&](std::uint32_t o) { return scene.objects[o].triangle_count; };
+  std::ranges::stable_sort(order, {},
+                           [&](std::uint32_t o) { return std::pair(count(o), boxes[o].lo.x()); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t a = order[i];
+    const double room =
+        kRounding * std::max(boxes[a].lo.cwiseAbs().maxCoeff(), boxes[a].hi.cwiseAbs().maxCoeff());
+    for (std::size_t k = i + 1; k < order.size() && record.copies.size() < kMostCopies; ++k) {
+      const std::uint32_t b = order[k];
+      if (count(a) != count(b) || boxes[b].lo.x() > boxes[a].lo.x() + room) break;
+      if ((boxes[a].lo - boxes[b].lo).cwiseAbs().maxCoeff() <= room &&
+          (boxes[a].hi - boxes[b].hi).cwiseAbs().maxCoeff() <= room)
+        record.copies.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  if (order.empty()) return;
+  const auto [least, most] = std::ranges::minmax(order, {}, size);
+  if (size(most) >= kFar * size(least)) record.sizes = {least, most};
 }
 
-void bound_depth(const Objects& objects, unsigned threads, ClashRow& row) {
+/// Directions in which two objects that overlap a little may come apart: across one of the largest
+/// faces that meet, or between two or three of those.
+std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> pairs) {
+  constexpr std::size_t kMostFound = 64, kMost = 6;
+  constexpr double kSame = 0.999;              // cosine of directions that count as one
+  std::vector<std::pair<double, Vec3>> faces;  // area, normal
+  for (const TrianglePair& pair : pairs) {
+    for (const std::uint32_t triangle : {pair.a, pair.b}) {
+      const auto [p, q, r] = scene.corners(triangle);
+      const Vec3 across = (q - p).cross(r - p), normal = across.stableNormalized();
+      if (!(std::abs(normal.norm() - 1) < 1e-9)) continue;
+      const auto same = std::ranges::find_if(
+          faces, [&](const auto& face) { return std::abs(face.second.dot(normal)) > kSame; });
+      if (same != faces.end())
+        same->first += across.stableNorm();
+      else if (faces.size() < kMostFound)
+        faces.emplace_back(across.stableNorm(), normal);
+    }
+  }
+  std::ranges::stable_sort(faces, std::greater(), [](const auto& face) { return face.first; });
+  faces.resize(std::min(faces.size(), kMost));
+  std::array<std::vector<Vec3>, 3> sums;  // of one, two and three of the normals
+  for (const auto& [area, normal] : faces) {
+    for (const std::size_t k : {2u, 1u}) {
+      for (const Vec3& sum : std::vector<Vec3>(sums[k - 1]))
+        sums[k].push_back(sum + normal), sums[k].push_back(sum - normal);
+    }
+    sums[0].push_back(normal);
+  }
+  std::vector<Vec3> out;
+  for (const auto& some : sums) {
+    for (const Vec3& sum : some) {
+      if (sum.norm() > 1e-3) out.push_back(sum.normalized());
+    }
+  }
+  return out;
+}
+
+std::vector<Vec3> starts_of(const ClashRow& row) {
   constexpr std::size_t kStarts = 16;
   std::vector<Vec3> starts = {row.witness[0]};
   if (!row.box.is_empty()) starts.push_back(0.5 * row.box.lo + 0.5 * row.box.hi);
   const std::size_t stride = row.segments.size() / kStarts + 1;
   for (std::size_t k = 0; k < row.segments.size(); k += stride)
     starts.push_back(0.5 * row.segments[k][0] + 0.5 * row.segments[k][1]);
-  row.depth =
-      penetration(objects.solid(row.objects.a), objects.solid(row.objects.b), starts, threads);
+  return starts;
+}
+
+/// Bounds the depth, if asked for. An overlap becomes a touch if its depth is proved to be within
+/// the tolerance: the upper bound is. pairs: of triangles that meet; none for a containment.
+/// Precondition: the objects are closed.
+void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
+                 const ClashOptions& options, ClashRow& row) {
+  const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
+  const std::vector<Vec3> starts = starts_of(row);
+  if (options.depth && row.proved) row.depth = penetration(a, b, starts, options.threads);
+  const double tolerance = options.tolerance;
+  if (tolerance == 0) return;
+  if (!row.depth || row.depth->hi > tolerance) {
+    const std::vector<Vec3> ways = ways_apart(scene, pairs);
+    const Penetration found =
+        penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
+    if (found.hi > tolerance) return;
+    row.depth = {.lo = row.depth ? row.depth->lo : found.lo,
+                 .hi = found.hi,
+                 .translation = found.translation};
+  }
+  row.verdict = ClashVerdict::touch;
 }
 
 /// Adds a stage that began when the watch did, and restarts the watch.
@@ -200,18 +283,24 @@ void add_stage(ClashRecord& record, StageKind kind, Stopwatch& watch, std::uint6
   watch = Stopwatch();
 }
 
+bool is_asked(const ClashOptions& options, const ObjectPair& pair) {
+  return !options.only || std::ranges::binary_search(*options.only, pair);
+}
+
 /// Rows of objects that do not meet: those that may lie in one another, and those that are near.
 std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
                                  const ClashOptions& options, std::span<const ClashRow> meeting,
                                  const Progress& progress, ClashRecord& record) {
   Stopwatch watch;
+  const double reach = std::max(options.clearance, options.tolerance);
   std::vector<Box> boxes = objects.boxes();
-  for (Box& box : boxes) box = grow(box, half_of(options.clearance));
+  for (Box& box : boxes) box = grow(box, half_of(reach));
   std::vector<std::uint32_t> every(boxes.size());
   std::iota(every.begin(), every.end(), 0u);
   std::vector<ObjectPair> pairs;
   for (const TrianglePair& pair : box_join(boxes, every, every, SIZE_MAX, options.threads)) {
     const ObjectPair one{pair.a, pair.b};
+    if (!is_asked(options, one)) continue;
     const auto at = std::ranges::lower_bound(meeting, one, {}, &ClashRow::objects);
     if (at == meeting.end() || at->objects != one) pairs.push_back(one);
   }
@@ -234,16 +323,19 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
   add_stage(record, StageKind::inside, watch, rows.size(),
             rows.size() - static_cast<std::size_t>(
                               std::ranges::count(rows, ClashVerdict::clear, &ClashRow::verdict)));
-  if (options.clearance > 0) {
+  for (ClashRow& row : rows) row.exact = row.verdict;
+  if (reach > 0) {
     std::uint64_t near = 0;
-    for (Distance& d :
-         nearest_triangles(scene, pairs, options.clearance, options.threads, progress)) {
+    for (Distance& d : nearest_triangles(scene, pairs, reach, options.threads, progress)) {
       ClashRow& row = *std::ranges::lower_bound(rows, d.objects, {}, &ClashRow::objects);
       ++near;
       row.squared = d.closest.squared;
       row.distance = d.closest.distance;
       if (row.verdict != ClashVerdict::clear) continue;
-      row.verdict = ClashVerdict::near;
+      if (options.clearance > 0 && d.closest.squared <= SquaredDistance::of(options.clearance))
+        row.verdict = row.exact = ClashVerdict::near;
+      if (options.tolerance > 0 && d.closest.squared <= SquaredDistance::of(options.tolerance))
+        row.verdict = ClashVerdict::touch;
       row.witness = d.closest.points;
       for (const Vec3& p : d.closest.points) row.box.add(p);
     }
@@ -270,9 +362,20 @@ std::string to_string(ClashVerdict verdict) {
   return kNames.at(static_cast<std::size_t>(verdict));
 }
 
+double size_of(const Scene& scene, std::uint32_t object) {
+  Box box = Box::empty();
+  const Object& o = scene.objects[object];
+  for (std::uint32_t t = o.first_triangle; t < o.first_triangle + o.triangle_count; ++t) {
+    for (const Vec3& p : scene.corners(t)) box.add(p);
+  }
+  return box.is_empty() ? 0 : (box.hi - box.lo).stableNorm();
+}
+
 ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progress& progress) {
   if (!(options.clearance >= 0 && std::isfinite(options.clearance)))
     throw Error("clearance", "is no distance", "give a finite number of world units, 0 or more");
+  if (!(options.tolerance >= 0 && std::isfinite(options.tolerance)))
+    throw Error("tolerance", "is no distance", "give a finite number of world units, 0 or more");
   const std::uint64_t count = scene.objects.size();
   if (count < 2) throw Error("scene", "has fewer than two objects", "name two parts or more");
   const FloatingPointGuard guard;
@@ -286,12 +389,18 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
   const auto has_empty = [&](const ObjectPair& pair) {
     return scene.objects[pair.a].triangle_count == 0 || scene.objects[pair.b].triangle_count == 0;
   };
-  out.ignored = options.ignored.size();
-  out.asked = count * (count - 1) / 2 - out.ignored;
-  out.examined =
-      full * (full - (full > 0)) / 2 -
-      (out.ignored - static_cast<std::uint64_t>(std::ranges::count_if(options.ignored, has_empty)));
+  const auto counted = [](const std::vector<ObjectPair>& pairs, const auto& which) {
+    return static_cast<std::uint64_t>(std::ranges::count_if(pairs, which));
+  };
+  const auto asked = [&](const ObjectPair& pair) { return is_asked(options, pair); };
+  const auto asked_empty = [&](const ObjectPair& p) { return asked(p) && has_empty(p); };
+  out.ignored = counted(options.ignored, asked);
+  out.asked = (options.only ? options.only->size() : count * (count - 1) / 2) - out.ignored;
+  out.examined = (options.only ? options.only->size() - counted(*options.only, has_empty)
+                               : full * (full - (full > 0)) / 2) -
+                 (out.ignored - counted(options.ignored, asked_empty));
   const Objects objects(scene);
+  note_parts(objects, scene, out);
   std::vector<TrianglePair> found;
   if (full >= 2) {
     Session session("cpu", options.threads);
@@ -300,6 +409,8 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
     Record record = run(scene, run_options, session, progress, {.answer_only = true});
     out.trace = std::move(record.trace);
     found = std::move(record.collisions.pairs);
+    const std::vector<std::uint32_t> owner = owners(scene);
+    std::erase_if(found, [&](const TrianglePair& p) { return !asked({owner[p.a], owner[p.b]}); });
   }
   Stopwatch step;
   if (progress) progress(StageKind::contacts);
@@ -319,21 +430,32 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
     describe(scene, objects, pairs, std::span(contacts).subspan(from, size), row);
     if (row.verdict != ClashVerdict::clash) decide_touch(scene, objects, pairs, row);
     if (row.verdict != ClashVerdict::clash) row.curve = 0, row.segments.clear();
+    row.exact = row.verdict;
   });
   const auto touching = static_cast<std::uint64_t>(
       std::ranges::count(meetings.rows, ClashVerdict::touch, &ClashRow::verdict));
   add_stage(out, StageKind::touch, step, meetings.rows.size(), touching);
   out.rows = std::move(meetings.rows);
+  const std::size_t meeting = out.rows.size();
   out.rows.insert(out.rows.end(), std::make_move_iterator(apart.begin()),
                   std::make_move_iterator(apart.end()));
-  if (options.depth) {
+  if (options.depth || options.tolerance > 0) {
     if (progress) progress(StageKind::depth);
-    std::vector<ClashRow*> deep;
-    for (ClashRow& row : out.rows) {
-      if (has_depth(objects, row)) deep.push_back(&row);
+    std::vector<std::size_t> deep;
+    for (std::size_t k = 0; k < out.rows.size(); ++k) {
+      ClashRow& row = out.rows[k];
+      if (row.verdict != ClashVerdict::clash && row.verdict != ClashVerdict::contained) continue;
+      for (const std::uint32_t o : {row.objects.b, row.objects.a}) {
+        if (!objects.closed(o)) row.open = o;
+      }
+      if (!row.open) deep.push_back(k);
     }
-    for_each_shared(deep.size(), options.threads,
-                    [&](std::size_t k) { bound_depth(objects, options.threads, *deep[k]); });
+    for_each_shared(deep.size(), options.threads, [&](std::size_t i) {
+      const std::size_t k = deep[i], from = k < meeting ? meetings.first[k] : 0;
+      const std::size_t size = k < meeting ? meetings.first[k + 1] - from : 0;
+      bound_depth(scene, objects, std::span(meetings.pairs).subspan(from, size), options,
+                  out.rows[k]);
+    });
     add_stage(out, StageKind::depth, step, out.rows.size(), deep.size());
   }
   for (ClashRow& row : out.rows) {
@@ -341,6 +463,7 @@ ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progr
     if (row.ignored) {
       out.ignored_meet += row.verdict != ClashVerdict::near;
     } else {
+      out.within_tolerance += row.within_tolerance();
       ++out.verdicts[static_cast<std::size_t>(row.verdict)];
     }
   }

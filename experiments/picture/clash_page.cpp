@@ -18,20 +18,25 @@ using nlohmann::json;
 
 /// Fills the data of a row; `segments` takes the ends of its curve.
 json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector<Vec3>& segments) {
+  // Of parts that are apart, the line between two nearest points.
+  std::vector<std::array<Vec3, 2>> lines = row.segments;
+  if (row.squared && !row.inner) lines.push_back(row.witness);
   const std::size_t first = segments.size();
-  for (const auto& ends : row.segments) segments.insert(segments.end(), ends.begin(), ends.end());
+  for (const auto& ends : lines) segments.insert(segments.end(), ends.begin(), ends.end());
   const std::vector<Vec3> corners = {row.box.lo, row.box.hi};
   json out = {{"a", row.objects.a},
               {"b", row.objects.b},
               {"verdict", to_string(row.verdict)},
+              {"exact", to_string(row.exact)},
               {"ignored", row.ignored},
               {"what", clash_words(scene, row)},
               {"depth", nullptr},
               {"curve", row.curve},
               {"distance", row.squared ? json(row.distance) : json(nullptr)},
               {"at", point_json(row.witness[0])},
+              {"inner", json_of(row.inner)},
               {"box", quantized(corners, box)},
-              {"segments", {first / 2, row.segments.size()}}};
+              {"segments", {first / 2, lines.size()}}};
   if (row.depth) out["depth"] = {row.depth->lo, row.depth->hi};
   return out;
 }

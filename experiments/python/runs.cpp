@@ -362,13 +362,16 @@ struct KeptClash {
   ClashRecord record;
 };
 
-KeptClash clash_of(const KeptScene& kept, double clearance, const Ignored& ignore, bool depth,
-                   unsigned threads) {
+KeptClash clash_of(const KeptScene& kept, double clearance, double tolerance, const Ignored& ignore,
+                   bool depth, unsigned threads) {
   return without_gil([&] {
     auto scene = std::make_shared<Scene>(*kept.scene);
     for (Object& object : scene->objects) object.self = false;
-    ClashOptions options{
-        .clearance = clearance, .ignored = scene->ignored, .depth = depth, .threads = threads};
+    ClashOptions options{.clearance = clearance,
+                         .ignored = scene->ignored,
+                         .tolerance = tolerance,
+                         .depth = depth,
+                         .threads = threads};
     for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
     options.ignored = in_order(std::move(options.ignored));
     require_asked(*scene, options.ignored, "ignore", "");
@@ -435,7 +438,7 @@ void add_runs(py::module_& module) {
   module.def("check", &check_of);
   module.def("picture", &picture_of);
   py::class_<KeptClash> clash(module, "Clash");
-  text(clash, "json", [](const KeptClash& k) { return clash_json(*k.scene, k.record, "").dump(); });
+  text(clash, "json", [](const KeptClash& k) { return clash_json(*k.scene, k.record).dump(); });
   text(clash, "table", [](const KeptClash& k) { return clash_text(*k.scene, k.record, {}); });
   text(clash, "page", [](const KeptClash& k) { return clash_page(*k.scene, k.record, ""); });
   module.def("clash", &clash_of);

@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "commit.h"
+#include "core/base/bytes.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
@@ -24,13 +29,59 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-std::string kinds_text(const ClashRow& row) {
-  std::string out;
-  for (const ContactKind kind : kContactKinds) {
-    if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
-      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", grouped(n), farcull::name_of(kind));
+/// How the surfaces meet, by the most of it: "faces lie on each other".
+std::string contact_words(const ClashRow& row) {
+  using enum ContactKind;
+  const auto any = [&](ContactKind kind) { return row.kinds[static_cast<std::size_t>(kind)] > 0; };
+  const std::string how = any(crossing)                 ? "surfaces cross"
+                          : any(coplanar) || any(equal) ? "faces lie on each other"
+                          : any(touch_face)             ? "an edge or a corner lies on a face"
+                          : any(touch_edge)             ? "edges meet"
+                                                        : "corners meet";
+  return how + " in " + counted(row.pairs, "pair of triangles", "pairs of triangles");
+}
+
+/// A name for two parts that stays the same in other files, options and orders of the parts.
+std::string id_of(std::string a, std::string b) {
+  if (b < a) std::swap(a, b);
+  return sha256(a + '\n' + b).substr(0, 8);
+}
+std::string id_of(const Scene& scene, const ClashRow& row) {
+  return id_of(name_of(scene, row.objects.a), name_of(scene, row.objects.b));
+}
+
+struct CsvLine {
+  long line = 0;  // from 1
+  std::vector<std::string> cells;
+};
+
+/// Lines of a CSV as csv_cell() writes it, without empty lines.
+std::vector<CsvLine> csv_lines(const std::string& text) {
+  std::vector<CsvLine> out;
+  std::istringstream in(text);
+  long number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.empty()) continue;
+    CsvLine& row = out.emplace_back(CsvLine{.line = number, .cells = {""}});
+    bool quoted = false;
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      if (line[k] == '"' && quoted && line.substr(k + 1, 1) == "\"")
+        row.cells.back() += line[k++];
+      else if (line[k] == '"')
+        quoted = !quoted;
+      else if (line[k] == ',' && !quoted)
+        row.cells.emplace_back();
+      else
+        row.cells.back() += line[k];
+    }
   }
   return out;
+}
+
+const char* compared_word(const ClashTable& table, std::size_t row) {
+  return table.compared->same[row] ? "same" : "new";
 }
 
 std::string depth_text(const ClashRow& row) {
@@ -54,13 +105,22 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
   const bool touches = std::ranges::count(table.failing, ClashVerdict::touch) > 0;
-  for (const ClashRow& row : record.rows) {
+  for (std::size_t k = 0; k < record.rows.size(); ++k) {
+    const ClashRow& row = record.rows[k];
     if (row.verdict == ClashVerdict::touch && !touches && !row.ignored) continue;
     if (++all > kRowsShown) continue;
-    out.add({to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
+    out.add({(table.compared ? compared_word(table, k) + std::string(" ") : "") +
+                 to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
              name_of(scene, row.objects.a), name_of(scene, row.objects.b), depth_text(row),
              row.curve > 0 ? short_number(row.curve) : "", distance_text(row), place_text(row),
-             clash_words(scene, row)});
+             clash_words(scene, row) + (record.options.depth && row.open
+                                            ? "; no depth: " + no_depth_words(scene, record, row)
+                                            : "")});
+  }
+  for (std::size_t k = 0; table.compared && k < table.compared->gone.size(); ++k) {
+    const auto& [a, b, verdict] = table.compared->gone[k];
+    if (verdict == to_string(ClashVerdict::touch) && !touches) continue;
+    if (++all <= kRowsShown) out.add({"gone " + verdict, a, b, "", "", "", "", ""});
   }
   if (all == 0) return "";
   const bool deep = record.count(ClashVerdict::clash) + record.count(ClashVerdict::contained) > 0;
@@ -72,8 +132,38 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
 std::string counts_text(const ClashRecord& record) {
   std::string out;
   for (const ClashVerdict verdict : kClashVerdicts)
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", grouped(record.count(verdict)),
-                       to_string(verdict));
+    out += fmt::format("{}{} {}{}", out.empty() ? "" : ", ", grouped(record.count(verdict)),
+                       to_string(verdict),
+                       verdict == ClashVerdict::touch && record.options.tolerance > 0
+                           ? fmt::format(" ({} within tolerance)", grouped(record.within_tolerance))
+                           : "");
+  return out;
+}
+
+/// "2 new, 5 same, 1 gone".
+std::string compared_text(const ClashComparison& compared) {
+  const auto same = static_cast<std::size_t>(std::ranges::count(compared.same, true));
+  return fmt::format("{} new, {} same, {} gone", grouped(compared.same.size() - same),
+                     grouped(same), grouped(compared.gone.size()));
+}
+
+/// What may be wrong with the parts themselves.
+std::string hints_text(const Scene& scene, const ClashRecord& record) {
+  constexpr std::size_t kShown = 3;
+  std::string out;
+  for (std::size_t k = 0; k < std::min(kShown, record.copies.size()); ++k) {
+    const auto& [a, b] = record.copies[k];
+    out +=
+        fmt::format("hint       {} and {} may be one part twice: as many triangles, in one box\n",
+                    name_of(scene, a), name_of(scene, b));
+  }
+  if (record.copies.size() > kShown)
+    out += fmt::format("hint       and {} others\n", grouped(record.copies.size() - kShown));
+  if (record.sizes) {
+    const double ratio = size_of(scene, record.sizes->b) / size_of(scene, record.sizes->a);
+    out += fmt::format("hint       {} is {:.3g} times the size of {}: are all parts in one unit?\n",
+                       name_of(scene, record.sizes->b), ratio, name_of(scene, record.sizes->a));
+  }
   return out;
 }
 
@@ -95,7 +185,7 @@ std::string time_text(const ClashRecord& record) {
   return fmt::format("{:.1f} ms = {}", record.ms, out);
 }
 
-Json row_json(const Scene& scene, const ClashRow& row) {
+Json row_json(const Scene& scene, const ClashRecord& record, const ClashRow& row) {
   Json kinds = Json::object();
   for (const ContactKind kind : kContactKinds) {
     if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
@@ -105,7 +195,9 @@ Json row_json(const Scene& scene, const ClashRow& row) {
               {"object_b", row.objects.b},
               {"name_a", name_of(scene, row.objects.a)},
               {"name_b", name_of(scene, row.objects.b)},
+              {"id", id_of(scene, row)},
               {"verdict", to_string(row.verdict)},
+              {"exact", to_string(row.exact)},
               {"ignored", row.ignored},
               {"proved", row.proved},
               {"triangle_pairs", row.pairs},
@@ -116,7 +208,8 @@ Json row_json(const Scene& scene, const ClashRow& row) {
               {"box", {point_json(row.box.lo), point_json(row.box.hi)}},
               {"witness", {point_json(row.witness[0]), point_json(row.witness[1])}},
               {"curve", row.curve},
-              {"depth", nullptr}};
+              {"depth", nullptr},
+              {"no_depth", text_json(no_depth_words(scene, record, row))}};
   if (const auto& depth = row.depth) {
     out["depth"] = {{"least", depth->lo},
                     {"most", depth->hi},
@@ -133,8 +226,59 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
     return "the one around " + name_of(scene, *row.inner) +
            " is not closed, or its faces do not all face outward";
   }
-  const bool doubtful = row.verdict == ClashVerdict::clash && !row.proved;
-  return (doubtful ? "not proved to touch only: " : "") + kinds_text(row);
+  if (row.within_tolerance()) {
+    return "within the tolerance; exactly: " + to_string(row.exact) +
+           (row.pairs > 0 ? ", " + contact_words(row) : "");
+  }
+  if (row.pairs == 0) return "";
+  if (row.verdict == ClashVerdict::clash && row.kinds[std::size_t(ContactKind::crossing)] == 0) {
+    return (row.proved ? "the insides overlap, and " : "not proved to touch only: ") +
+           contact_words(row);
+  }
+  return contact_words(row);
+}
+
+std::string no_depth_words(const Scene& scene, const ClashRecord& record, const ClashRow& row) {
+  const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
+  if (!deep || row.depth) return "";
+  if (row.open) return name_of(scene, *row.open) + " is not closed";
+  return row.proved ? "not asked for" : "no overlap is proved";
+}
+
+ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
+                                const std::string& text, const std::string& name) {
+  const auto fail = [&](const std::string& reason, long line) {
+    throw Error(name, reason, "name a file that farcull clash --csv wrote", line);
+  };
+  using Row = std::array<std::string, 3>;  // two names in order, the verdict
+  const auto row_of = [](std::string a, std::string b, std::string verdict) {
+    if (b < a) std::swap(a, b);
+    return Row{std::move(a), std::move(b), std::move(verdict)};
+  };
+  const std::vector<CsvLine> lines = csv_lines(text);
+  std::map<std::string, std::size_t> column;
+  for (std::size_t k = 0; !lines.empty() && k < lines[0].cells.size(); ++k)
+    column[lines[0].cells[k]] = k;
+  for (const char* wanted : {"name_a", "name_b", "verdict"}) {
+    if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
+  }
+  std::set<Row> old;
+  for (std::size_t k = 1; k < lines.size(); ++k) {
+    const std::vector<std::string>& cells = lines[k].cells;
+    if (cells.size() != lines[0].cells.size())
+      fail(fmt::format("{} cells under {} names", cells.size(), lines[0].cells.size()),
+           lines[k].line);
+    if (column.contains("compared") && cells[column["compared"]] == "gone") continue;
+    old.insert(row_of(cells[column["name_a"]], cells[column["name_b"]], cells[column["verdict"]]));
+  }
+  ClashComparison out;
+  for (const ClashRow& row : record.rows) {
+    out.same.push_back(old.erase(row_of(name_of(scene, row.objects.a),
+                                        name_of(scene, row.objects.b), to_string(row.verdict))) >
+                       0);
+  }
+  for (const auto& [a, b, verdict] : old) out.gone.push_back({a, b, verdict});
+  return out;
 }
 
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing) {
@@ -152,42 +296,66 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
                      counted(record.asked, "pair", "pairs"),
                      is_clean(record, table.failing) ? ": clean" : "");
   out += "verdicts   " + counts_text(record) + "\n";
+  if (record.options.tolerance > 0)
+    out += fmt::format("tolerance  {:.6g}{}\n", record.options.tolerance,
+                       table.unit.empty() ? "" : " " + table.unit);
+  if (table.compared) out += "compared   " + compared_text(*table.compared) + "\n";
   if (record.ignored > 0) {
     out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),
                        counted(record.ignored_meet, "meets", "meet"));
   }
   for (const std::uint32_t object : record.empty)
     out += "not examined: " + name_of(scene, object) + " has no triangles\n";
-  return out + rows_text(scene, record, table) +
+  return out + hints_text(scene, record) + rows_text(scene, record, table) +
          fmt::format("\ntime       {}\n", time_text(record));
 }
 
-std::string clash_csv(const Scene& scene, const ClashRecord& record) {
+std::string clash_csv(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   std::string out =
-      "object_a,object_b,name_a,name_b,verdict,ignored,proved,triangle_pairs,inner,distance,"
-      "squared,"
-      "depth_least,depth_most,curve,x_lo,y_lo,z_lo,x_hi,y_hi,z_hi,x_a,y_a,z_a,x_b,y_b,z_b";
+      "name_a,name_b,id,verdict,exact,ignored,proved,triangle_pairs,inner,distance,squared,"
+      "depth_least,depth_most,no_depth,curve,"
+      "x_lo,y_lo,z_lo,x_hi,y_hi,z_hi,x_a,y_a,z_a,x_b,y_b,z_b,object_a,object_b";
   for (const ContactKind kind : kContactKinds) out += fmt::format(",{}", farcull::name_of(kind));
-  out += "\n";
-  for (const ClashRow& row : record.rows) {
-    out += fmt::format("{},{},{},{},{},{},{},{},{},", row.objects.a, row.objects.b,
-                       csv_cell(name_of(scene, row.objects.a)),
-                       csv_cell(name_of(scene, row.objects.b)), to_string(row.verdict),
-                       int{row.ignored}, int{row.proved}, row.pairs,
-                       row.inner ? std::to_string(*row.inner) : "");
+  out += table.compared ? ",compared\n" : "\n";
+  for (std::size_t k = 0; k < record.rows.size(); ++k) {
+    const ClashRow& row = record.rows[k];
+    out +=
+        fmt::format("{},{},{},{},{},{},{},{},{},", csv_cell(name_of(scene, row.objects.a)),
+                    csv_cell(name_of(scene, row.objects.b)), id_of(scene, row),
+                    to_string(row.verdict), to_string(row.exact), int{row.ignored}, int{row.proved},
+                    row.pairs, row.inner ? csv_cell(name_of(scene, *row.inner)) : "");
     out += row.squared ? fmt::format("{},{},", row.distance, row.squared->text()) : ",,";
     out += row.depth ? fmt::format("{},{},", row.depth->lo, row.depth->hi) : ",,";
-    out += fmt::format("{}", row.curve);
+    out += fmt::format("{},{}", csv_cell(no_depth_words(scene, record, row)), row.curve);
     for (const Vec3& p : {row.box.lo, row.box.hi, row.witness[0], row.witness[1]})
       out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
+    out += fmt::format(",{},{}", row.objects.a, row.objects.b);
     for (const std::uint64_t n : row.kinds) out += fmt::format(",{}", n);
-    out += "\n";
+    out += table.compared ? fmt::format(",{}\n", compared_word(table, k)) : "\n";
+  }
+  if (!table.compared) return out;
+  const auto columns = std::count(out.begin(), std::ranges::find(out, '\n'), ',');
+  for (const auto& [a, b, verdict] : table.compared->gone) {
+    out += fmt::format("{},{},{},{}{}gone\n", csv_cell(a), csv_cell(b), id_of(a, b), verdict,
+                       std::string(static_cast<std::size_t>(columns) - 3, ','));
   }
   return out;
 }
 
-Json clash_json(const Scene& scene, const ClashRecord& record, const std::string& unit,
-                const std::vector<ClashVerdict>& failing) {
+Json clash_json(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
+  const auto pair_json = [&](const ObjectPair& pair) {
+    return Json{name_of(scene, pair.a), name_of(scene, pair.b)};
+  };
+  Json rows = json_list(record.rows, [&](const ClashRow& r) { return row_json(scene, record, r); });
+  Json gone = Json::array();
+  for (std::size_t k = 0; table.compared && k < rows.size(); ++k)
+    rows[k]["compared"] = compared_word(table, k);
+  if (table.compared) {
+    gone = json_list(table.compared->gone, [](const ClashComparison::Gone& g) {
+      return Json{
+          {"name_a", g.a}, {"name_b", g.b}, {"id", id_of(g.a, g.b)}, {"verdict", g.verdict}};
+    });
+  }
   Json verdicts = Json::object();
   for (const ClashVerdict verdict : kClashVerdicts)
     verdicts[to_string(verdict)] = record.count(verdict);
@@ -195,16 +363,21 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const std::string
           {"objects", json_list(scene.objects, [](const Object& object) { return object.name; })},
           {"triangles", scene.triangles.size()},
           {"folded_polygons", scene.folded.size()},
-          {"unit", text_json(unit)},
+          {"unit", text_json(table.unit)},
           {"clearance", record.options.clearance},
+          {"tolerance", record.options.tolerance},
           {"asked", record.asked},
           {"examined", record.examined},
-          {"clean", is_clean(record, failing)},
+          {"clean", is_clean(record, table.failing)},
           {"verdicts", verdicts},
+          {"within_tolerance", record.within_tolerance},
           {"ignored", record.ignored},
           {"ignored_meet", record.ignored_meet},
           {"without_triangles", record.empty},
-          {"pairs", json_list(record.rows, [&](const ClashRow& r) { return row_json(scene, r); })},
+          {"copies", json_list(record.copies, pair_json)},
+          {"sizes_differ", record.sizes ? pair_json(*record.sizes) : Json(nullptr)},
+          {"pairs", rows},
+          {"gone", gone},
           {"triangle_pairs", record.triangle_pairs},
           {"stages", stages_json(record.trace)},
           {"time_ms", {{"total", record.ms}}},

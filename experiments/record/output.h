@@ -171,9 +171,23 @@ std::string verdict_text(const DistanceAccounting& accounting);
 /// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
 
+/// The rows of a record beside those of an earlier CSV. Two rows are the same if they name the same
+/// two parts, in any order, and have the same verdict.
+struct ClashComparison {
+  struct Gone {
+    std::string a, b, verdict;
+  };
+  std::vector<bool> same;  // of each row of the record: it is in the file
+  std::vector<Gone> gone;  // rows of the file that the record does not have
+};
+/// text: the CSV; name: of the file, for errors. Throws Error if it is none of clash_csv().
+ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
+                                const std::string& text, const std::string& name);
+
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};  // with touch, pairs that touch are listed, too
-  std::string unit = {};                   // of the lengths, such as "mm"; empty: not said
+  std::vector<ClashVerdict> failing = {};        // with touch, pairs that touch are listed, too
+  std::string unit = {};                         // of the lengths, such as "mm"; empty: not said
+  std::optional<ClashComparison> compared = {};  // with an earlier CSV
 };
 
 /// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
@@ -187,11 +201,14 @@ std::string clash_words(const Scene& scene, const ClashRow& row);
 /// asked for was examined.
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
 
-/// A row for each pair that is not clear; numbers with all digits.
-std::string clash_csv(const Scene& scene, const ClashRecord& record);
+/// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
+std::string no_depth_words(const Scene& scene, const ClashRecord& record, const ClashRow& row);
+
+/// A row for each pair that is not clear; numbers with all digits. A row that is gone has only its
+/// names and the verdict it had.
+std::string clash_csv(const Scene& scene, const ClashRecord& record, const ClashTable& table = {});
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
-                                  const std::string& unit,
-                                  const std::vector<ClashVerdict>& failing = {});
+                                  const ClashTable& table = {});
 
 }  // namespace farcull

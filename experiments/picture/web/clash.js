@@ -19,7 +19,7 @@ function factsOf(row) {
   }
   if (row.curve > 0) out.push(`curve ${length(row.curve)}`);
   if (row.distance !== null) out.push(`distance ${length(row.distance)}`);
-  if (row.what) out.push(row.verdict === "clash" || row.verdict === "touch" ? `${row.what} (pairs of triangles)` : row.what);
+  if (row.what) out.push(row.what);
   return out.join("; ");
 }
 
@@ -59,7 +59,7 @@ function showLegend() {
     return item;
   };
   const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown"), line(css(about.colours.objects[0]), "the other parts")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
-  if (row && row.curve > 0) items.push(line("#dc005a", "the surfaces cross"));
+  if (row && row.segments[1] > 0) items.push(line("#dc005a", row.curve > 0 ? "the surfaces cross" : "between two nearest points"));
   byId("legend").replaceChildren(...items);
   byId("legend").hidden = items.length === 0;
 }
@@ -67,6 +67,8 @@ function showLegend() {
 // ---- the scene ----------------------------------------------------------------------------------
 
 const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object].getSize(new THREE.Vector3()).length());
+const larger = (row) => (sizeOf(row.a) > sizeOf(row.b) ? row.a : row.b);
+const outerOf = (row) => (row.inner === null ? larger(row) : row.inner === row.a ? row.b : row.a);
 
 // Without a chosen pair the parts that clash with another one, or lie in one, have the first colour.
 // The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen;
@@ -74,13 +76,12 @@ const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
-  const inside = row && (state.through || row.verdict === "contained" || row.verdict === "unknown");
+  const outer = row && (state.through || row.inner !== null) ? outerOf(row) : -1;
   const bad = new Set(about.rows.filter((r) => !r.ignored && r.verdict !== "touch" && r.verdict !== "near").flatMap((r) => [r.a, r.b]));
   frame.objects.forEach(([, first, count], o) => {
     const solid = row === undefined || o === row.a || o === row.b;
     if (row ? o === row.a : bad.has(o)) states.fill(IDLE, first, first + count);
-    const outer = inside && solid && sizeOf(o) > sizeOf(o === row.a ? row.b : row.a);
-    view.ghost(o, !solid || outer, !state.ghosts && !solid);
+    view.ghost(o, !solid || o === outer, !state.ghosts && !solid);
   });
   view.setStates(states);
   showCurve(row);
@@ -107,10 +108,11 @@ function showCurve(row) {
   view.scene.add(curves);
 }
 
-// Moves and zooms the view to the place of a row; the direction of sight stays.
+// Moves and zooms the view to the place of a row; the direction of sight stays. A part that holds the
+// other one stays in sight.
 function flyTo(row) {
   const lo = pointOf(row.box, 0), hi = pointOf(row.box, 1), middle = lo.clone().add(hi).multiplyScalar(0.5);
-  const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * Math.min(sizeOf(row.a), sizeOf(row.b)));
+  const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * (row.inner === null ? Math.min(sizeOf(row.a), sizeOf(row.b)) : sizeOf(outerOf(row))));
   const from = view.controls.target.clone(), zoom = view.camera.zoom, to = Math.min(2 / size, 200);
   const offset = view.camera.position.clone().sub(from), begin = performance.now();
   const step = () => {

@@ -54,7 +54,8 @@ class Clash:
 
 
 def clash(
-    scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False
+    scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False,
+    tolerance: float = 0.0,
 ) -> Clash:
     """Which objects of a scene clash, touch, lie inside each other or are near, for every two of them.
 
@@ -66,12 +67,15 @@ def clash(
     threads: up to 1024; 0: one for each core.
     depth: also how deep objects are in each other, as bounds. Takes longer than all else where objects have many
         triangles.
+    tolerance: an overlap whose depth is proved to be at most this is a touch, and so is a gap of at most this. World
+        units, finite, 0 or more.
 
     Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
     """
     given = scene_of(scene)
     made = _farcull.clash(
-        given, _arguments.number("clearance", clearance), _arguments.ignored(ignore, given),
+        given, _arguments.number("clearance", clearance), _arguments.number("tolerance", tolerance),
+        _arguments.ignored(ignore, given),
         _arguments.flag("depth", depth), _arguments.threads(threads),
     )
     return Clash(made, scene)

@@ -213,8 +213,8 @@ struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // to the diagonal of the mesh's box
 };
-/// "0.001" in the units of the mesh, or "1e-7*size". Throws Error naming --weld.
-WeldTolerance parse_weld(const std::string& text);
+/// "0.001" in the units of the mesh, or "1e-7*size". Throws Error naming the option.
+WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");
 
 /// Merges vertices that triangles use: each becomes the nearest earlier one that is kept, if its
 /// distance (in double) is at most the tolerance, of equal ones the first. So no vertex moves

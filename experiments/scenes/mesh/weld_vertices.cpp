@@ -11,16 +11,16 @@
 
 namespace farcull {
 
-WeldTolerance parse_weld(const std::string& text) {
+WeldTolerance parse_weld(const std::string& text, const char* option) {
   WeldTolerance out;
   constexpr std::string_view kSize = "*size";
   out.relative = text.ends_with(kSize);
   const std::string number = text.substr(0, text.size() - (out.relative ? kSize.size() : 0));
   const std::optional<double> value = parse_number<double>(number);
   if (!value || !std::isfinite(*value) || *value < 0) {
-    throw Error("--weld", "'" + text + "' is no tolerance",
-                "give a length in the units of the mesh, or one relative to the diagonal of its "
-                "box, as in 1e-7*size");
+    throw Error(option, "'" + text + "' is no tolerance",
+                "give a length in the units of the meshes, or one relative to the diagonal of the "
+                "box around them, as in 1e-7*size");
   }
   out.value = *value;
   return out;

@@ -1,6 +1,6 @@
 # Drives the page of `farcull clash --html` in a browser.
-#   clash_page_test.py PAGE
-# PAGE: of three parts, first and second clash, third lies in the first.
+#   clash_page_test.py PAGE NEAR
+# PAGE: of three parts, first and second clash, third lies in the first. NEAR: of two parts that are near.
 import os
 import sys
 
@@ -15,8 +15,8 @@ def check(good, what):
         print("FAILED:", what, file=sys.stderr)
 
 
-def shown(b, address):
-    b.open("file://" + os.path.abspath(sys.argv[1]) + address)
+def shown(b, address, page=1):
+    b.open("file://" + os.path.abspath(sys.argv[page]) + address)
     b.wait("document.documentElement && document.documentElement.dataset.ready !== undefined", 60)
 
 
@@ -43,6 +43,7 @@ for size in ((1280, 760), (400, 760)):
         check(b.run("farcull.state.row") == 1 and "cross" not in b.text("legend"), "n shows the next pair")
         ghosts = b.run(seen)
         check(ghosts == [True, True, False], f"the part inside is seen: {ghosts}")
+        check(b.run("farcull.view.camera.zoom * farcull.view.boxes[0].getSize(new THREE.Vector3()).length()") < 2, "the part around it stays in sight")
         b.run("(() => { const s = document.getElementById('search'); s.value = 'clash'; s.dispatchEvent(new Event('input')); })()")
         check(b.run("document.querySelectorAll('#rows button').length") == 1, "the search")
         check(b.run("document.documentElement.scrollWidth <= innerWidth"), f"nothing is wider than the window at {size}")
@@ -51,5 +52,8 @@ for size in ((1280, 760), (400, 760)):
         check(b.run("farcull.state.row") == 1, "the address chooses a pair")
         shown(b, "#row=7")
         check(b.run("farcull.state.row") == -1, "an address of no pair")
+        shown(b, "#row=0", 2)
+        check("nearest points" in b.text("legend"), "the legend names the line between near parts")
+        check(b.run("farcull.view.scene.children.some((o) => o.isLineSegments && o.renderOrder === 9)"), "the line is drawn")
 print(f"clash_page_test.py: {len(failures)} failed")
 sys.exit(bool(failures))

@@ -70,4 +70,6 @@ box '0 0 0' '4 4 4' >first.obj
 box '3 1 1' '6 2 2' >second.obj
 box '1 1 1' '2 2 2' >third.obj
 "$farcull" clash first.obj second.obj third.obj --html clash.html --fail-on none >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/clash_page_test.py" clash.html || exit 1
+box '5 0 0' '6 1 1' >fourth.obj
+"$farcull" clash third.obj fourth.obj --clearance 5 --html near.html >/dev/null || exit 1
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/clash_page_test.py" clash.html near.html || exit 1
