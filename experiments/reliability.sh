@@ -3,7 +3,7 @@
 # missed or an answer is wrong.
 #   bash experiments/reliability.sh [SCENE...]             build/reliability: FAR with both offsets is compared with the method exact
 #     on the packaged scenes, at resolutions 64 to 2048; with fewer resolutions copies of the scenes as well: moved by 1e6 along the
-#     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. It also prints how many pairs are at risk (lost
+#     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. The column "at risk" says how many pairs are at risk (lost
 #     with 0.9 of the radius). About half an hour on two cores without a GPU.
 #   bash experiments/reliability.sh boxes [SCENE...]       build/reliability-boxes: boxes on packaged meshes, on needles and inside
 #     objects; the accounting decides every pair. --list prints all scenes.
@@ -62,38 +62,21 @@ mesh_scene() {
       # Few triangles are drawn after boxes of triangles, so the same pairs may be at risk in finer pixels.
       if [[ $phase == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
       build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
-        --broad-phase $phase "${device[@]}" --json "$out/$scene.$phase.json" || failed+=("$scene")
-      risk_of "$scene" $phase "$resolutions"
+        --broad-phase $phase "${device[@]}" --repeat 1 --json "$out/$scene.$phase.json" || failed+=("$scene")
     done
   done
-}
-
-# risk_of SCENE PHASE RESOLUTIONS: prints how many pairs are at risk. Where there are none, "0 missed" does not show that the radius
-# is large enough.
-risk_of() {
-  local risk='' offset resolution lost
-  for offset in obb exact; do
-    for resolution in ${3//,/ }; do
-      lost=$(build/farcull run "$1" --method far --offset $offset --resolution "$resolution" --radius 0.9 --broad-phase "$2" \
-        "${device[@]}" --json - | sed -nE 's/^ *"false_negatives": ([0-9]+),?$/\1/p') || true
-      risk+=" $offset $resolution px ${lost:-?},"
-    done
-  done
-  printf 'at risk at 0.9 of the radius, broad phase of %s:%s\n\n' "$2" "${risk%,}"
 }
 
 # boxes_run SCENE [OPTIONS]
 boxes_run() {
   local record="$out/${*// /_}"
   record="${record// /_}.json"
-  # A row ends in: candidates, colliding, (+ and neighbours,) missed, two times.
-  build/farcull compare "$@" --methods boxes --json "$record" |
-    awk -v run="$*" '/^method / { colliding = /neighbours/ ? 5 : 3 }
-      $1 == "boxes" && $2 == "-" {
-        pairs = $(NF - colliding); candidates = $(NF - colliding - 1)
-        row = sprintf("%-30s %11s %10s", run, candidates, pairs)
-        gsub(",", "", pairs); gsub(",", "", candidates)
-        printf "%s %12s %7s\n", row, (pairs > 0 ? sprintf("%.2f", candidates / pairs) : "-"), $(NF - 2)
+  build/farcull compare "$@" --methods boxes --repeat 1 --json "$record" --csv - |
+    awk -F, -v run="$*" 'NR == 1 { for (k = 1; k <= NF; ++k) at[$k] = k }
+      NR == 2 {
+        pairs = $at["colliding"]
+        printf "%-30s %11s %10s %12s %7s\n", run, $at["candidates"], pairs,
+          (pairs > 0 ? sprintf("%.2f", $at["candidates"] / pairs) : "-"), $at["missed"]
       }' || failed+=("$*")
 }
 

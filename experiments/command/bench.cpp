@@ -172,7 +172,7 @@ int BenchCommand::run() {
     const DistanceBenchResult result = bench_distances(scene, of_distances, progress);
     terminal.clear();
     if (outputs.json) write_json(to_json(scene, of_distances, result), *outputs.json);
-    if (!outputs.to_stdout()) write_output("-", distance_bench_table(scene, of_distances, result));
+    if (!outputs.to_stdout()) print(distance_bench_table(scene, of_distances, result));
     return 0;
   }
   if (poses_) {
@@ -189,7 +189,7 @@ int BenchCommand::run() {
   const BenchResult result = bench(scene, contestants(scene, options, progress), options, progress);
   terminal.clear();
   if (outputs.json) write_json(to_json(scene, options, result), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", bench_table(scene, options, result));
+  if (!outputs.to_stdout()) print(bench_table(scene, options, result));
   if (!result.disagreement) return 0;
   complain(describe(scene, *result.disagreement));
   return 1;

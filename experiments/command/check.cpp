@@ -93,7 +93,7 @@ GivenList read_list(const CheckArguments& arguments) {
 // disagree.
 int write_check(const CheckArguments& arguments, const Scene& scene, const SceneCheck& done) {
   const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
-  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
+  if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
   if (arguments.verified) {
     const auto words = [&](const TakeWord& take) { give_words(scene, take); };
     check_again(arguments, {arguments.certificate}, words, status);
@@ -138,7 +138,7 @@ class FrameChecks {
   FrameChecks(const CheckArguments& arguments, const std::string& names)
       : table_(arguments.json != "-"), wanted_(arguments.frames->count()) {
     if (!arguments.json.empty()) json_.emplace(arguments.json);
-    if (table_) write_output("-", names);
+    if (table_) print(names);
   }
 
   // row: of the table.
@@ -147,7 +147,7 @@ class FrameChecks {
     verdicts_.add(frame, verdict, check.result.meeting.size());
     if (table_) {
       if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
-      write_output("-", clean_lines(row));
+      print(clean_lines(row));
     }
     if (!json_) return;
     Json one = {{"frame", frame}};
@@ -158,7 +158,7 @@ class FrameChecks {
   // proved: the sentence if every frame is proved; rest: the text after it.
   int finish(const std::string& proved, const std::string& rest) {
     if (json_) json_->finish();
-    if (table_) write_output("-", "\n" + clean_lines(verdicts_.text(proved) + rest));
+    if (table_) print("\n" + clean_lines(verdicts_.text(proved) + rest));
     return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
   }
 

@@ -173,19 +173,17 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
   if (arguments.json != "-") {
     SceneCheck last;
     last.result.unattested = tiles.back().result.unattested;
-    std::string untested;
+    std::string left;
     if (unasked.pairs > 0) {
-      untested = fmt::format("untested   {} of triangles inside {} of {} (add --self)\n",
-                             counted(unasked.pairs, "pair", "pairs"), grouped(unasked.objects),
-                             counted(census.objects, "object", "objects"));
+      left = fmt::format("not asked  {} of triangles inside {} of {} (add --self)\n",
+                         counted(unasked.pairs, "pair", "pairs"), grouped(unasked.objects),
+                         counted(census.objects, "object", "objects"));
     }
-    write_output(
-        "-",
-        clean_lines(fmt::format(
-            "{}: {}\n{}list       SHA-256 of the pairs: {}\nboxes      {} decided\n{}{}"
-            "time       {:.1f} ms without reading the scene\n",
-            to_string(verdict), status == kExitDone ? proves : one_line(reason), table, list_sha256,
-            counted(sum.box_pairs, "pair", "pairs"), untested, unattested_text(last), ms)));
+    print(clean_lines(fmt::format(
+        "{}: {}\n{}list       {} (SHA-256 of the pairs)\nboxes      {} decided\n{}{}"
+        "time       {:.1f} ms without reading the scene\n",
+        to_string(verdict), status == kExitDone ? proves : one_line(reason), table, list_sha256,
+        counted(sum.box_pairs, "pair", "pairs"), left, unattested_text(last), ms)));
   }
   if (arguments.verified) {
     const auto words = [&](const TakeWord& take) {

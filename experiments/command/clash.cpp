@@ -221,7 +221,7 @@ int ClashCommand::run() const {
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record, table));
   if (outputs.json) write_json(clash_json(scene, record, table), *outputs.json);
   if (outputs.page) write_output(*outputs.page, clash_page(scene, record, table.unit));
-  if (!outputs.to_stdout()) write_output("-", clash_text(scene, record, table));
+  if (!outputs.to_stdout()) print(clash_text(scene, record, table));
   const bool fails =
       std::ranges::any_of(failing, [&](ClashVerdict v) { return record.count(v) > 0; }) ||
       (record.examined < record.asked && fail_on_ != "none");

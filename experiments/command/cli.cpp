@@ -8,7 +8,9 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -21,6 +23,8 @@
 #include "embedded/scene_file_txt.h"
 #include "embedded/terms_txt.h"
 #include "experiments/command/command.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -108,6 +112,26 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
+// Whether the word is at most two letters off: one changed, added or left out counts once.
+bool is_misspelt(const std::string& word, const std::string& name) {
+  std::vector<std::size_t> row(name.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < name.size(); ++k) {
+      const std::size_t changed = diagonal + (word[i] != name[k]);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({changed, diagonal + 1, row[k] + 1});
+    }
+  }
+  return row.back() <= 2 && row.back() < name.size() - 1;
+}
+
+bool is_scene(const std::string& word) {
+  return has_mesh_extension(word) || is_scene_file(word) || is_builtin_scene(word) ||
+         std::filesystem::is_directory(word);
+}
+
 // Turns an error of CLI11 into an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
@@ -134,9 +158,21 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
                    "give that, with objects or triangles");
     if (word.starts_with("-")) return Error(word, name + " has no such option", help);
     if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
-    std::string known;
-    for (const CLI::App* subcommand : subcommands)
+    std::string known, meant;
+    for (const CLI::App* subcommand : subcommands) {
       known += (known.empty() ? "" : ", ") + subcommand->get_name();
+      if (is_misspelt(word, subcommand->get_name())) meant = subcommand->get_name();
+    }
+    if (!meant.empty()) {
+      return Error(
+          word, "no such command",
+          "try " + command_with(name + " " + meant, std::vector(words.begin() + 1, words.end())));
+    }
+    if (command == &app && is_scene(word)) {
+      const std::string act = std::filesystem::is_directory(word) ? "clash" : "run";
+      return Error(word, "stands where a command should",
+                   "try " + command_with(name + " " + act, words));
+    }
     return Error(word, "no such command", "give one of " + known);
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
@@ -173,6 +209,17 @@ Error with_option(const Error& error, int argc, char** argv) {
   return error;
 }
 
+constexpr const char* kFirstScreen =
+    "Give it two meshes (OBJ, OFF, PLY or STL files):\n"
+    "  farcull run a.obj b.obj                    which triangles collide\n"
+    "  farcull run a.obj b.obj --pairs pairs.csv  the same, as a list\n"
+    "  farcull run cloth.obj --self               a mesh against itself\n"
+    "  farcull clash parts/                       which parts of an assembly clash\n"
+    "  farcull distance a.obj b.obj               how far apart they are, and where\n"
+    "Or none:\n"
+    "  farcull run two-tori                       a built-in scene; farcull scenes lists them\n"
+    "  farcull compare two-tori                   what each method misses, and its time\n";
+
 // Sets the options of the program itself.
 void describe(CLI::App& app) {
   app.get_formatter()->column_width(28);
@@ -180,23 +227,17 @@ void describe(CLI::App& app) {
   app.set_version_flag("--version", std::string(kVersion) + ", commit " + FARCULL_COMMIT,
                        "print the version and exit");
   app.require_subcommand(0, 1);
+  app.description(kFirstScreen);
   app.footer(
       "Each has its own --help. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or\n"
       "environment.\n\n"
       "Topics:\n" +
-      help_topics_text() +
-      "\n"
-      "Examples:\n"
-      "  farcull run two-spheres\n"
-      "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
-      "  farcull run cloth.obj --self\n"
-      "  farcull compare two-tori\n"
-      "  farcull doctor");
+      help_topics_text());
 }
 
 // Runs the command that the arguments name; returns the exit status.
 int dispatch(int argc, char** argv) {
-  CLI::App app("farcull: collision culling that never misses.", "farcull");
+  CLI::App app("", "farcull");
   describe(app);
 
   std::vector<Command> commands;  // in the order of the help
@@ -219,8 +260,8 @@ int dispatch(int argc, char** argv) {
   for (const Command& command : commands) {
     if (*command.app) return command.run();
   }
-  std::fputs(app.help().c_str(), stderr);
-  throw Error("COMMAND", "none is given", "name one, as in farcull run two-spheres");
+  std::fprintf(stderr, "%s\n%s\n", kFirstScreen, "farcull --help lists all commands.");
+  return kExitBad;
 }
 
 }  // namespace

@@ -217,9 +217,17 @@ void take_given(const char* name, const Text& text, RunOptions& options) {
 
 std::string help_of_option(const std::string& name) { return spelled(run_option(name).help); }
 
-void complain(const std::string& message) {
-  std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
+void print(const std::string& text) { write_output("-", wrapped(text)); }
+
+namespace {
+
+std::string complaint(const std::string& message) {
+  return wrapped("farcull: " + clean_name(message), text_columns(stderr), 9);
 }
+
+}  // namespace
+
+void complain(const std::string& message) { std::fputs(complaint(message).c_str(), stderr); }
 
 void say_notes() {
   static std::set<std::string> said;  // frames and tiles read again what they have read
@@ -235,8 +243,7 @@ Scene read_scene(const SceneArguments& arguments) {
 }
 
 void complain_broken(const std::string& message) {
-  const std::string line = "farcull: " + clean_name(message);
-  std::fprintf(stderr, "%s\n", coloured(line, Colour::bad, STDERR_FILENO).c_str());
+  std::fputs(coloured(complaint(message), Colour::bad, STDERR_FILENO).c_str(), stderr);
 }
 
 std::string command_with(const std::string& command, const SceneArguments& scene) {
@@ -374,7 +381,8 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("--certificate", &outputs.certificate, "result.json"),
         std::tuple("--csv", &outputs.csv, "result.csv"),
         std::tuple("-o", &outputs.picture, "picture.png"),
-        std::tuple("--html", &outputs.page, "page.html")}) {
+        std::tuple("--html", &outputs.page, "page.html"),
+        std::tuple("--figure", &outputs.figure, "figure.svg")}) {
     if (!*path) continue;
     // With two names for standard output, two files would write to it, each at its own position.
     if (**path == "/dev/stdout") *path = "-";

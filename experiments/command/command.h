@@ -173,8 +173,11 @@ void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<Na
 /// terminal, /dev/null) may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
-/// Prints the one line of a failure on standard error, without the control characters that a path
-/// may hold.
+/// Writes text for people to standard output, with its long lines wrapped (text_table.h).
+void print(const std::string& text);
+
+/// Prints a failure on standard error: one paragraph, without the control characters that a path
+/// may hold, whose further lines begin with nine blanks.
 void complain(const std::string& message);
 
 /// Prints what readers passed over (take_reading_notes()) on standard error, each line once.
@@ -183,7 +186,7 @@ void say_notes();
 /// load_scene() and say_notes().
 Scene read_scene(const SceneArguments& arguments);
 
-/// Prints the line of a broken guarantee likewise, in red on a terminal.
+/// Prints that a guarantee is broken likewise, in red on a terminal.
 void complain_broken(const std::string& message);
 
 /// Throws Error if there is nothing to test: 0 pairs would be taken for a scene without collisions.
@@ -220,6 +223,7 @@ struct Outputs {
   Text csv = {};
   Text picture = {};  // -o
   Text page = {};     // --html
+  Text figure = {};   // --figure
 
   bool to_stdout() const;
 };
@@ -299,6 +303,10 @@ inline constexpr const char* kSceneHelp =
 /// The rows of the argument that names a scene, and of how its meshes are read.
 Rows scene_rows(SceneArguments& scene, const char* name = "SCENE",
                 const std::string& help = kSceneHelp, Need need = Need::must);
+inline constexpr const char* kNoRiskHelp =
+    "of far: do not count the pairs at risk, which are lost\n"
+    "at 0.9 of the radius, or without a ball. That takes two\n"
+    "more runs, in all up to five times the time of drawing";
 inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";

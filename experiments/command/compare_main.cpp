@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   ::setenv("LP_NUM_THREADS", "0", 0);
   try {
     const FloatingPointGuard guard;
-    CLI::App app("farcull: collision culling that never misses.", "farcull");
+    CLI::App app("Compares the methods of farcull.", "farcull");
     const Command compare = add_compare(app);
     app.require_subcommand(1);
     CLI11_PARSE(app, argc, argv);

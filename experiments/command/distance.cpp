@@ -77,7 +77,7 @@ class Frames {
       const std::string rows = distances_rows(scene, record, std::to_string(frame) + ",");
       csv_->add((first ? "frame," + distances_header() : "") + rows, "");
     }
-    if (!to_stdout_) write_output("-", (first ? names() : "") + row(frame, record));
+    if (!to_stdout_) print((first ? names() : "") + row(frame, record));
   }
 
   void finish() {
@@ -89,7 +89,7 @@ class Frames {
         fmt::format("\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms\n",
                     times.median, times.p95, times.max);
     if (verify_) end += verdict_text(sum_) + "\n" + accounting_sum(sum_);
-    write_output("-", end);
+    print(end);
   }
 
  private:
@@ -253,8 +253,7 @@ int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& out
   if (outputs.csv) write_output(*outputs.csv, distances_header() + distances_rows(scene, record));
   if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_.names)), *outputs.json);
   if (!outputs.to_stdout())
-    write_output("-",
-                 distances_table(scene, record) + weld_lines(scene, not_closed(scene, record)));
+    print(distances_table(scene, record) + weld_lines(scene, not_closed(scene, record)));
   if (!record.verification || record.verification->holds()) return kExitDone;
   complain_broken(verdict_text(*record.verification));
   return kExitBroken;

@@ -23,6 +23,7 @@
 #include "experiments/method/device_verdict.h"
 #include "experiments/record/output.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
 #include "offsets/offsets.h"
 #include "verify/kernel_check.h"
 
@@ -186,16 +187,16 @@ std::string arithmetic_line(const FloatingPoint& callers) {
 }
 
 std::string probes_table(const std::vector<ProbeResult>& probes) {
-  std::string out = fmt::format("\n    {:<52} {:>9} {:>9}  {:<20} {:>9}\n", "probe", "measured",
-                                "bound", "", "samples");
+  Table table("lllrrlr");
+  table.add({"", "", "probe", "measured", "bound", "", "samples"});
   int failed = 0;
   for (const ProbeResult& p : probes) {
-    out += fmt::format("{:<3} {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
-                       number(p.measured), number(p.bound), p.unit, p.samples,
-                       p.pass ? "pass" : "FAIL");
-    if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
+    table.add({p.pass ? "pass" : "FAIL", p.assumption, p.name, number(p.measured), number(p.bound),
+               p.unit, grouped(p.samples)});
+    if (!p.note.empty()) table.add({p.note});
     failed += !p.pass;
   }
+  std::string out = "\n" + table.text();
   out += failed == 0
              ? fmt::format("\nall {} probes pass\n", probes.size())
              : fmt::format(
@@ -286,8 +287,7 @@ int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& na
          {"floating_point", floating_point_json(callers_floating_point(), floating_point())}},
         native.pass, arguments);
   }
-  if (arguments.json != "-")
-    write_output("-", native_text(native) + arithmetic_line(callers_floating_point()));
+  if (arguments.json != "-") print(native_text(native) + arithmetic_line(callers_floating_point()));
   return native.pass ? 0 : 1;
 }
 
@@ -325,9 +325,9 @@ int DoctorCommand::run() const {
   const std::optional<int> chosen = choose(devices, arguments.device);
   if (!chosen && arguments.device.empty()) {
     if (arguments.json != "-")
-      write_output("-", devices_table(devices, -1) +
-                            "no device offers what farcull needs of OpenGL: "
-                            "everything runs on the cores of the CPU\n\n");
+      print(devices_table(devices, -1) +
+            "no device offers what farcull needs of OpenGL: "
+            "everything runs on the cores of the CPU\n\n");
     return doctor_without_gl(arguments, look_at_native());
   }
   // The context throws an Error if nothing fits.
@@ -337,8 +337,8 @@ int DoctorCommand::run() const {
   const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
   const bool people = arguments.json != "-";
   if (people)
-    write_output("-", native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
-                          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
+    print(native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
+          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
 
   const bool terminal = is_terminal(stderr);
   const Stopwatch probing;
@@ -362,7 +362,7 @@ int DoctorCommand::run() const {
         {"verdict_file", verdict.file}};
     write_report(std::move(report), pass, arguments);
   }
-  if (people) write_output("-", probes_table(probes) + verdict_text(verdict));
+  if (people) print(probes_table(probes) + verdict_text(verdict));
   return pass ? 0 : 1;
 }
 

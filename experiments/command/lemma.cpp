@@ -211,7 +211,7 @@ int LemmaCommand::run() {
   const double seconds = watch.ms() / 1000;
   terminal.clear();
   if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, result));
+  if (!outputs.to_stdout()) print(text_of(arguments, on, seconds, result));
   return guaranteed && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
 }
 

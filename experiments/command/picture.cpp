@@ -255,7 +255,7 @@ int PictureCommand::run() const {
       lines += fmt::format("The page is in {} ({})\n", clean_name(*outputs.page),
                            size_text(page.html.size()));
     }
-    write_output("-", lines);
+    print(lines);
   }
   return status;
 }

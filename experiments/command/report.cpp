@@ -103,25 +103,11 @@ std::string context_for_python() {
       .dump();
 }
 
-// The folder of the Python program: the one that FARCULL_REPORT names, the one installed beside
-// this program, or the one in the source tree of the build.
-std::string python_folder() {
-  const char* const named = std::getenv("FARCULL_REPORT");
-  const fs::path self = fs::read_symlink("/proc/self/exe");
-  const fs::path installed = self.parent_path().parent_path() / "share/farcull/report";
-  const std::string folder = named != nullptr && *named != '\0' ? named
-                             : fs::exists(installed)            ? installed.string()
-                                                                : FARCULL_REPORT_FOLDER;
-  if (!fs::exists(folder + "/__main__.py"))
-    throw Error(folder, "the program that writes reports is not there", "install farcull again");
-  return folder;
-}
-
 int ReportCommand::run() {
   if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
   while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
   check_store_outside(folder_);
-  std::vector<std::string> words = {"-B", python_folder(), folder_};
+  std::vector<std::string> words = {"-B", report_folder(FARCULL_REPORT_FOLDER), folder_};
   {
     const Store store(store_of(folder_), Store::Access::read);
     for (const std::string& name : store.studies()) {

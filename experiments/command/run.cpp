@@ -73,10 +73,14 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
       "Examples:\n"
       "  farcull verify two-spheres\n"
       "  farcull verify two-spheres --method cullide --resolution 64\n"
+      "  farcull verify two-spheres --method far --resolution 64 --no-risk\n"
       "  farcull verify two-spheres --frames 30\n"
       "  farcull verify scene.json --json record.json\n\n"
-      "The last lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
-      "terminal the verdict is green or red, unless NO_COLOR is set.\n\n"
+      "The first lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
+      "terminal the verdict is green or red, unless NO_COLOR is set. Of far on a scene without\n"
+      "frames it also says how many pairs were at risk: where none was, \"0 missed\" does not "
+      "show\n"
+      "that the radius is large enough.\n\n"
       "Exit status 1: a culled pair intersects, whatever the method."},
      {"plan", "what run would do, what it would leave out, and why",
       "Examples:\n"
@@ -149,13 +153,15 @@ class RunCommand {
   MethodOptions options_;
   Text frames_, kinds_, tiles_;
   Outputs outputs_;
-  bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false, names_ = false,
-       verbose_ = false;
+  bool no_verify_ = false, no_risk_ = false, faces_ = false, contacts_ = false, segments_ = false,
+       names_ = false, verbose_ = false;
 };
 
 CLI::App* RunCommand::add_to(CLI::App& app) {
   Rows rows = scene_rows(scene_) + options_.rows();
-  if (kind_ != Kind::verify)
+  if (kind_ == Kind::verify)
+    rows.push_back({"--no-risk", &no_risk_, "", kNoRiskHelp});
+  else
     rows.push_back({"--no-verify", &no_verify_, "", "leave out the accounting of all pairs"});
   const auto& [name, title, examples] = kCommands[static_cast<std::size_t>(kind_)];
   return add_command(app, name, title, rows + (kind_ == Kind::plan ? plan_rows() : output_rows()),
@@ -311,7 +317,7 @@ int RunCommand::plan(const RunOptions& options) const {
   const Plan planned = farcull::plan(scene, all);
   const MissesOfPlan misses = misses_of(scene, planned);
   if (outputs.json) write_json(plan_json(scene, planned, misses.predicted), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", plan_table(scene, planned) + misses_line(misses));
+  if (!outputs.to_stdout()) print(plan_table(scene, planned) + misses_line(misses));
   return kExitDone;
 }
 
@@ -326,7 +332,9 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   all.ignored = left_out(scene);
   require_asked(scene, all.ignored);
   Session session(options.device);
-  const Record record = farcull::run(scene, all, session, progress);
+  Record record = farcull::run(scene, all, session, progress);
+  if (kind_ == Kind::verify && !no_risk_)
+    record.risk = pairs_at_risk(scene, record, session, progress);
   terminal.clear();
   if (kind_ == Kind::verify && record.limited)
     throw Error("--limit", "ended the search, so not all pairs are known",
@@ -342,9 +350,9 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   if (!outputs.to_stdout()) {
     std::string verdict;
     if (record.verification) verdict = verdict_line(*record.verification);
-    write_output("-", run_answer(scene, record, verdict) + nested_line(scene, record) +
-                          weld_lines(scene, meeting_themselves(scene, record)) +
-                          (verbose_ ? run_details(record) : ""));
+    print(run_answer(scene, record, verdict) + nested_line(scene, record) +
+          weld_lines(scene, meeting_themselves(scene, record)) +
+          (verbose_ ? run_details(record) : ""));
   }
   if (!broken(record, kind_ == Kind::verify)) return kExitDone;
   complain_broken(missed(record));
@@ -387,7 +395,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
           write_output(numbered(*outputs.certificate, report.number), report.certificate);
         if (json) json->add(report);
         if (pairs) pairs->add(report.pairs_csv, "");
-        if (!outputs.to_stdout()) write_output("-", report.rows);
+        if (!outputs.to_stdout()) print(report.rows);
       });
   terminal.clear();
   if (json) json->finish();
@@ -396,7 +404,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   if (!outputs.to_stdout()) {
     std::string end = result.table;
     if (kind_ == Kind::verify) end += verdict_line(result.sum) + accounting_sum(result.sum);
-    write_output("-", end);
+    print(end);
   }
   if (result.broken.empty()) return kExitDone;
   complain_broken(result.broken);
@@ -461,8 +469,8 @@ int RunCommand::run_tile(const RunOptions& options) const {
   }
   if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
   if (!outputs.to_stdout())
-    write_output("-", run_answer(tile.part.scene, tile.record) + tile_lines(tile) +
-                          (verbose_ ? run_details(tile.record) : ""));
+    print(run_answer(tile.part.scene, tile.record) + tile_lines(tile) +
+          (verbose_ ? run_details(tile.record) : ""));
   if (!broken(tile.record, false)) return kExitDone;
   complain_broken(missed(tile.record));
   return kExitBroken;

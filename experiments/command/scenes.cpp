@@ -132,15 +132,14 @@ void ScenesCommand::list(const Outputs& outputs) const {
   }
   if (outputs.json) write_json(all, *outputs.json);
   if (!outputs.to_stdout()) {
-    write_output(
-        "-", table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
+    print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
   }
 }
 
 void ScenesCommand::write() const {
   const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
-  write_output("-", fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
-                                counted(written.bytes, "byte", "bytes"), written.scene_file));
+  print(fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
+                    counted(written.bytes, "byte", "bytes"), written.scene_file));
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ class PlainProgress {
     study_ = p.study;
     last_ = now;
     try {
-      write_output("-", fmt::format("{}: {} of {}{}\n", p.study, p.done,
-                                    counted(p.points, "point", "points"), left_text(p)));
+      print(fmt::format("{}: {} of {}{}\n", p.study, p.done, counted(p.points, "point", "points"),
+                        left_text(p)));
     } catch (const Error&) {
       // The measurement continues if the progress cannot be written.
     }
@@ -140,7 +140,7 @@ std::vector<std::string> StudiesCommand::devices() const {
       (void)provenance_now(device, "");
       out.emplace_back(device);
     } catch (const Error& error) {
-      write_output("-", fmt::format("{} is left out: {}\n", device, error.what()));
+      print(fmt::format("{} is left out: {}\n", device, error.what()));
     }
   }
   return out;
@@ -187,7 +187,7 @@ int StudiesCommand::run() {
       for (Study& study : of.studies) study = on_devices(study);
       std::erase_if(of.studies, [&](const Study& study) { return study.grid(of.choice).empty(); });
     }
-    if (devices_) write_output("-", "on " + device + "\n");
+    if (devices_) print("on " + device + "\n");
     const int one = run_on(std::move(of), name);
     status = status == 1 || one == 1 ? 1 : std::max(status, one);
   }
@@ -220,7 +220,7 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
     }
   });
   terminal.clear();
-  write_output("-", summary_table(summary));
+  print(summary_table(summary));
   std::size_t void_rounds = 0;
   for (const StudySummary& study : summary.studies) void_rounds += study.void_rounds;
   if (void_rounds > 0) {
@@ -283,13 +283,13 @@ int MergeCommand::run_tiles() const {
   for (const std::string& file : sources_) inputs.push_back({"SHARDS", file});
   require_apart(inputs, {{"-o", out}});
   const MergedTiles merged = merge_tiles(sources_, out);
-  write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
-                                counted(merged.tiles, "tile", "tiles"), out));
-  if (!merged.verified) write_output("-", "not verified: a tile was run with --no-verify\n");
+  print(fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
+                    counted(merged.tiles, "tile", "tiles"), out));
+  if (!merged.verified) print("not verified: a tile was run with --no-verify\n");
   if (!merged.guaranteed) {
-    write_output("-",
-                 "no promise: a tile was run on a device that may miss pairs; its record has the "
-                 "reason\n");
+    print(
+        "no promise: a tile was run on a device that may miss pairs; its record has the "
+        "reason\n");
   }
   if (merged.false_negatives == 0) return kExitDone;
   complain_broken(fmt::format("culled pairs that collide: {}", grouped(merged.false_negatives)));
@@ -307,13 +307,14 @@ int MergeCommand::run() {
   }
   const std::string out = out_ ? *out_ : store_path(folder.empty() ? "." : folder);
   const MergeSummary summary = merge_stores(files, out);
-  write_output("-", fmt::format("{} of {} from {}: {}\n", counted(summary.rows, "row", "rows"),
-                                counted(summary.studies, "study", "studies"),
-                                counted(summary.files, "shard", "shards"), out));
+  print(fmt::format("{} of {} from {}: {}\n", counted(summary.rows, "row", "rows"),
+                    counted(summary.studies, "study", "studies"),
+                    counted(summary.files, "shard", "shards"), out));
   if (summary.machines > 1) {
-    write_output("-", fmt::format("note: the shards are of {} machines that differ: their counts "
-                                  "need not be those of one\n",
-                                  summary.machines));
+    print(
+        fmt::format("note: the shards are of {} machines that differ: their counts "
+                    "need not be those of one\n",
+                    summary.machines));
   }
   return 0;
 }

@@ -98,9 +98,9 @@ int SuiteCommand::run() const {
   const SuiteSummary summary = write_suite(folder_, settings, terminal.callback());
   write_output(folder_ + "/ask.py", embedded::ask_py);
   terminal.clear();
-  write_output("-", pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
-                        fmt::format("\nwritten to {}: seed {}, size {}\nsum {}\n", folder_,
-                                    summary.index.seed, summary.index.size, summary.index.sum));
+  print(pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
+        fmt::format("\nwritten to {}: seed {}, size {}\nsum {}\n", folder_, summary.index.seed,
+                    summary.index.size, summary.index.sum));
   return kExitDone;
 }
 

@@ -119,10 +119,10 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   std::vector<std::string> hashes;
   for (const std::string& certificate : certificates) {
     hashes.push_back(sha256_of_file(certificate));
-    write_output("-", "checked    certificate sha256 " + hashes.back() + "\n");
+    print("checked    certificate sha256 " + hashes.back() + "\n");
   }
   const std::string scene = out.digest();
-  write_output("-", "checked    scene       sha256 " + scene + "\n");
+  print("checked    scene       sha256 " + scene + "\n");
   std::fflush(stdout);
 
   std::string path = program();

@@ -327,37 +327,39 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
     out.insert(out.size() - 1, line);
   const BenchRow* best = row_of_boxes(result);
   Table table("llrrrrrrrrrrrrrr");
-  table.add({"", "device", "ms", "low", "high", "n", "cold", "setup", "build", "find", "exact",
-             "candidates", "pairs", "MiB", result.fastest_peer ? "x fastest" : "",
-             best ? "x boxes" : ""});
+  table.add({"", "device", "ms", "low", "high", "n", result.fastest_peer ? "x fastest" : "",
+             best ? "x boxes" : "", "pairs", "candidates", "MiB", "cold", "setup", "build", "find",
+             "exact"});
   for (const BenchRow& row : result.rows) {
     const std::optional<double> ratio = ratio_to_fastest(result, row);
     std::vector<std::string> cells = time_cells(row);
     cells.insert(cells.begin() + 1, row.device);
-    cells.insert(cells.end(),
-                 {ms_text(row.setup_ms), ms_text(row.build_ms), ms_text(row.candidates_ms),
-                  ms_text(row.exact_ms), grouped(row.candidate_pairs), grouped(row.pairs),
-                  mib_text(row), ratio ? fmt::format("{:.3f}", *ratio) : "",
-                  best ? fmt::format("{:.2f}", row.total_ms.median / best->total_ms.median) : ""});
+    cells.insert(cells.end() - 1,
+                 {ratio ? fmt::format("{:.3f}", *ratio) : "",
+                  best ? fmt::format("{:.2f}", row.total_ms.median / best->total_ms.median) : "",
+                  grouped(row.pairs), grouped(row.candidate_pairs), mib_text(row)});
+    cells.insert(cells.end(), {ms_text(row.setup_ms), ms_text(row.build_ms),
+                               ms_text(row.candidates_ms), ms_text(row.exact_ms)});
     table.add(cells);
   }
   out += table.text();
   for (const BenchContestant& c : result.left_out)
     out += fmt::format("left out: {}: {}\n", c.name, c.left_out);
   out +=
-      "\nms: from the triangles to the sorted pairs, median of n runs; low, high: its interval by "
-      "the bootstrap,\nwhich holds the true median with 95 % from 9 independent runs on, with 94 % "
-      "for 5 and 75 % for 3;\ncold: the first run; setup: once, not counted; build, find, exact: "
-      "its "
-      "parts; MiB: resident at the peak\nof the cold run, beyond before.\n";
+      "\nms: from the triangles to the sorted pairs, median of n runs; low, high: its interval by\n"
+      "the bootstrap, which holds the true median with 95 % from 9 independent runs on, with 94 %\n"
+      "for 5 and 75 % for 3; cold: the first run; setup: once, not counted; build, find, exact: "
+      "its\n"
+      "parts; MiB: resident at the peak of the cold run, beyond before.\n";
   if (has_self(scene)) {
     out +=
         "candidates, pairs: without neighbours (farcull help terms); farcull run --self counts "
         "those too.\n";
   }
   if (result.fastest_peer) {
-    out += fmt::format("x fastest: of the fastest peer, {}, in this run.\n",
-                       result.rows[*result.fastest_peer].name);
+    out += fmt::format(
+        "x fastest: ms over that of the fastest peer, {}, in this run; lower is faster.\n",
+        result.rows[*result.fastest_peer].name);
   }
   return out;
 }

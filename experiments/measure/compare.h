@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/method/run.h"
+#include "experiments/record/tables.h"
 
 namespace farcull {
 
@@ -16,9 +17,12 @@ struct CompareArguments {
   std::optional<std::string> methods;
   /// px, with commas, for methods that draw.
   std::optional<std::string> resolutions;
-  std::string offsets = "obb";  // for far
-  bool self = false;            // every object was made to be tested against itself
-  std::string repeat = "1";
+  std::string offsets = "obb";   // for far
+  std::string radii = "budget";  // for far, with commas, as parse_radius() takes each
+  bool self = false;             // every object was made to be tested against itself
+  /// Runs of each; empty: kUsualRepeats, and one of what takes longer than kLongMs.
+  std::optional<std::string> repeat;
+  bool risk = true;  // count the pairs at risk of far
   /// Views, device, clearance and seed are for all methods; rounds, clear, level and conservative
   /// for the methods that take them.
   RunOptions options;
@@ -27,19 +31,24 @@ struct CompareArguments {
 struct Comparison {
   std::vector<std::vector<Record>> runs;  // per method and resolution: its repeats, in order
 
-  /// The run with the median of cull + exact time, for each group of repeats.
-  std::vector<Record> median_records() const;
+  /// For each group of repeats the run with the median of cull + exact time, and the spread.
+  std::vector<Compared> rows() const;
 };
+inline constexpr int kUsualRepeats = 3;
+inline constexpr double kLongMs = 10'000;
 
 /// Throws Error naming the option for bad arguments, before a scene is read.
 void validate(const CompareArguments& arguments);
 
-/// Runs every method that draws at every resolution (far with every offset), and the others once,
-/// each `repeat` times. Throws Error for bad arguments, and before the first run for a resolution
-/// beyond the device.
+/// Runs every method that draws at every resolution (far with every offset and radius), and the
+/// others once, each `repeat` times. If radii of far with and without a guarantee are compared, all
+/// of them draw the same stages (RunOptions::no_shortcuts). Throws Error for bad arguments, and
+/// before the first run for a resolution beyond the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 
 nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison);
+/// The table as CSV, with the objects and triangles that culling left, and the parts of the time.
+std::string comparison_csv(const Scene& scene, const std::vector<Compared>& rows);
 
 }  // namespace farcull

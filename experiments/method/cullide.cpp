@@ -18,6 +18,11 @@
 namespace farcull {
 namespace {
 
+// If a method is guaranteed, leaving stages out can only cost time, never lose a pair.
+bool is_thrifty(const RunOptions& options) {
+  return guaranteed(options) && !options.full && !options.no_shortcuts;
+}
+
 // The offsets in the order in which they are tried, each on what the previous one left.
 std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
@@ -25,7 +30,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (options.offset == "obb") return {obb_fattener()};
   // A new offset goes here.
   // Without a guarantee, comparing boxes first would add one more way to miss pairs.
-  if (options.full || !guaranteed(options)) return {minkowski_fattener()};
+  if (!is_thrifty(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
 }
 
@@ -38,8 +43,7 @@ Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
 
 CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
   const bool self = tests_self_alone(options.method);
-  // If a method is guaranteed, leaving stages out can only cost time, never lose a pair.
-  const bool thrifty = guaranteed(options) && !options.full;
+  const bool thrifty = is_thrifty(options);
   return {.views = parse_views(views_of(options)),
           .resolution = resolution_of(options),
           .fattener = {},

@@ -59,7 +59,9 @@ struct RunOptions {
                                          // in_order() gives them
   std::uint64_t limit = 0;  // only the first pairs that collide, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
-  bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
+  bool full = false;          // leave nothing out that the scene does not need (docs/methods.md)
+  bool no_shortcuts = false;  // far draws all that a radius without a guarantee has to draw, so
+                              // that radii can be compared; `full` leaves out even less
   std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: it is not random
   // The value of a new option goes here.
 };

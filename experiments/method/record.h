@@ -95,6 +95,13 @@ struct Promise {
   std::optional<DeviceVerdict> verdict;  // of that device; empty if the guarantee needs no device
 };
 
+/// Colliding pairs that FAR loses in the same scene, views and pixels with 0.9 of the budget
+/// radius, and without a ball. Where both are 0, a run without misses says nothing about the
+/// radius.
+struct PairsAtRisk {
+  std::uint64_t at_risk = 0, at_risk_bare = 0;
+};
+
 struct Record {
   RunOptions options;
   std::string scene_hash;
@@ -114,6 +121,7 @@ struct Record {
   std::optional<Accounting> verification;        // with kExamples examples
   std::optional<ContactCounts> missed;  // how many missed pairs touch, and how many penetrate; with
                                         // a verification, without a clearance
+  std::optional<PairsAtRisk> risk;      // if pairs_at_risk() was asked
   RunTimes ms;
   FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
 };

@@ -338,6 +338,25 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   return record;
 }
 
+std::optional<PairsAtRisk> pairs_at_risk(const Scene& scene, const Record& record, Session& session,
+                                         const Progress& progress) {
+  if (!fattens(record.options.method) || !guaranteed(record.options) || !record.found.drew() ||
+      !record.verification || !record.complete)
+    return std::nullopt;
+  const auto pairs = [](const Record& of) {
+    return of.collisions.pairs.size() + of.collisions.neighbour_pairs.size();
+  };
+  const auto lost_at = [&](double factor) {
+    RunOptions smaller = record.options;
+    smaller.radius = {.published = false, .factor = factor};
+    smaller.verify = false;
+    smaller.contacts = ContactDetail::none;
+    const Record found = run(scene, smaller, session, progress, {.answer_only = true});
+    return pairs(record) + record.verification->false_negatives - pairs(found);
+  };
+  return PairsAtRisk{.at_risk = lost_at(0.9), .at_risk_bare = lost_at(0)};
+}
+
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit) {
   if (limit > 0) return decide_first(scene, candidates, limit, question);

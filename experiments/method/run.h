@@ -52,6 +52,12 @@ struct RunUse {
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
+/// Runs FAR twice more, with smaller balls, without accounting: in all up to five times the cull
+/// time of the record, since a radius without a guarantee leaves no view out. Empty unless the
+/// record is of `far` with a guarantee, drew, and accounts for all pairs.
+std::optional<PairsAtRisk> pairs_at_risk(const Scene& scene, const Record& record, Session& session,
+                                         const Progress& progress = {});
+
 /// Decides candidates by exact predicates: all of them, or until `limit` of them collide (if > 0).
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit);

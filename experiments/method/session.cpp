@@ -39,15 +39,13 @@ CanvasDevice Session::choose_device() {
   const std::string named = spelled("{device} ") + device_;
   if (is_cpu(device_)) return {true, named};
   if (!device_.empty()) return {false, named};
-  const std::string rule = spelled("no {device}: GL where hardware answers, else the CPU; ");
   try {
-    if (!GlContext::hardware_listed()) return {true, rule + "EGL lists no hardware device"};
-    if (context().info().kind != "hardware")
-      return {true, rule + "no hardware device could be opened"};
-    if (!verdict().holds) return {true, rule + "the hardware failed a probe"};
-    return {false, rule + "hardware answered"};
+    if (!GlContext::hardware_listed()) return {true, "no GPU was found"};
+    if (context().info().kind != "hardware") return {true, "no GPU could be opened"};
+    if (!verdict().holds) return {true, "the GPU failed a probe"};
+    return {false, "a GPU answered"};
   } catch (const Error& error) {
-    return {true, rule + error.where + ": " + error.reason};
+    return {true, "no GPU can be used: " + error.where + ": " + error.reason};
   }
 }
 

@@ -173,9 +173,8 @@ std::string check_text(const Scene& scene, const SceneCheck& check) {
   const CheckResult& result = check.result;
   std::string out = verdict_text(scene, check);
   if (const Certificate::Claims& found = result.found; !result.list_sha256.empty()) {
-    out += fmt::format("list       SHA-256 of the pairs that {}{}: {}\n",
-                       check.clearance == 0 ? "meet" : "are within it",
-                       scene.ignored.empty() ? "" : ", of ignored objects too", result.list_sha256);
+    out += fmt::format("list       {} (SHA-256 of the pairs{})\n", result.list_sha256,
+                       scene.ignored.empty() ? "" : ", of ignored objects too");
     if (check.differences) out += list_text(scene, check);
     out += not_asked_line(scene);
     out += fmt::format("boxes      {} {}: {} separated, {} neighbours, {} {}\n",

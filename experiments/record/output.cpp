@@ -262,6 +262,10 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"decided_pairs", record.decided},
       {"complete", record.complete},
       {"verification", verification_json(scene, record)},
+      {"at_risk", json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk)},
+      {"at_risk_bare",
+       json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk_bare)},
+      {"no_shortcuts", o.no_shortcuts},
       {"time_ms", json_of(record.ms)},
       {"seed", json_of(o.seed)},
       {"commit", FARCULL_COMMIT}};
@@ -446,9 +450,11 @@ std::string decision_of(const Stage& stage) {
 
 std::string plan_table(const Scene& scene, const Plan& plan) {
   Table table("lll");
-  table.add({"stage", "", "why"});
-  for (const Stage& stage : plan.stages())
-    table.add({name_of(stage), decision_of(stage), reason_of(stage)});
+  table.add({"stage", "done", "why"});
+  for (const Stage& stage : plan.stages()) {
+    const std::string decision = decision_of(stage);
+    table.add({name_of(stage), decision == "runs" ? "yes" : decision, reason_of(stage)});
+  }
   const RunOptions& options = plan.options;
   const auto* const work = std::get_if<DrawPlan>(&plan.work);
   const bool idle = work && work->fatteners.empty();

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "core/gl/base/context.h"
 #include "core/scene/scene.h"
@@ -17,23 +16,9 @@ namespace {
 
 constexpr std::size_t kExamplesShown = 5;
 
-// Breaks lines at blanks, so that each has at most 80 columns where its words allow it. The rest of
-// a line stands below its text, which begins in column 11.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kColumns = 80, kIndent = 11;
-  std::string out;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    while (line.size() > kColumns) {
-      std::size_t at = line.rfind(' ', kColumns);
-      if (at == std::string::npos || at <= kIndent) at = line.find(' ', kColumns);
-      if (at == std::string::npos) break;
-      out += line.substr(0, at) + "\n";
-      line = std::string(kIndent, ' ') + line.substr(at + 1);
-    }
-    out += line + "\n";
-  }
-  return out;
+// The lines of an answer, which are shorter than those of tables.
+std::string answer(const std::string& text) {
+  return wrapped(text, std::min<std::size_t>(80, text_columns()));
 }
 
 std::string scene_line(const Scene& scene, const Record& record) {
@@ -61,7 +46,7 @@ std::string place_text(const Scene& scene, std::uint32_t triangle) {
 
 std::string not_drawn_text(const Record& r) {
   if (!draws(r.options.method) || r.found.drew()) return "";
-  return r.found.views().empty() ? kNothingToDraw : "no view could be drawn";
+  return r.found.views().empty() ? kNothingToDraw : "too fine for pixels, so all is kept";
 }
 
 std::string folded_text(const Scene& scene) {
@@ -97,7 +82,7 @@ std::string device_text(const Record& record) {
     return fmt::format("cpu, lanes of {}, {} depth bits: {}", record.found.device.lanes,
                        record.found.device.depth_bits, record.found.device.note);
   }
-  if (!record.found.device.gl) return "none: " + no_device_reason(record.trace);
+  if (!record.found.device.gl) return "none needed: " + no_device_reason(record.trace);
   const GlInfo& gl = *record.found.device.gl;
   std::string warnings = gl.reset_detection ? "" : "; it does not report when it resets";
   if (const std::string risk = risk_of_threads(gl.renderer); !risk.empty()) warnings += "; " + risk;
@@ -279,6 +264,17 @@ std::string missed_text(const Record& record) {
   return record.verification ? grouped(record.verification->false_negatives) : "not verified";
 }
 
+// What a run of far without misses says about the radius; empty if that was not asked.
+std::string risk_line(const Record& record) {
+  if (!record.risk) return "";
+  const auto& [smaller, bare] = *record.risk;
+  return fmt::format("at risk    {} with 0.9 of the radius, {} without a ball{}\n",
+                     counted(smaller, "pair", "pairs"), grouped(bare),
+                     smaller > 0 ? ""
+                     : bare > 0  ? ": this tests that a ball is needed, not how large it has to be"
+                                 : ": this run does not test the radius");
+}
+
 // The kinds of contact that occur, as in "12 crossing + 3 touch-vertex"; empty if not asked for.
 std::string contacts_line(const Record& record) {
   if (record.options.contacts == ContactDetail::none) return "";
@@ -384,7 +380,7 @@ std::string not_asked_text(const Scene& scene) {
 
 std::string not_asked_line(const Scene& scene, const std::string& options) {
   const std::string text = not_asked_text(scene);
-  return text.empty() ? "" : "untested   " + text + " (add " + options + ")\n";
+  return text.empty() ? "" : "not asked  " + text + " (add " + options + ")\n";
 }
 
 std::string run_heading(const Scene& scene, const Record& record) {
@@ -395,7 +391,7 @@ std::string run_heading(const Scene& scene, const Record& record) {
   if (record.callers != kProved)
     out +=
         "arithmetic " + to_string(record.used) + "; the caller " + to_string(record.callers) + "\n";
-  return wrapped(out);
+  return answer(out);
 }
 
 std::string verdict_text(const Accounting& accounting) {
@@ -433,8 +429,8 @@ std::string run_answer(const Scene& scene, const Record& record, const std::stri
       record.ms.setup, record.ms.cull, record.ms.exact,
       record.ms.contacts > 0 ? fmt::format("; contacts {:.1f} more", record.ms.contacts) : "",
       record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
-  return wrapped(out) + verdict + wrapped(accounting_lines(scene, record)) +
-         run_heading(scene, record) + wrapped(time);
+  return answer(out) + verdict + answer(accounting_lines(scene, record) + risk_line(record)) +
+         run_heading(scene, record) + answer(time);
 }
 
 std::string run_details(const Record& record) {
@@ -447,62 +443,86 @@ std::string run_details(const Record& record) {
                      counted(record.found.triangle_count, "triangle", "triangles"),
                      counted(record.found.count, "candidate pair", "candidate pairs"));
   out += work_line(record) + device_work_line(record);
-  return wrapped(out) + "\n" + stage_table(record.trace);
+  return answer(out) + "\n" + stage_table(record.trace);
 }
 
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict) {
   return run_answer(scene, record, verdict) + run_details(record);
 }
 
-std::string comparison_table(const Scene& scene, const std::vector<Record>& records) {
-  if (records.empty()) return "";
-  const auto drawn = std::find_if(records.begin(), records.end(), [](const Record& r) {
-    return r.found.device.gl && draws(r.options.method);
-  });
-  const Record* reference = nullptr;
-  for (const Record& record : records) {
-    if (!culls(record.options.method)) reference = &record;
+std::string comparison_table(const Scene& scene, const std::vector<Compared>& rows) {
+  if (rows.empty()) return "";
+  const auto some = [&](auto&& is) {
+    return std::ranges::any_of(rows, [&](const Compared& row) { return is(row.record); });
+  };
+  const auto drawn =
+      std::ranges::find_if(rows, [](const Compared& row) { return row.record.found.drew(); });
+  const Compared* reference = nullptr;
+  for (const Compared& row : rows) {
+    if (!culls(row.record.options.method)) reference = &row;
   }
+  const auto ms_of = [](const Record& r) { return r.ms.cull + r.ms.exact; };
   const bool self = has_self(scene);
-  std::string out = scene_line(scene, records[0]);
-  out += "device     " + device_text(drawn != records.end() ? *drawn : records[0]) + "\n";
-  out += not_asked_line(scene) + "\n";
-  Table table("llrrrrrrrrrr");
-  table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
-             self ? "+ neighbours" : "", "missed", "cull ms", "exact ms",
-             reference ? "x exact" : ""});
-  for (const Record& r : records) {
-    const double ratio =
-        reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
+  const bool offsets = some([](const Record& r) { return r.options.offset != "obb"; });
+  const bool radii =
+      some([](const Record& r) { return radius_text(r.options.radius) != "budget"; });
+  const bool risks = some([](const Record& r) { return r.risk.has_value(); });
+  Table table("lllrrrrrrrr");
+  table.add({"method", offsets ? "offset" : "", radii ? "radius" : "", "px", "candidates",
+             self ? "colliding + neighbours" : "colliding", "missed", risks ? "at risk" : "", "ms",
+             "least - most", reference ? "x exact" : ""});
+  for (const Compared& row : rows) {
+    const Record& r = row.record;
     const std::string form = form_text(r.options);
-    table.add({to_string(r.options.method) + (form.empty() ? "" : " " + form),
-               r.found.drew() && fattens(r.options.method) ? r.options.offset : "-",
-               resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
-               grouped(r.found.count), grouped(r.collisions.pairs.size()),
-               self ? "+ " + grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
-               fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
-               reference ? fmt::format("{:.2f}", ratio) : ""});
+    const auto if_fattened = [&](bool shown, const std::string& text) -> std::string {
+      return !shown ? "" : fattens(r.options.method) && r.found.drew() ? text : "-";
+    };
+    table.add(
+        {to_string(r.options.method) + (form.empty() ? "" : " " + form),
+         if_fattened(offsets, r.options.offset), if_fattened(radii, radius_text(r.options.radius)),
+         resolution_text(r), grouped(r.found.count),
+         grouped(r.collisions.pairs.size()) +
+             (self ? " + " + grouped(r.collisions.neighbour_pairs.size()) : ""),
+         missed_text(r),
+         r.risk  ? grouped(r.risk->at_risk) + " / " + grouped(r.risk->at_risk_bare)
+         : risks ? "-"
+                 : "",
+         fmt::format("{:.1f}", ms_of(r)), fmt::format("{:.1f} - {:.1f}", row.least_ms, row.most_ms),
+         reference ? fmt::format("{:.2f}", ms_of(r) / ms_of(reference->record)) : ""});
   }
-  out += table.text();
+  std::string out = scene_line(scene, rows[0].record) + "device     " +
+                    device_text(drawn != rows.end() ? drawn->record : rows[0].record) + "\n" +
+                    not_asked_line(scene) + "\n" + table.text();
   out +=
-      "\nobjects, triangles: kept by culling; candidates: pairs of kept triangles whose boxes "
-      "overlap;\n"
-      "missed: colliding pairs that culling lost, found by exact predicates over all pairs";
-  out += self ? ";\n+ neighbours: colliding pairs of triangles of one object that share a vertex "
-                "position.\n"
-              : ".\n";
-  if (std::ranges::any_of(records, [](const Record& r) { return !not_drawn_text(r).empty(); }))
-    out += "-: a method that draws had nothing left to draw, or no view that it could draw.\n";
-  if (std::ranges::any_of(records, [](const Record& r) {
+      "\ncandidates: pairs that culling left; missed: colliding pairs that it lost, found by "
+      "exact\n"
+      "predicates over all pairs";
+  if (self) out += "; neighbours: of one object, and share a vertex position";
+  out += fmt::format(
+      ".\nms: culling and exact tests, median of {}, and the least and the most; the graphics\n"
+      "context is set up once and not counted.\n",
+      counted(rows[0].runs, "run", "runs"));
+  if (risks) {
+    out +=
+        "at risk: pairs that far loses with 0.9 of its radius / without a ball. Where none is "
+        "lost, "
+        "0 missed\ndoes not show that the radius is large enough (--no-risk: not counted, takes "
+        "less "
+        "time).\n";
+  }
+  if (some([](const Record& r) { return r.options.no_shortcuts; }))
+    out +=
+        "far leaves no stage out here, so that all radii draw the same; alone it takes less "
+        "time.\n";
+  if (some([](const Record& r) { return !not_drawn_text(r).empty(); }))
+    out +=
+        "-: a method that draws had nothing left to draw, or the scene is too fine for pixels.\n";
+  if (some([](const Record& r) {
         return draws(r.options.method) && !fattens(r.options.method) && r.options.rounds == 0;
       }))
     out += "cullide: repeated until a round changes nothing; --rounds 1 is the form of 2003.\n";
-  if (reference) {
-    out +=
-        "x exact: cull + exact ms over those of the method exact in this run\n"
-        "(a join of all boxes, exact predicates); the graphics context is set up once\n"
-        "and not counted.\n";
-  }
+  if (reference)
+    out += "x exact: ms over that of the method exact (boxes of all triangles); lower is faster.\n";
   return out;
 }
 

@@ -81,8 +81,13 @@ std::string verdict_text(const Accounting& accounting);
 /// The number of pairs, and how many are in each class: two lines.
 std::string accounting_sum(const Accounting& accounting);
 
-/// Several runs of one scene, one line for each. If a run was repeated, its times are medians, and
-/// the spread is in the JSON.
-std::string comparison_table(const Scene& scene, const std::vector<Record>& records);
+/// A method in a comparison.
+struct Compared {
+  Record record;                     // the run with the median time, cull + exact
+  double least_ms = 0, most_ms = 0;  // of all its runs
+  std::size_t runs = 1;
+};
+/// Several methods on one scene, one line for each.
+std::string comparison_table(const Scene& scene, const std::vector<Compared>& rows);
 
 }  // namespace farcull

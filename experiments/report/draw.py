@@ -217,10 +217,11 @@ class Drawer:
     def __init__(self, figure):
         self.figure, self.looks, panels = figure, looks_of(figure), figure.panels
         columns = columns_for(figure)
-        self.key = [] if figure.named else self.handles()
+        labelled = any(s.labels for panel in panels for s in panel.series)
+        self.key = [] if figure.named or labelled else self.handles()
         widest = max([0] + [text_width(line.get_label()) for line in self.key])
         single = len(panels) == 1 and not panels[0].strip
-        figure.narrow = figure.named or single and widest + 34 < SINGLE - 8
+        figure.narrow = figure.named or single and widest + 34 < SINGLE - 8 and not labelled
         self.width = SINGLE if figure.narrow else DOUBLE
         self.high = 118.0 if figure.named else 190.0 if single and not figure.narrow else (0, 150.0, 150.0, 105.0, 80.0)[columns]
         if len(panels) > 2 * columns:
@@ -251,6 +252,36 @@ class Drawer:
         self.canvas.set_layout_engine("none")  # the layout is the same for each kind of file
         for ax in self.canvas.axes:  # the solver's last digits differ from run to run
             ax.set_position([round(at, 5) for at in ax.get_position(original=True).bounds])
+        for ax, panel in zip(self.canvas.axes if labelled else [], panels):
+            self.label(ax, panel)
+
+    def label(self, ax, panel):
+        """Writes the labels beside their points, the longest first, each where it covers least: no other label, no point,
+        and nothing beyond the axes."""
+        scale = 72 / self.canvas.dpi
+        inside = [at * scale for at in ax.bbox.extents]
+        points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
+                  for *at, text in zip(s.x, s.y, s.labels or [""] * len(s.x)) if len(finite(at)) == 2]
+        taken = [(x - 3, y - 3, x + 3, y + 3) for *_, x, y in points]
+        for s in panel.series:  # and the bars
+            for low, high, y in zip(s.x_low, s.x_high, s.y):
+                (left, at), (right, _) = (ax.transData.transform((x, y)) * scale for x in (low, high))
+                taken.append((left, at - 2, right, at + 2))
+
+        def covered(box):
+            def both(a, b):
+                return max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1]))
+            return sum(both(box, other) for other in taken) + (box[2] - box[0]) * (box[3] - box[1]) - both(box, inside)
+
+        for name, text, at, x, y in sorted(points, key=lambda point: -len(point[1])):
+            wide = text_width(text)
+            places = [(x + dx, y + dy) for far in (5, 12, 20, 30, 42) for dx, dy in (
+                (-wide / 2, far), (-wide / 2, -far - 6), (far, -3), (-far - wide, -3), (far, far), (-far - wide, far))]
+            low, base = min(places, key=lambda at: covered((at[0], at[1] - 2, at[0] + wide, at[1] + 7)))
+            taken.append((low, base - 2, low + wide, base + 7))
+            if text:
+                ax.annotate(text, at, (low - x, base - y), "data", "offset points", color=self.looks[name].colour,
+                            fontsize=8, annotation_clip=False, in_layout=False)
 
     def handles(self):
         """The lines of the key: of each series, then of each mark."""

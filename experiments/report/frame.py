@@ -59,6 +59,7 @@ class Series:
     x_high: list = field(default_factory=list)
     y_low: list = field(default_factory=list)
     y_high: list = field(default_factory=list)
+    labels: list = field(default_factory=list)  # texts beside the points, in place of a key; as many as x, or none
 
 
 @dataclass

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,21 @@ inline std::string python() {
   return named != nullptr && *named != '\0' ? named
          : ::access(kUsual, X_OK) == 0      ? kUsual
                                             : "python3";
+}
+
+/// The folder of the Python program that writes reports and figures: the one that FARCULL_REPORT
+/// names, the one installed beside this program, or that of the source tree.
+inline std::string report_folder(const std::string& of_sources) {
+  namespace fs = std::filesystem;
+  const char* const named = std::getenv("FARCULL_REPORT");
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  const fs::path installed = self.parent_path().parent_path() / "share/farcull/report";
+  const std::string folder = named != nullptr && *named != '\0' ? named
+                             : fs::exists(installed)            ? installed.string()
+                                                                : of_sources;
+  if (!fs::exists(folder + "/__main__.py"))
+    throw Error(folder, "the program that writes reports is not there", "install farcull again");
+  return folder;
 }
 
 /// Replaces this process by Python with these arguments. Throws Error with `remedy` if there is

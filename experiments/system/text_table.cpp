@@ -1,4 +1,4 @@
-// Lays out tables: the width of a column is that of its widest cell. Colours are ANSI escape
+// Breaks lines and lays out tables. Widths count characters of UTF-8. Colours are ANSI escape
 // sequences, which every terminal except a dumb one understands.
 #include "experiments/system/text_table.h"
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string_view>
 
 namespace farcull {
@@ -20,24 +21,83 @@ std::size_t width_of(const std::string& text) {
 
 }  // namespace
 
-std::string Table::text() const {
-  std::vector<std::size_t> widths(alignment_.size(), 0);
-  for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
-  }
+std::size_t text_columns(std::FILE* stream) {
+  const unsigned columns = terminal_columns(stream);
+  return columns == 0 ? 100 : std::max(columns, 40u);
+}
+
+std::string wrapped(const std::string& text, std::size_t columns, std::size_t indent) {
+  constexpr std::size_t kLongestLabel = 24;
   std::string out;
-  for (const auto& row : rows_) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(widths[i] - width_of(row[i]), ' ');
-      if (widths[i] == 0) continue;
-      if (!line.empty()) line += "  ";
-      line += alignment_[i] == 'l' ? row[i] + pad : pad + row[i];
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); out += line + "\n") {
+    const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
+    const std::size_t gap = std::min(line.find("  ", first), line.size());
+    const std::size_t after = line.find_first_not_of(' ', gap);
+    const std::size_t below = std::max(indent, after <= kLongestLabel ? after : first);
+    while (width_of(line) > columns) {
+      std::size_t at = line.rfind(' ', columns);
+      if (at == std::string::npos || at <= below) at = line.find(' ', std::max(columns, below + 1));
+      if (at == std::string::npos) break;
+      out += line.substr(0, line.find_last_not_of(' ', at) + 1) + "\n";
+      line = std::string(below, ' ') + line.substr(at + 1);
     }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + "\n";
   }
   return out;
+}
+
+std::string Table::text(std::size_t columns) const {
+  constexpr std::size_t kGap = 2, kLeastWrapped = 24, kNoteIndent = 6;
+  const std::size_t count = alignment_.size();
+  const auto is_note = [&](const auto& row) { return row.size() == 1 && count > 1; };
+  std::vector<std::size_t> widths(count, 0);
+  for (const auto& row : rows_) {
+    for (std::size_t i = 0; i < row.size() && !is_note(row); ++i)
+      widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::size_t total = 0, widest = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    total += widths[i] == 0 ? 0 : widths[i] + (total == 0 ? 0 : kGap);
+    if (alignment_[i] == 'l' && (widest == count || widths[i] > widths[widest])) widest = i;
+  }
+  if (total > columns && widest < count && total - widths[widest] + kLeastWrapped <= columns)
+    widths[widest] = columns - (total - widths[widest]);
+
+  std::string out;
+  const auto add_row = [&](const std::vector<std::string>& row, std::size_t from, std::size_t to) {
+    std::vector<std::vector<std::string>> cells(count);
+    std::size_t height = 1;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      std::istringstream lines(i == widest ? wrapped(row[i], widths[i]) : row[i]);
+      for (std::string line; std::getline(lines, line);) cells[i].push_back(line);
+      height = std::max(height, cells[i].size());
+    }
+    for (std::size_t k = 0; k < height; ++k) {
+      std::string line;
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (widths[i] == 0 || (i > 0 && (i < from || i >= to))) continue;
+        const std::string cell = k < cells[i].size() ? cells[i][k] : "";
+        const std::string pad(widths[i] - std::min(widths[i], width_of(cell)), ' ');
+        line += (line.empty() ? "" : std::string(kGap, ' ')) +
+                (alignment_[i] == 'l' ? cell + pad : pad + cell);
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      out += line + "\n";
+    }
+  };
+  for (std::size_t from = std::min<std::size_t>(count, 1), to = from;; from = to) {
+    std::size_t used = count > 0 ? widths[0] : 0;
+    for (; to < count && (to == from || used + kGap + widths[to] <= columns || widths[to] == 0);
+         ++to)
+      used += widths[to] == 0 ? 0 : kGap + widths[to];
+    if (from > 1) out += "\n";
+    for (const auto& row : rows_) {
+      if (!is_note(row)) add_row(row, from, to);
+      if (is_note(row) && from <= 1)
+        out += wrapped(std::string(kNoteIndent, ' ') + row[0], columns);
+    }
+    if (to >= count) return out;
+  }
 }
 
 bool takes_colour(int stream) {

@@ -17,7 +17,7 @@ rows(r"""
 $ grep -qx '  "list_sha256": "{sha}",' exact.json
 $ grep -qx '  "list_sha256": "{missed}",' c.json
 0 a certificate of exact | check exact.json two-spheres --pairs pairs.csv
-  | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no others$ | ^list .*{sha}$
+  | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no others$ | ^list       {sha} 
   | pairs\.csv is this list: [0-9,]+ rows$ | about the scene and not about the run | ^  which pairs the run kept | ns per pair
 1 another list | check exact.json two-spheres --pairs missed.csv
   | #0 ^not proved: missed\.csv is another list: a pair is missing$
@@ -54,7 +54,7 @@ rows(r"""
 pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
 good.obj << {T}; f 1 2 3
 away.obj << v 50 0 0; v 51 0 0; v 50 1 0; f 1 2 3
-0 run | run pierced.obj away.obj --method boxes --certificate p.json --json r.json | {unasked} | ^untested .*\(add --self\)$
+0 run | run pierced.obj away.obj --method boxes --certificate p.json --json r.json | {unasked} | ^not asked .*\(add --self\)$
   | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":2,"pairs":1,"which":\[\[0,1\]\]\}
   | @p.json ~ "not_asked":\{"objects":2,"pairs":1\}
 # One object leaves nothing to test. That is an error that names the command which tests it.
@@ -73,13 +73,13 @@ bad all ignored for {command} | SCENE: nothing to test: all 1 pair of objects ar
 0 two objects | verify pierced.obj good.obj | ^verified:
 0 check | check p.json pierced.obj away.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
 $ cp pierced.obj pierced0.obj
-0 frames | run pierced%d.obj away.obj --method boxes --frames 1 | ^untested +1 pair of triangles inside pierced
+0 frames | run pierced%d.obj away.obj --method boxes --frames 1 | ^not asked +1 pair of triangles inside pierced
 0 plan | plan pierced.obj away.obj --method boxes
-  | ^untested   1 pair of triangles inside pierced,
-0 asked | run pierced.obj --method boxes --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! untested
+  | ^not asked  1 pair of triangles inside pierced,
+0 asked | run pierced.obj --method boxes --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! not asked
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
-     unasked=r'^untested +1 pair of triangles inside pierced, away \(')
+     unasked=r'^not asked +1 pair of triangles inside pierced, away \(')
 
 # ---- outputs that are inputs
 

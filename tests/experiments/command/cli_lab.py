@@ -6,11 +6,11 @@ number of cases; the exit status is 1 if any failed. With FARCULL_VERBOSE set, c
 rows(TABLE, NAME=VALUE...) runs a table, a case per line. A line that begins with a space goes on with the line
 before it; # begins a comment. Fields are between " | ":
    bad CASE | MESSAGE | ARGUMENTS          a bad input: status 2 within five seconds of CPU time, nothing on
-                                           stdout, one line on stderr, "farcull: ", what matches MESSAGE, and a
+                                           stdout, one message on stderr, "farcull: ", what matches MESSAGE, and a
                                            remedy after a semicolon; all files stay as they are
    each MESSAGE | ARGUMENTS | MORE | ...   a bad input for each MORE, which are further arguments; {0} in MESSAGE is
                                            their first word
-   STATUS CASE | ARGUMENTS | CHECK...      an answer: this status; as many lines on stderr as there are checks @err;
+   STATUS CASE | ARGUMENTS | CHECK...      an answer: this status; as many messages on stderr as there are checks @err;
                                            no control characters
    FILE << TEXT                            writes a file, with a line end for each "; "
    $ COMMAND                               a command of bash that has to succeed; $farcull is the program
@@ -63,6 +63,11 @@ status, out = 0, OUT  # of the last launch; out is the file that stdout went to
 def read(path):
     with open(path, encoding='utf-8', errors='surrogateescape', newline='\n') as file:
         return file.read()
+
+
+def read_err():
+    """stderr, with the lines of each message joined again."""
+    return re.sub(r'\n {9}(?=\S)', ' ', read(ERR))
 
 
 def write(path, text):
@@ -163,7 +168,7 @@ def bad(name, message, words, **limits):
     """A bad input, which also leaves the folder as it was."""
     before = snapshot()
     launch(words, **{'cpu': CPU_SECONDS, **limits})
-    said, after = read(ERR), snapshot()
+    said, after = read_err(), snapshot()
     changed = sorted(path for path in {*before, *after} if before.get(path) != after.get(path))
     why = (f'not done after {SECONDS} s' if status == 124
            else f'not done after {CPU_SECONDS} s of CPU time' if status in (-9, -24)
@@ -180,7 +185,7 @@ def bad(name, message, words, **limits):
 def good(name, wanted, words, checks=(), **limits):
     """An answer of this status, and what it says."""
     launch(words, **limits)
-    said = read(ERR)
+    said = read_err()
     lines = sum(check.startswith('@err') for check in checks)
     why = (f'status {status} instead of {wanted}' if status != wanted
            else f'not {lines} lines on stderr' if said.count('\n') != lines
@@ -197,7 +202,7 @@ def expect(name, check):
         return
     file, how, pattern = re.fullmatch(r'(?:@(\S+) )?(! |~ |#-?\d+ )?(.*)', check).groups()
     path = ERR if file == 'err' else file or out
-    lines = read(path).split('\n')[:-1] if os.path.exists(path) else []
+    lines = (read_err() if path == ERR else read(path)).split('\n')[:-1] if os.path.exists(path) else []
     if how == '~ ':
         lines = [re.sub(r'\s', '', ''.join(lines))]
     elif how and how[0] == '#':

@@ -36,12 +36,12 @@ rows(r"""
 0 the default of plan | plan two-spheres | ^default    no --method: boxes[ ]
 0 named | run two-spheres --method boxes --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
 
-0 plan | plan far-apart --method far | far, nothing left to draw$ | ^draw +left out +no two objects' boxes | ^untested +[0-9]
+0 plan | plan far-apart --method far | far, nothing left to draw$ | ^draw +left out +no two objects' boxes | ^not asked +[0-9]
 0 plan of a broad phase | plan far-apart --method far --broad-phase triangles | ^draw +left out +no boxes of two triangles
-0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +runs[ ] | ^verify +left out[ ]
+0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +yes[ ] | ^verify +left out[ ]
 0 plan as JSON | plan two-spheres --method boxes --json - | "decision": "depends"
 0 plan of far inside objects | plan two-spheres --method far --self | ^patches +.*32 patches of at most 320 triangles
-0 far inside a small object | verify folded.obj --method far --self -v | ^patches .*boxes alone$ | promises to miss nothing$
+0 far inside a small object | verify folded.obj --method far --self -v | boxes alone$ | promises to miss nothing$
 
 0 quick-cullide | run crowd --method quick-cullide {small} --json - | "draws_saved": [1-9] | "promises": false
 0 s-cullide | run folded.obj --method s-cullide --self {small} | ^method     s-cullide at 64 px
@@ -56,7 +56,7 @@ rows(r"""
 0 plan without | plan crowd:60 --method cullide --conservative | ^misses +not predicted: conservative rasterization
 0 misses as JSON | plan crowd:60 --method cullide --json - | "misses": \{
 0 compare forms | compare two-spheres --methods far,cullide,exact --resolutions 64 --rounds 1 --level objects
-  --device native | ^cullide --rounds 1 --level objects[ ]
+  --device native | ^cullide --rounds 1[ ]
 0 compare the family | compare two-spheres --methods cullide,quick-cullide,i-collide,exact --resolutions 64
-  --device software | ^i-collide +- +-[ ]
+  --device software | ^i-collide +-[ ]
 """, small='--resolution 64 --device software')

@@ -47,14 +47,24 @@ each {0}: | run | crowd:1 | crowd:400:nan | crowd:400:0.2:1 | crowd::1 | field:1
 each {0}: | doctor | extra | --device nope | --device 99
 bad help of nothing known | nope: no such .*terms | help nope
 bad help of two topics | terms pairs: no such[ ] | help terms pairs
-# Without arguments: the help, and then the message.
-$ "$farcull" >"$out" 2>"$err"; (($? == 2)) && [[ ! -s $out ]] && grep -q '^Usage: farcull' "$err"
-$ tail -n 1 "$err" | grep -q '^farcull: COMMAND: .*; '
+# Without arguments, and before the help: what to do first.
+$ "$farcull" >"$out" 2>"$err"; (($? == 2)) && [[ ! -s $out ]] && tail -n 1 "$err" | grep -q '^farcull --help'
+$ head -n 1 "$err" | grep -q '^Give it two meshes' && "$farcull" --help | head -n 1 | grep -q '^Give it two meshes'
+# What may have been meant. The twins: nothing is like it, or it is no scene.
+bad meshes without a command | good\.obj: .*; try farcull run good\.obj other\.obj --self$ | good.obj other.obj --self
+bad a scene without a command | two-tori@far: .*; try farcull run two-tori@far$ | two-tori@far
+bad a folder without a command | folder: .*; try farcull clash folder$ | folder
+bad a study that is misspelt | acuracy: .*; try farcull experiment accuracy$ | experiment acuracy
+bad {other} without a command | {other}: .*; give one of run, verify,[ ] | {other} two-tori
 # Names as long as the system takes, though a part of the file is written under another name.
 bad a name that is too long | n+: cannot be written: File name too long | run {spheres} --json n{name}
 bad a path that is too long | [./]+x: cannot be written: File name too long | run {spheres} --json {deep}x
 """, **VALUES, name=name, deep=deep, choice=['--offset', '--depth', '--depth-format', '--query'],
-     views=['q', 'x,', '', '0:0:0'], number=['0', '1.5', '', '99999999999999999999'], repeat=['0', '1.5', ''])
+     views=['q', 'x,', '', '0:0:0'], number=['0', '1.5', '', '99999999999999999999'], repeat=['0', '1.5', ''],
+     other=['frobnicate', 'x', 'a.txt'])
+for word, meant in ('runn', 'run'), ('rum', 'run'), ('compar', 'compare'), ('vrify', 'verify'), ('distnace', 'distance'):
+    rows('bad {word} for {meant} | {word}: .*; try farcull {meant} two-tori --self$ | {word} two-tori --self', word=word,
+         meant=meant)
 for long in name, wide:
     rows('0 a long name | run {spheres} --json {long} --pairs {pair} | @{long} "colliding_pairs" | $ rm {long} {pair}',
          **VALUES, long=long, pair='p' + long[1:])
@@ -106,9 +116,9 @@ bad {software0} with OpenGL 3.3 | EGL: .*older than 4\.3
 0 exact without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run two-spheres --method exact
 # What draws does so on the cores of the CPU where no device was asked for, and says why.
 0 far without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent verify {native} --json -
-  | ^    "cpu": "no --device: GL where hardware answers, else the CPU; EGL | ^    "lanes": "[A-Za-z0-9_]+",$
+  | ^    "cpu": "no GPU can be used: EGL | ^    "lanes": "[A-Za-z0-9_]+",$
 0 cullide without libEGL | LD_LIBRARY_PATH={PWD}/broken_egl run two-spheres --method cullide --resolution 64
-  | ^device     cpu, lanes of .*: no --device:
+  | ^device     cpu, lanes of .*: no GPU can be used:
 # The native canvas.
 0 far on {cpu} | verify {native} --device {cpu} --json - | ^    "cpu": "--device {cpu}",$ | ^    "depth_bits": 32$
 0 occlusion on GL | run {native} --device software --query occlusion --json - | ^  "query": "occlusion",$
@@ -209,8 +219,8 @@ $ ! script -qec "env TERM=xterm '$farcull' verify {cullide}" /dev/null </dev/nul
 $ grep -qF $'\e[1;31mNOT verified: ' shown && grep -qF $'\e[1;31mfarcull: cullide at' shown
 $ script -qec "env NO_COLOR=1 TERM=xterm '$farcull' verify two-spheres" /dev/null </dev/null >shown 2>&1
 $ grep -q '^verified: ' shown
-0 compare | compare two-spheres --device software --resolutions 32,64 --json compare.json | ^cullide +- +64[ ] | ^far +obb +64[ ]
-  | ^exact +-[ ] | @compare.json ^  "runs": \[
+0 compare | compare two-spheres --device software --resolutions 32,64 --repeat 1 --json compare.json | ^cullide +64[ ]
+  | ^far +64[ ] | ^exact +-[ ] | @compare.json ^  "runs": \[
 # The JSON has every key, stands alone on stdout, and is JSON: farcull's own reader of scene files refuses it for its
 # keys and not, with a line, for its syntax.
 0 JSON | run {spheres} --json - >record.json | #0 ^\{$ | #-1 ^\}$ | ^  "seed": null,

@@ -77,7 +77,7 @@ rows(r"""
 0 merged | merge r1.json r2.json r3.json -o merged.csv
 0 whole | check t%d.json field:3000 --tiles 3 --pairs merged.csv --json c.json
   | #0 ^proved: these [0-9,]* pairs of the scene are at distance 0.02 or less, and no others$ | ^tile +t3.json, [xyz] from
-  | ^untested +[0-9,]+ pairs of triangles inside [0-9,]+ of [0-9,]+ objects \(add --self\)$
+  | ^not asked +[0-9,]+ pairs of triangles inside [0-9,]+ of [0-9,]+ objects \(add --self\)$
 $ grep -qF "$(sha256sum <merged.csv | cut -c 1-64)" c.json && grep -qF '"verdict": "proved"' c.json
 0 one tile | check t2.json field:3000 --pairs p2.csv | #0 ^proved: of the pairs that belong to the tile, these
 1 another list | check t%d.json field:3000 --tiles 3 --pairs p2.csv | #0 ^not proved: p2\.csv is another list: line

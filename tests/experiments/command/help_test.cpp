@@ -100,11 +100,13 @@ TEST(Help, ExplainsEveryStage) {
 
 TEST(Help, ExplainsEveryLineAndColumnOfATable) {
   Scene scene = load_scene({"two-spheres"});
-  const Record far = record_of(scene, Method::far);
+  Record far = record_of(scene, Method::far);
+  far.risk = PairsAtRisk{.at_risk = 1, .at_risk_bare = 2};
   const std::string table = run_table(scene, far, verdict_text(*far.verification) + "\n");
   std::vector<std::string> lines;
-  for (const char* line : {"scene", "device", "method", "default", "hint", "untested", "views",
-                           "radius", "kept", "colliding", "drawn", "accounted", "time"}) {
+  for (const char* line :
+       {"scene", "device", "method", "default", "hint", "not asked", "views", "radius", "kept",
+        "colliding", "drawn", "accounted", "at risk", "time"}) {
     EXPECT_EQ(cells_of(line_with(table, line)).at(0).find(line), 0u) << line;
     lines.emplace_back(line);
   }
@@ -116,10 +118,18 @@ TEST(Help, ExplainsEveryLineAndColumnOfATable) {
 
   for (Object& object : scene.objects) object.self = true;
   const Record pairs = record_of(scene, Method::boxes), exact = record_of(scene, Method::exact);
-  const std::string comparison =
-      comparison_table(scene, {record_of(scene, Method::far), pairs, exact});
-  std::vector<std::string> columns = cells_of(line_with(comparison, "method "));
-  EXPECT_EQ(columns.size(), 12u);
+  const std::string comparison = comparison_table(scene, {{far}, {pairs}, {exact}});
+  const std::string heading = line_with(comparison, "method ");
+  std::vector<std::string> columns = cells_of(heading);
+  EXPECT_EQ(columns.size(), 9u);
+  far.options.radius.published = true;
+  far.options.offset = "exact";
+  const std::string radii = comparison_table(scene, {{far}});
+  for (const char* word : {"offset", "radius"}) {
+    EXPECT_FALSE(has_text(heading, word)) << word;  // of all rows the same, so not shown
+    EXPECT_TRUE(has_text(line_with(radii, "method "), word)) << word;
+    columns.emplace_back(word);
+  }
   expect_explained(columns);
 }
 

@@ -23,8 +23,7 @@ RunOptions far_on(const std::string& device) {
 TEST(CanvasDevice, WithoutADeviceTheRuleIsSaidAndNativeDrawsWhereNoHardwareAnswers) {
   Session session("", 0, Say());
   const CanvasDevice& chosen = session.canvas_device();
-  EXPECT_TRUE(chosen.reason.starts_with("no --device: GL where hardware answers, else the CPU; "))
-      << chosen.reason;
+  EXPECT_TRUE(has_text(chosen.reason, "GPU")) << chosen.reason;
   bool hardware = false;
   try {
     hardware = GlContext::hardware_listed();

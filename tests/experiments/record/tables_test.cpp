@@ -4,10 +4,12 @@
 #include "experiments/record/stage_words.h"
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/base/stage.h"
 #include "core/base/text.h"
 #include "experiments/record/output.h"
+#include "experiments/system/text_table.h"
 #include "tests/lab/scenes.h"
 
 namespace farcull {
@@ -34,6 +36,42 @@ TEST(Counted, ReasonsOfStagesAgree) {
       EXPECT_FALSE(has_text(text(1), plural));
     for (const char* singular : {"2 triangle ", "2 object ", "2 patch ", "2 candidate ", "2 pass,"})
       EXPECT_FALSE(has_text(text(2), singular));
+  }
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  return longest;
+}
+
+TEST(Wrapped, BreaksAtBlanksBelowTheText) {
+  EXPECT_EQ(wrapped("label      one two three\n", 20), "label      one two\n           three\n");
+  EXPECT_EQ(wrapped("one two three four", 10), "one two\nthree four\n");
+  EXPECT_EQ(wrapped("  one two three", 11), "  one two\n  three\n");
+  EXPECT_EQ(wrapped("farcull: a.obj: is gone", 16, 9), "farcull: a.obj:\n         is gone\n");
+  EXPECT_EQ(wrapped("one-long-word two", 4), "one-long-word\ntwo\n");  // words stay whole
+  EXPECT_EQ(wrapped("fits\n\nas it is\n", 8), "fits\n\nas it is\n");
+}
+
+TEST(Table, FitsIntoItsColumns) {
+  Table notes("lrl");
+  notes.add({"stage", "ms", ""});
+  notes.add({"boxes", "1.4", "pairs of objects whose boxes overlap"});
+  EXPECT_EQ(notes.text(100), "stage   ms\nboxes  1.4  pairs of objects whose boxes overlap\n");
+  EXPECT_EQ(notes.text(40),
+            "stage   ms\nboxes  1.4  pairs of objects whose boxes\n            overlap\n");
+  notes.add({"and a note of several words"});
+  EXPECT_TRUE(has_text(notes.text(20), "\n      and a note of\n      several words\n"));
+  // Numbers cannot be wrapped: the columns that do not fit stand below, after the first one again.
+  Table numbers("lrrrr");
+  numbers.add({"", "first", "second", "", "third"});
+  numbers.add({"a", "1", "2", "", "3"});
+  EXPECT_EQ(numbers.text(16), "   first  second\na      1       2\n\n   third\na      3\n");
+  for (std::size_t columns = 40; columns < 130; ++columns) {
+    EXPECT_LE(longest_line(notes.text(columns)), columns);
+    EXPECT_LE(longest_line(numbers.text(columns)), columns);
   }
 }
 

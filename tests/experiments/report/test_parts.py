@@ -170,3 +170,18 @@ def test_what_is_broken_comes_first():
         assert text.index("BROKEN: first") < text.index("BROKEN: second") < text.index("All of this page") < text.index("fine")
     assert "`farcull report 'my results'`" in markdown
     assert "Broken." not in pages.page_html(good)
+
+
+# Labels stand in place of a key: beside their points, apart from each other, and inside the figure.
+def test_labels_at_points():
+    near = Series("far", [1, 1.1, 1.2], [0, 0, 0], labels=["far 128 px", "256 px", "512 px"])
+    figure = Figure("f", "F", "c", [Panel("p", log("ms"), log("missed", zero=True), [near, Series("exact", [30], [9], labels=["exact"])])])
+    drawer = draw.Drawer(figure)
+    texts = drawer.canvas.axes[0].texts
+    assert not drawer.canvas.legends and [t.get_text() for t in texts] == ["far 128 px", "256 px", "512 px", "exact"]
+    boxes = [t.get_window_extent() for t in texts]
+    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+    assert all(0 <= b.x0 and b.x1 <= drawer.canvas.bbox.x1 and 0 <= b.y0 for b in boxes)
+    near.labels = []
+    figure.panels[0].series.pop()
+    assert draw.Drawer(figure).canvas.legends  # the twin: without labels there is a key

@@ -206,13 +206,13 @@ TEST(NotAsked, IsSaidBesideThePromise) {
   record.options.method = Method::far;
   record.promise.holds = true;
   const std::string heading = run_heading(folded(false), record);
-  EXPECT_TRUE(has_text(heading, "\nuntested   3 pairs of triangles inside sheet, "));
+  EXPECT_TRUE(has_text(heading, "\nnot asked  3 pairs of triangles inside sheet, "));
   EXPECT_TRUE(has_text(heading, "(add --self)\n"));
   record.options.method = Method::cullide;
   EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --method boxes --self)\n"));
   record.options.method = Method::exact;
   EXPECT_TRUE(has_text(run_heading(folded(false), record), "(add --self)\n"));
-  EXPECT_FALSE(has_text(run_heading(folded(true), record), "untested"));
+  EXPECT_FALSE(has_text(run_heading(folded(true), record), "not asked"));
 }
 
 }  // namespace

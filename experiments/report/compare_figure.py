@@ -1,0 +1,58 @@
+"""`farcull compare ... --figure FILE.svg` becomes `python3 compare_figure.py FILE.svg STATUS`, with the rows of `--csv` on
+standard input. Draws missed pairs against time, and ends with the status; with 2 if there is no figure."""
+import logging
+import os
+import sys
+
+try:
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides its messages about cache folders
+    import pandas as pd
+    import draw
+    from frame import Figure, Panel, Series, log
+except ImportError as missing:
+    print(f"farcull: --figure: {missing}; install python3-matplotlib and python3-pandas, or write --csv", file=sys.stderr)
+    sys.exit(2)
+
+
+def named(row, rows):
+    """A row without its resolution; an offset or a radius is named where rows differ in it."""
+    parts = [row.method, *row.form.split(), *(getattr(row, of) for of in ("offset", "radius")
+                                              if rows[of][rows[of] != ""].nunique() > 1)]
+    return " ".join(part for part in parts if part)
+
+
+def figure_of(rows):
+    rows = rows.assign(series=[named(row, rows) for row in rows.itertuples()])
+    series = []
+    for name, of in rows.groupby("series", sort=False):
+        # The first point of a line bears its name.
+        px = [f"{at} px" if at else "" for at in of.resolution]
+        labels = [f"{name} {px[0]}".strip(), *px[1:]]
+        series.append(Series(name, list(of.ms), list(of.missed), emphasis=name.startswith("far"), x_low=list(of.least_ms),
+                             x_high=list(of.most_ms), labels=labels))
+    first = rows.iloc[0]
+    colliding = first.colliding + first.neighbours + first.missed
+    return Figure("error-time", f"{first.scene}: missed pairs against time", (
+        f"{colliding:,.0f} pairs collide. Below and to the left is better. Time is that of culling and exact tests; bars go "
+        f"from the least to the most of {first.runs} runs."), [
+            Panel(f"{first.scene}: {colliding:,.0f} pairs collide", log("cull + exact (ms)"), log("missed pairs", zero=True),
+                  series)])
+
+
+def main(path, status):
+    rows = pd.read_csv(sys.stdin, dtype={"resolution": "Int64"}, keep_default_na=False, na_values={"missed": [""], "resolution": [""]})
+    rows["resolution"] = rows.resolution.fillna(0).astype(int)
+    svg = draw.files_of(figure_of(rows))["svg"]
+    half = f"{path}.part-{os.getpid()}"
+    try:
+        with open(half, "w", encoding="utf-8") as file:
+            file.write(svg)
+        os.replace(half, path)
+    except OSError as error:
+        print(f"farcull: {path}: cannot be written: {error.strerror}; make room on the disk", file=sys.stderr)
+        return 2
+    return int(status)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
