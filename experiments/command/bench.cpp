@@ -181,7 +181,7 @@ int BenchCommand::run() {
     const PoseBenchResult result = bench_poses(scene, of_poses, progress);
     terminal.clear();
     if (outputs.json) write_json(to_json(scene, of_poses, result), *outputs.json);
-    if (!outputs.to_stdout()) write_output("-", pose_bench_table(scene, of_poses, result));
+    if (!outputs.to_stdout()) print(pose_bench_table(scene, of_poses, result));
     const std::string disagreement = disagreement_of(result);
     if (!disagreement.empty()) complain(disagreement);
     return disagreement.empty() ? 0 : 1;
