@@ -157,7 +157,7 @@ for scene in "${moving[@]}"; do
   step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability.sh motion "$scene"
 done
 for scene in armadillo-elephant needles-layers needles-crossed "mannequin-devil --self" "armadillo --self" "bunny --self" \
-  tree-leaves field:100000 crumpled spheres cad-cut funnel; do
+  tree-leaves field:100000 crumpled spheres cad-cut funnel funnel:20000:144; do
   read -ra words <<<"$scene"
   bench 3 "${words[@]}"
 done

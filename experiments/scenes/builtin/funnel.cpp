@@ -110,12 +110,14 @@ Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven)
   return {out * std::cos(angle), out * std::sin(angle), height};
 }
 
-constexpr std::uint32_t kAround = 96;  // quads around the funnel
-constexpr std::uint32_t kPipeRings = 8, kConeRings = 12;
-constexpr std::uint64_t kRigid = 2 * kAround * (kPipeRings + kConeRings);  // the funnel's triangles
+// The quads of a funnel.
+struct FunnelGrid {
+  std::uint32_t around = 96, pipe_rings = 8, cone_rings = 12;
+  std::uint64_t triangles() const { return 2ull * around * (pipe_rings + cone_rings); }
+};
 
 // A surface of revolution around all of the points, `gap` away from the nearest.
-Mesh funnel_around(const std::vector<Vec3>& points, double gap) {
+Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid& quads) {
   const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
   const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);
   double pipe = 0, top = 0;
@@ -125,26 +127,27 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap) {
     top = std::max(top, p.z());
   }
   // The sides of the polygon are nearer to the axis than its corners.
-  const double widen = 1 / std::cos(kTurn / 2 / kAround);
+  const double widen = 1 / std::cos(kTurn / 2 / quads.around);
   std::vector<std::array<double, 2>> profile;  // radius, height
-  for (std::uint32_t k = 0; k <= kPipeRings; ++k)
-    profile.push_back({pipe + gap, begin * (0.2 + 0.1 * k)});
-  for (std::uint32_t k = 1; k <= kConeRings; ++k) {
-    const double z = (top - begin) * k / (kConeRings - 1);  // the last ring lies above the cloth
+  for (std::uint32_t k = 0; k <= quads.pipe_rings; ++k)
+    profile.push_back({pipe + gap, begin * (0.2 + 0.8 * k / quads.pipe_rings)});
+  for (std::uint32_t k = 1; k <= quads.cone_rings; ++k) {
+    const double z = (top - begin) * k / (quads.cone_rings - quads.cone_rings / 12.0);
+    // The last ring lies above the cloth.
     profile.push_back({pipe + gap + slope * z, begin + z});
   }
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (const auto& [radius, height] : profile) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
-    for (std::uint32_t i = 0; i < kAround; ++i) {
-      const double angle = kTurn * i / kAround;
+    for (std::uint32_t i = 0; i < quads.around; ++i) {
+      const double angle = kTurn * i / quads.around;
       vertices.emplace_back(widen * radius * std::cos(angle), widen * radius * std::sin(angle),
                             height);
       if (first == 0) continue;
-      const std::uint32_t a = first + i, b = first + (i + 1) % kAround;
-      triangles.push_back({a - kAround, b - kAround, b});
-      triangles.push_back({a - kAround, b, a});
+      const std::uint32_t a = first + i, b = first + (i + 1) % quads.around;
+      triangles.push_back({a - quads.around, b - quads.around, b});
+      triangles.push_back({a - quads.around, b, a});
     }
   }
   return finished(std::move(vertices), std::move(triangles));
@@ -162,7 +165,10 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
     phase = random.unit();
     twist = random.between(-0.5, 0.5);
   }
-  const std::uint32_t cells = cells_for(parameters.size - kRigid);
+  FunnelGrid quads;
+  const auto large = static_cast<std::uint32_t>(std::lround(parameters.second));
+  if (large > 0) quads = {.around = (large + 3) / 4, .pipe_rings = 1, .cone_rings = 1};
+  const std::uint32_t cells = cells_for(parameters.size - quads.triangles());
   Mesh mesh = grid(cells);
   const std::vector<Ring> table = rings();
   for (Vec3& p : mesh.vertices) {
@@ -177,10 +183,17 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
     }
     p = hung(table, s, angle, uneven);
   }
-  const Mesh around = funnel_around(mesh.vertices, 0.002);
+  const Mesh around = funnel_around(mesh.vertices, 0.002, quads);
   SceneBuilder builder("funnel", "funnel");
+  if (large > 0) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [a, b, c] : around.triangles)
+      mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.vertices.insert(mesh.vertices.end(), around.vertices.begin(), around.vertices.end());
+    mesh = finished(std::move(mesh.vertices), std::move(mesh.triangles));
+  }
   builder.add(mesh, "cloth", Split::kNone, {}, true);
-  builder.add(around, "funnel");
+  if (large == 0) builder.add(around, "funnel");
   return {builder.finish(), {}};
 }
 
