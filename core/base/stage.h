@@ -53,6 +53,7 @@ enum class Reason : std::uint8_t {
   crowded,         // too many such pairs to list; m and k as above
   block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
                    // k were compared, since a corner moved; empty: all
+  normal_pairs,    // the same, and triangles are compared along their normals too
   oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
   moved_pairs,     // the same, but boxes of blocks were kept, and moved with their objects
   boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part

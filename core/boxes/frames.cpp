@@ -106,6 +106,7 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
   }
   BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};
   out.blocks.of = memory.blocks;
+  out.blocks.normals = memory.normals;
   out.blocks.meetings = meetings.all.size();
   out.blocks.pairs =
       pairs_of_moved(*memory.trees, meetings.all, blocks, moved, moved_blocks, threads);
@@ -146,6 +147,7 @@ BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemor
     memory.trees.emplace(blocks, blocks.objects);
     memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
     memory.overlapping = decision->blocks.pairs;
+    memory.normals = decision->blocks.normals;
     memory.usual = memory.overlapping.size();
   } else {
     memory.blocks.reset();

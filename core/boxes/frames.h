@@ -37,6 +37,7 @@ struct FrameMemory {
   std::optional<BlockTrees> trees;      // of all objects
   std::vector<std::uint32_t> block_of;  // per triangle
   BlockPairs overlapping;               // all of the last frame
+  bool normals = false;                 // their triangles are compared along normals too
   std::size_t usual = 0;                // their number when the blocks were made
 };
 

@@ -2,10 +2,8 @@
 // are those with b > a, so the result is sorted by a. If owners are few, their leaves come one
 // owner after the other, and an item is compared with later owners alone.
 //
-// Trees of blocks are searched block by block. The triangles of a block are sixteen lanes of boxes
-// in floats, which are compared with each other. Boxes that touch in floats are compared again in
-// doubles. Only comparisons decide, so every instruction set gives the same pairs in the same
-// order.
+// Trees of blocks are searched block by block. Triangles whose boxes touch in floats are compared
+// again in doubles.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -14,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <iterator>
 #include <mutex>
 #include <numeric>
@@ -35,124 +34,18 @@ std::uint64_t find_leaves_here(const BoxTree<double>& tree, const WideBoxes<doub
                                        [&](std::uint32_t leaf) { leaves.push_back(leaf); });
 }
 
-namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Numbers = boxes::Tag<float>;
-using Words = hn::RebindToUnsigned<Numbers>;
-using WordMask = hn::Mask<Words>;
-using OneBox = boxes::OneBox<float>;
-constexpr std::size_t kLanes = boxes::kLanes<float>;
-static_assert(kWide % kLanes == 0);
-
-// Compares the triangles of two blocks.
-class Comparison {
- public:
-  // vertices: of the two; null: neighbours stay.
-  HWY_INLINE Comparison(const BlockLanes& a, const BlockLanes& b, const VertexBlock* a_vertices,
-                        const VertexBlock* b_vertices)
-      : a_(a), b_(b), a_vertices_(a_vertices), b_vertices_(b_vertices) {}
-
-  // Writes to `certain` and `perhaps`, which have room for 272 pairs each.
-  HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
-    const OneBox bound(b_.bound);
-    std::uint32_t rows = boxes::overlapping_bits(a_.boxes, bound);
-    while (rows != 0) write_row(boxes::next_bit(rows), certain, perhaps);
-  }
-
- private:
-  HWY_INLINE void write_row(std::size_t row, TrianglePair*& certain, TrianglePair*& perhaps) const {
-    const OneBox box(a_.boxes, row);
-    const bool same = &a_ == &b_;
-    for (std::size_t from = same ? row / kLanes * kLanes : 0; from < kWide; from += kLanes) {
-      WordMask met = hn::RebindMask(Words(), boxes::overlapping(b_.boxes, from, box));
-      if (same) met = hn::And(met, behind(row, from));
-      if (hn::AllFalse(Words(), met)) continue;
-      if (a_vertices_ != nullptr) {
-        met = hn::And(met, hn::Not(neighbours(row, from)));
-        if (hn::AllFalse(Words(), met)) continue;
-      }
-      const WordMask inside = hn::RebindMask(Words(), overlapping_inside(from, box));
-      put(row, from, hn::And(met, inside), certain);
-      const WordMask touching = hn::And(met, hn::Not(inside));
-      if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
-    }
-  }
-  // Boxes of b, from lane `from` on, that overlap the box by more than touching.
-  HWY_INLINE hn::Mask<Numbers> overlapping_inside(std::size_t from, const OneBox& box) const {
-    const auto along = [&](std::size_t axis, hn::Vec<Numbers> lo, hn::Vec<Numbers> hi) {
-      return hn::And(hn::Lt(boxes::column(b_.boxes, axis, from), hi),
-                     hn::Gt(boxes::column(b_.boxes, axis + 3, from), lo));
-    };
-    return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
-                   along(2, box.z0, box.z1));
-  }
-  // The lanes of a block that come after the row.
-  HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
-    return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
-                  hn::Set(Words(), static_cast<std::uint32_t>(row)));
-  }
-  HWY_INLINE WordMask neighbours(std::size_t row, std::size_t from) const {
-    const Words w;
-    const auto p = hn::Load(w, &b_vertices_->corner[0][from]),
-               q = hn::Load(w, &b_vertices_->corner[1][from]),
-               r = hn::Load(w, &b_vertices_->corner[2][from]);
-    const auto has = [&](std::size_t corner) {
-      const auto v = hn::Set(w, a_vertices_->corner[corner][row]);
-      return hn::Or(hn::Or(hn::Eq(p, v), hn::Eq(q, v)), hn::Eq(r, v));
-    };
-    return hn::Or(hn::Or(has(0), has(1)), has(2));
-  }
-  HWY_INLINE void put(std::size_t row, std::size_t from, WordMask mask, TrianglePair*& out) const {
-    const Words w;
-    const auto one = hn::Set(w, a_.triangles[row]);
-    const auto others = hn::Compress(hn::Load(w, &b_.triangles[from]), mask);
-    hn::StoreInterleaved2(hn::Min(one, others), hn::Max(one, others), w, &out->a);
-    out += hn::CountTrue(w, mask);
-  }
-
-  const BlockLanes& a_;
-  const BlockLanes& b_;
-  const VertexBlock* a_vertices_;
-  const VertexBlock* b_vertices_;
-};
-
-}  // namespace
-
 void pair_blocks_here(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
                       std::uint32_t to, std::size_t most, std::vector<BlockPair>& out, bool twice) {
   const std::uint32_t first_a = trees.first_block(a), first_b = trees.first_block(b);
   for (std::uint32_t block = from; block < to && out.size() <= most; ++block) {
     const std::uint32_t own = block - first_a;
-    const OneBox box(trees.nodes()[trees.tree(a).first[0] + own / kWide], own % kWide);
+    const boxes::OneBox<float> box(trees.nodes()[trees.tree(a).first[0] + own / kWide],
+                                   own % kWide);
     boxes::for_overlapping_leaves(trees.tree(b), trees.nodes(), box, a == b && !twice ? own : 0,
                                   [&](std::uint32_t other) {
                                     out.push_back({block, first_b + other});
                                   });
   }
-}
-
-void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
-                         std::span<const LanePair> pairs, BlockFindings& out) {
-  constexpr std::size_t kRoom = 17 * 16, kFlush = 4096;
-  std::vector<TrianglePair> certain(kFlush + kRoom), perhaps(kFlush + kRoom);
-  TrianglePair *next = certain.data(), *next_perhaps = perhaps.data();
-  const auto flush = [](std::vector<TrianglePair>& from, TrianglePair*& end, std::size_t least,
-                        std::vector<TrianglePair>& to) {
-    if (static_cast<std::size_t>(end - from.data()) < least) return;
-    to.insert(to.end(), from.data(), end);
-    end = from.data();
-  };
-  for (const LanePair& pair : pairs) {
-    const bool drops = pair.drops_neighbours;
-    Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
-               drops ? &vertices[pair.b] : nullptr)
-        .write(next, next_perhaps);
-    flush(certain, next, kFlush, out.pairs);
-    flush(perhaps, next_perhaps, kFlush, out.perhaps);
-  }
-  flush(certain, next, 0, out.pairs);
-  flush(perhaps, next_perhaps, 0, out.perhaps);
 }
 
 }  // namespace farcull::HWY_NAMESPACE
@@ -414,15 +307,10 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
 // ---- blocks ----
 
 HWY_EXPORT(pair_blocks_here);
-HWY_EXPORT(compare_blocks_here);
 
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
                  std::uint32_t to, std::size_t most, std::vector<BlockPair>& out, bool twice) {
   HWY_DYNAMIC_DISPATCH(pair_blocks_here)(trees, a, b, from, to, most, out, twice);
-}
-void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
-                    std::span<const LanePair> pairs, BlockFindings& out) {
-  HWY_DYNAMIC_DISPATCH(compare_blocks_here)(lanes, vertices, pairs, out);
 }
 
 BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions)
@@ -533,6 +421,29 @@ UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleB
   return out;
 }
 
+// The normals by the places of lanes, filled only for the blocks of these pairs; none if floats
+// cannot hold the coordinates.
+UninitializedVector<NormalLanes> normals_of(const Scene& scene, const TriangleBlocks& blocks,
+                                            const Lanes& lanes, const BlockPairs& pairs,
+                                            double clearance, unsigned threads) {
+  UninitializedVector<NormalLanes> out;
+  const std::vector<std::uint32_t> used = blocks_in(pairs, blocks.ranges.size());
+  const LaneSpans all{.first = blocks.lanes, .second = lanes.more};
+  float reach = 0;
+  for (const std::uint32_t block : used) {
+    const FloatBox& bound = all[lanes.place[block]].bound;
+    for (std::size_t k = 0; k < 3; ++k)
+      reach = std::max({reach, std::abs(bound.lo[k]), std::abs(bound.hi[k])});
+  }
+  const auto margin = normal_margin(reach, clearance);
+  if (!margin) return out;
+  out.resize(blocks.lanes.size() + lanes.more.size());
+  for_triangles_of(scene, blocks, used, threads, [&](std::uint32_t block, const auto& own) {
+    fill_normals(scene, own, blocks.origin, *margin, out[lanes.place[block]]);
+  });
+  return out;
+}
+
 constexpr std::size_t kAtOnce = 2048;  // pairs of blocks that are compared at a time
 
 }  // namespace
@@ -556,9 +467,12 @@ std::uint64_t give_findings(
 }
 
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
-                                 const BlockPairs& some, double clearance, bool neighbours,
-                                 unsigned threads, const TakePairs& take) {
+                                 const BlockPairs& some, bool along_normals, double clearance,
+                                 bool neighbours, unsigned threads, const TakePairs& take) {
   const Lanes lanes = lanes_of(scene, blocks, some, clearance, threads);
+  const UninitializedVector<NormalLanes> normals =
+      along_normals ? normals_of(scene, blocks, lanes, some, clearance, threads)
+                    : UninitializedVector<NormalLanes>();
   const auto give = [&](std::span<const BlockPair> part, std::span<const VertexBlock> vertices) {
     return give_findings(
         scene, part.size(), clearance, threads,
@@ -567,7 +481,7 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
           for (std::size_t k = begin; k < end; ++k) {
             pairs[k - begin] = {lanes.place[part[k].a], lanes.place[part[k].b], !vertices.empty()};
           }
-          compare_blocks({.first = blocks.lanes, .second = lanes.more}, vertices,
+          compare_blocks({.first = blocks.lanes, .second = lanes.more}, vertices, normals,
                          std::span(pairs).first(end - begin), out);
         },
         take);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/boxes/block.h"
+#include "core/boxes/compare.h"
 #include "core/boxes/triangle_blocks.h"
 #include "core/scene/scene.h"
 
@@ -157,6 +158,7 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
+  bool normals = false;                            // triangles are compared along their normals too
   BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
   std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap, including pairs in
@@ -169,32 +171,17 @@ struct BlockMeetings {
 
 /// Gives the pairs a < b of triangles of some pairs of blocks whose boxes overlap to `take`, and
 /// returns their number. Blocks share no triangle, so each pair is given once if each pair of
-/// blocks is there once. neighbours: false leaves out pairs of one object that share a vertex
+/// blocks is there once. along_normals: leaves out pairs that are apart along the normal of one of
+/// the two, by their boxes. neighbours: false leaves out pairs of one object that share a vertex
 /// index. An exception of `take` is thrown again here, and some pairs are not given then.
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
-                                 const BlockPairs& pairs, double clearance, bool neighbours,
-                                 unsigned threads, const TakePairs& take);
+                                 const BlockPairs& pairs, bool along_normals, double clearance,
+                                 bool neighbours, unsigned threads, const TakePairs& take);
 
 /// Pairs that `give(take)` gives to `take`, sorted.
 std::vector<TrianglePair> sorted_pairs(
     unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give);
 
-/// The vertex indices of the triangles of a block, by corner.
-struct alignas(64) VertexBlock {
-  std::array<std::array<std::uint32_t, kWide>, 3> corner;
-};
-/// Pairs of triangles that a comparison finds, the smaller one first.
-struct BlockFindings {
-  std::vector<TrianglePair> pairs;    // their boxes overlap
-  std::vector<TrianglePair> perhaps;  // they touch in floats
-};
-/// The lanes of `first`, and behind them those of `second`.
-struct LaneSpans {
-  std::span<const BlockLanes> first, second;
-  const BlockLanes& operator[](std::uint32_t k) const {
-    return k < first.size() ? first[k] : second[k - first.size()];
-  }
-};
 /// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1, and gives what it
 /// appends to `take`: certain pairs, and those others whose boxes overlap in doubles. Returns how
 /// many it gave. An exception of `find` or `take` is thrown again here.
@@ -202,13 +189,5 @@ std::uint64_t give_findings(
     const Scene& scene, std::size_t count, double clearance, unsigned threads,
     const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,
     const TakePairs& take);
-/// Two blocks to compare. If a == b, every two triangles of the block are compared.
-struct LanePair {
-  std::uint32_t a, b;
-  bool drops_neighbours;  // leaves out pairs that share a vertex index
-};
-/// vertices: of all lanes; may be empty if no pair drops neighbours.
-void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
-                    std::span<const LanePair> pairs, BlockFindings& out);
 
 }  // namespace farcull

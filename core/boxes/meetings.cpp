@@ -197,15 +197,18 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
 }
 
 // Oriented boxes are used if, in a sample, they leave at most this many pairs for each triangle.
-constexpr std::size_t kOrientedPerTriangle = 64;
+constexpr double kOrientedPerTriangle = 64;
+// Normals are compared if, in a sample, boxes along the axes leave more than kFewOverlaps pairs for
+// each triangle, normals leave at most 1 / kLeastDrop of these, and at most kMostLeft: normals cost
+// about as much as an exact decision of two pairs for each triangle, oriented boxes as of ten.
+constexpr double kFewOverlaps = 2, kLeastDrop = 4, kMostLeft = 8;
 
 }  // namespace
 
-bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
-                    std::size_t often) {
+double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance) {
   constexpr std::size_t kSampled = 64;  // pairs of blocks
   const std::size_t all = meetings.pairs.size();
-  if (all == 0) return false;
+  if (all == 0) return 0;
   BlockPairs some;
   for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
     const std::vector<BlockPair>& pairs = meetings.pairs.*list;
@@ -214,7 +217,7 @@ bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double cl
   const std::uint64_t found =
       give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
-  return each * static_cast<double>(all) > static_cast<double>(often * meetings.triangles);
+  return each * static_cast<double>(all) / static_cast<double>(meetings.triangles);
 }
 
 namespace {
@@ -235,7 +238,7 @@ std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
         pair_oriented(*out.oriented, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
       });
   if (found != Found::all || !sort_in(meetings, parts, out) ||
-      overlaps_often(scene, out, clearance, kOrientedPerTriangle)) {
+      overlaps_by_sample(scene, out, clearance) > kOrientedPerTriangle) {
     return std::nullopt;
   }
   return out;
@@ -266,9 +269,14 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings
                   [&](const ObjectOverlap& meeting, MeetingPart& part, std::size_t most) {
                     pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
                   });
-  if (found == Found::all && sort_in(meetings.all, parts, out.blocks) &&
-      !overlaps_often(scene, out.blocks, clearance, kOverlapsPerTriangle)) {
-    return out;
+  if (found == Found::all && sort_in(meetings.all, parts, out.blocks)) {
+    const double axes = overlaps_by_sample(scene, out.blocks, clearance);
+    out.blocks.normals = axes > kFewOverlaps;
+    if (out.blocks.normals) {
+      const double left = overlaps_by_sample(scene, out.blocks, clearance);
+      out.blocks.normals = left <= kMostLeft && kLeastDrop * left <= axes;
+    }
+    if (out.blocks.normals || axes <= kOverlapsPerTriangle) return out;
   }
   out.blocks = {};
   if (found == Found::too_many) {
@@ -296,7 +304,8 @@ std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads) {
   const BlockDecision decision = decide_by_blocks(scene, 0, threads, ignored);
-  if (decision.tree != Reason::none || decision.blocks.oriented) return std::nullopt;
+  if (decision.tree != Reason::none || decision.blocks.oriented || decision.blocks.normals)
+    return std::nullopt;
   return pairs_of_blocks(scene, decision.blocks, 0, neighbours, threads);
 }
 

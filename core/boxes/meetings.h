@@ -43,7 +43,7 @@ std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
 constexpr std::size_t kPairsPerBlock = 32;
 /// Oriented boxes of blocks are tried if, in a sample, the boxes of more pairs of triangles overlap
 /// than this for each triangle, neighbours apart: slivers that lie askew have such boxes.
-constexpr std::size_t kOverlapsPerTriangle = 16;
+constexpr double kOverlapsPerTriangle = 16;
 /// If boxes of more pairs of blocks overlap than this for each block of the scene, oriented boxes
 /// are not tried.
 constexpr std::size_t kMostPairsPerBlock = 1024;
@@ -58,11 +58,12 @@ struct BlockDecision {
 };
 
 /// Compares the boxes of the blocks of objects that meet. The number of overlaps decides how pairs
-/// are found: by blocks along the axes if few of them overlap, by oriented blocks if few of those
-/// overlap in a sample, else by a tree; also by a tree if there are too many meetings to list, or
-/// an object is stretched beyond kUneven (core/boxes/triangle_blocks.h). Each way finds every pair
-/// at most the clearance apart. threads: 0 for as many as there are cores; changes no answer.
-/// ignored: as find_meetings().
+/// are found: by blocks along the axes if few of them overlap, and along the normals of triangles
+/// too if these drop most pairs of a sample, as where large triangles lie among small ones; by
+/// oriented blocks if few of those overlap in a sample; else by a tree; also by a tree if there are
+/// too many meetings to list, or an object is stretched beyond kUneven
+/// (core/boxes/triangle_blocks.h). Each way finds every pair at most the clearance apart. threads:
+/// 0 for as many as there are cores; changes no answer. ignored: as find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
@@ -76,17 +77,16 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 
-/// Whether more than `often` pairs of boxes of triangles overlap for each triangle in a block of
-/// these meetings, by a sample of the pairs of blocks. Reads only vertices of their blocks.
-bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
-                    std::size_t often);
+/// How many pairs of triangles these meetings leave for each triangle in one of their blocks,
+/// neighbours apart, by a sample of the pairs of blocks. Reads only vertices of their blocks.
+double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance);
 
 /// Triangles in all blocks of some pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
 /// All pairs of triangles whose boxes overlap, sorted, for what is drawn afterwards. Null if a tree
-/// or oriented boxes would decide. ignored, threads: as decide_by_blocks(). neighbours: false
-/// leaves out pairs of one object that share a vertex index.
+/// or oriented boxes would decide, or normals help. ignored, threads: as decide_by_blocks().
+/// neighbours: false leaves out pairs of one object that share a vertex index.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads);

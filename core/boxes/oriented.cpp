@@ -486,10 +486,10 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
 std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                    const BlockPairs& some, double clearance, bool neighbours,
                                    unsigned threads, const TakePairs& take) {
-  return meetings.oriented
-             ? give_pairs_of_oriented(scene, *meetings.oriented, some, clearance, neighbours,
-                                      threads, take)
-             : give_pairs_of_some(scene, *meetings.of, some, clearance, neighbours, threads, take);
+  return meetings.oriented ? give_pairs_of_oriented(scene, *meetings.oriented, some, clearance,
+                                                    neighbours, threads, take)
+                           : give_pairs_of_some(scene, *meetings.of, some, meetings.normals,
+                                                clearance, neighbours, threads, take);
 }
 
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,

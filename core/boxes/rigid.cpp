@@ -178,7 +178,7 @@ class Walk {
                                       .first(std::min(kAtOnce, pairs.size() - kAtOnce * portion)))
           some.push_back({place_[a], place_[b], false});
         BlockFindings own;
-        compare_blocks({.first = lanes_, .second = {}}, {}, some, own);
+        compare_blocks({.first = lanes_, .second = {}}, {}, {}, some, own);
         sum += own.pairs.size() + own.perhaps.size();
         for (const auto list : {&BlockFindings::pairs, &BlockFindings::perhaps})
           for (const auto& [a, b] : own.*list) found[chunk].push_back({a, b});

@@ -115,9 +115,10 @@ Stage planned_stage(const BoxesPlan& plan) {
   const std::size_t compared = decision.blocks.pairs.size();
   return {.kind = StageKind::blocks,
           .ran = true,
-          .reason = decision.blocks.oriented ? Reason::oriented_pairs
-                    : decision.blocks.moved  ? Reason::moved_pairs
-                                             : Reason::block_pairs,
+          .reason = decision.blocks.oriented  ? Reason::oriented_pairs
+                    : decision.blocks.normals ? Reason::normal_pairs
+                    : decision.blocks.moved   ? Reason::moved_pairs
+                                              : Reason::block_pairs,
           .n = decision.blocks.overlaps,
           .m = decision.blocks.meetings,
           .k = compared < decision.blocks.overlaps ? std::optional<std::uint64_t>(compared)

@@ -1,5 +1,6 @@
-// The method `boxes`: every pair of triangles whose boxes overlap. If slivers lie obliquely, only
-// those pairs whose oriented boxes overlap as well. No pair that intersects is lost
+// The method `boxes`: every pair of triangles whose boxes overlap. If large triangles lie among
+// small ones, only those pairs that meet along the normals of both; if slivers lie obliquely, only
+// those whose oriented boxes overlap as well. No pair that intersects is lost
 // (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"), neither between objects nor inside
 // those tested against themselves. The method decides nothing exactly; verify/ does.
 //

@@ -33,6 +33,8 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
   return count > 0 && are_scattered(sum / count, count, blocks.objects[object]);
 }
 
+// Objects of fewer triangles are not judged by a sample.
+constexpr std::uint32_t kLeastSampled = 4096;
 // The place of item k of a sample, in [0, 1): multiples of the golden ratio are as even as a grid,
 // but without a period, which surfaces often have.
 double sampled_place(std::size_t k) {
@@ -43,8 +45,7 @@ double sampled_place(std::size_t k) {
 // of its triangles.
 float stretch_of(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
-  constexpr std::uint32_t kLeast = 4096;  // triangles
-  if (object.triangle_count < kLeast) return 0;
+  if (object.triangle_count < kLeastSampled) return 0;
   double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -200,14 +201,39 @@ class MortonGrid {
   float scale_;
 };
 
-// Puts the triangles of an object that meet the region in Morton order, then the others; returns
-// how many meet it.
+float longest_side(const FloatBox& box) {
+  return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+}
+
+// The longest side of the boxes of most triangles: the median of a sample. Infinite for an object
+// of few blocks.
+float usual_side(const Scene& scene, const Object& object, double half, const Vec3& origin) {
+  constexpr std::size_t kSample = 64;
+  if (object.triangle_count < kLeastSampled) return kInfinite;
+  std::array<float, kSample> sides;
+  for (std::size_t k = 0; k < kSample; ++k) {
+    const auto t = object.first_triangle +
+                   static_cast<std::uint32_t>(sampled_place(k) * (object.triangle_count - 1));
+    FloatBox box;
+    relative_boxes(scene, t, t + 1, half, origin, &box);
+    sides[k] = longest_side(box);
+  }
+  std::ranges::nth_element(sides, sides.begin() + kSample / 2);
+  return sides[kSample / 2];
+}
+
+// Puts the triangles of an object that meet the region in order, then the others; returns how many
+// meet it. Triangles of one size class follow one another, those of a class in Morton order: so a
+// large triangle does not enlarge a block of small ones. Class c holds those whose boxes are more
+// than 8^c times as long as usual.
 std::uint32_t order_object(const Scene& scene, const Object& object, double half,
                            const Vec3& origin, const FloatBox& region, unsigned threads,
                            std::span<std::uint32_t> order) {
   constexpr std::size_t kAtOnce = 256;
   const std::size_t n = object.triangle_count, chunks = chunks_for(n, 8192, threads);
   const MortonGrid grid(region, static_cast<std::uint32_t>(n));
+  constexpr float kLarge = 8;
+  const float large = kLarge * usual_side(scene, object, half, origin), huge = kLarge * large;
   std::vector<UninitializedVector<Coded>> inside(chunks);
   std::vector<UninitializedVector<std::uint32_t>> outside(chunks);
   for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -222,7 +248,9 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
       relative_boxes(scene, from, to, half, origin, boxes.data());
       for (std::uint32_t triangle = from; triangle < to; ++triangle) {
         const FloatBox& box = boxes[triangle - from];
-        in[ins] = {grid.code(box), triangle};
+        const float side = longest_side(box);
+        const std::uint32_t size = (side > large) + (side > huge) + (side > kLarge * huge);
+        in[ins] = {grid.code(box) | size << grid.bits(), triangle};
         out[outs] = triangle;
         const bool meets = overlap(box, region);
         ins += meets;
@@ -237,7 +265,9 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
   for (std::size_t k = 1; k < chunks; ++k) {
     inside[0].insert(inside[0].end(), inside[k].begin(), inside[k].end());
   }
-  sort_by_code(inside[0], grid.bits());
+  const bool sized = std::ranges::any_of(
+      inside[0], [&](const Coded& coded) { return (coded.code >> grid.bits()) != 0; });
+  sort_by_code(inside[0], grid.bits() + (sized ? 2 : 0));
   std::uint32_t* next = order.data();
   for (const Coded& coded : inside[0]) *next++ = coded.triangle;
   for (const auto& part : outside) next = std::copy(part.begin(), part.end(), next);

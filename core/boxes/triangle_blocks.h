@@ -1,6 +1,6 @@
 // Blocks of triangles. Triangles that follow one another in a file are mostly close, so one box can
 // rule out a whole block, and most triangles are never examined one by one. Scattered triangles
-// are sorted first, so that those of a block are close.
+// are sorted first, so that those of a block are close, and large ones are in blocks of their own.
 #pragma once
 
 #include <cstddef>
@@ -73,9 +73,9 @@ constexpr float kUneven = 0x1p24f / (256 * 64);
 /// are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
 /// Chooses the origin. Orders the triangles of scattered objects that meet the object's region by
-/// Morton code, as blocks with lanes. Orders all triangles of stretched objects by spatial_order().
-/// regions: per object a box that contains the grown boxes of all its triangles that can meet
-/// anything; empty if no triangle can.
+/// size class and Morton code, as blocks with lanes. Orders all triangles of stretched objects by
+/// spatial_order(). regions: per object a box that contains the grown boxes of all its triangles
+/// that can meet anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, TriangleBlocks& blocks);
 

@@ -394,7 +394,7 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     taken.stale = true;
     move_vertices(taken.unmoved, motions, *taken.rigid, decision->blocks.pairs, question.threads,
                   scene);
-    if (overlaps_often(scene, decision->blocks, question.clearance, kOverlapsPerTriangle))
+    if (overlaps_by_sample(scene, decision->blocks, question.clearance) > kOverlapsPerTriangle)
       return std::nullopt;
     taken.poses.assign(input.poses.begin(), input.poses.end());
     taken.skips = 0;

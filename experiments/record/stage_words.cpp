@@ -96,6 +96,10 @@ std::string reason_of(const Stage& stage) {
     case Reason::block_pairs:
       return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n + moved +
              "; pairs of objects, and objects with themselves: " + m;
+    case Reason::normal_pairs:
+      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n + moved +
+             "; pairs of objects, and objects with themselves: " + m +
+             "; triangles are compared along their normals as well";
     case Reason::oriented_pairs:
       return "pairs of blocks (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
              n + moved + "; pairs of objects, and objects with themselves: " + m;

@@ -423,7 +423,7 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   std::vector<LanePair> pairs;
   for (const BlockPair& pair : blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
   BlockFindings found;
-  compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
+  compare_blocks({.first = lanes, .second = {}}, {}, {}, pairs, found);
   std::ranges::sort(found.pairs);
   EXPECT_GT(missed(overlapping(scene, 0, true), found.pairs), 0u);
 }

@@ -160,6 +160,45 @@ TEST(StraysTwin, BlocksOfScatteredTrianglesTakeTooMuchWork) {
   EXPECT_TRUE(wrong(scene, result).starts_with("too many tests"));
 }
 
+// Three triangles in a hundred are large, in a file that scatters them all.
+TEST(Strays, LargeTrianglesAreInBlocksOfTheirOwn) {
+  const Scene rest = make_builtin_scene("funnel:12000:400");
+  const auto in_order = [&](const auto& shuffle) {
+    Scene scene = rest;
+    lab::Random random(7);
+    shuffle(scene.triangles, random);
+    return scene;
+  };
+  const auto pairs_of = [](const TriangleBlocks& blocks) {
+    std::vector<BlockPair> pairs;
+    pair_blocks(BlockTrees(blocks, blocks.objects), 0, 0, 0, blocks.first[1], SIZE_MAX, pairs);
+    return pairs.size();
+  };
+  const Scene scattered = in_order([](auto& triangles, Random& random) {
+    for (std::size_t k = triangles.size(); k > 1; --k)
+      std::swap(triangles[k - 1],
+                triangles[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+  });
+  const BoxesResult result = found(scattered, {}, 2);
+  EXPECT_EQ(wrong(scattered, result), "");
+  EXPECT_EQ(result.stage.reason, Reason::normal_pairs);
+  const std::size_t own = pairs_of(make_ordered_blocks(scattered, 0, 2));
+  EXPECT_EQ(result.stage.n, own);
+  // The twin: among the small ones, each near the place where it lies, they enlarge their blocks.
+  const Scene among = in_order([](auto& triangles, Random&) {
+    const std::size_t large = 400, small = triangles.size() - large;
+    std::vector<std::array<std::uint32_t, 3>> out;
+    for (std::size_t k = 0; k < small; ++k) {
+      out.push_back(triangles[k]);
+      if (k % (small / large) == 0 && out.size() < k + large)
+        out.push_back(triangles[small + k / (small / large)]);
+    }
+    while (out.size() < triangles.size()) out.push_back(triangles[out.size()]);
+    triangles = out;
+  });
+  EXPECT_GT(pairs_of(make_blocks(among, 0, 2)), 4 * own);
+}
+
 // A vertex that flies away and comes back, with what is kept of each frame.
 TEST(Strays, InFramesAreFoundAsWithoutThem) {
   const Scene rest = make_builtin_scene("two-spheres");
