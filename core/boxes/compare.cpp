@@ -194,7 +194,7 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 
 std::optional<NormalMargin> normal_margin(float reach, double clearance) {
   // In units of the distance of the farthest corner of a box from the origin, a bound of the
-  // rounding when a triangle and a box are compared (docs/reliability.md, "Normals").
+  // rounding when a triangle and a box are compared (docs/reliability.md, "Boxes of blocks").
   constexpr double kMargin = 0x1p-20;
   const double farthest = 1.74 * static_cast<double>(reach);  // more than the root of 3
   if (!(farthest >= 0x1p-60 && farthest <= 0x1p60)) return std::nullopt;

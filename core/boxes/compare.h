@@ -4,7 +4,7 @@
 // The box of a large oblique triangle contains much that is far from its plane. Small triangles
 // there are apart along the normal. If two triangles have a common point, their images under any
 // linear map do, so any direction may be compared. Normals are computed in floats, and a margin
-// covers the rounding (docs/reliability.md, "Normals").
+// covers the rounding (docs/reliability.md, "Boxes of blocks").
 #pragma once
 
 #include <array>
