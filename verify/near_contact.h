@@ -18,7 +18,7 @@ namespace farcull {
 struct NearContact {
   double distance = 0;
   std::array<Vec3, 2> points;
-  std::array<Vec3, 2> weights;
+  std::array<Vec3, 2> weights = {};
   Vec3 normal = Vec3::Zero();
   std::array<Feature, 2> features;
 };

@@ -114,7 +114,7 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
              name_of(scene, row.objects.a), name_of(scene, row.objects.b), depth_text(row),
              row.curve > 0 ? short_number(row.curve) : "", distance_text(row), place_text(row),
              clash_words(scene, row) + (record.options.depth && row.open
-                                            ? "; no depth: " + no_depth_words(scene, record, row)
+                                            ? "; no depth: " + no_depth_words(scene, row)
                                             : "")});
   }
   for (std::size_t k = 0; table.compared && k < table.compared->gone.size(); ++k) {
@@ -209,7 +209,7 @@ Json row_json(const Scene& scene, const ClashRecord& record, const ClashRow& row
               {"witness", {point_json(row.witness[0]), point_json(row.witness[1])}},
               {"curve", row.curve},
               {"depth", nullptr},
-              {"no_depth", text_json(no_depth_words(scene, record, row))}};
+              {"no_depth", text_json(no_depth_words(scene, row))}};
   if (const auto& depth = row.depth) {
     out["depth"] = {{"least", depth->lo},
                     {"most", depth->hi},
@@ -238,7 +238,7 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
   return contact_words(row);
 }
 
-std::string no_depth_words(const Scene& scene, const ClashRecord& record, const ClashRow& row) {
+std::string no_depth_words(const Scene& scene, const ClashRow& row) {
   const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
   if (!deep || row.depth) return "";
   if (row.open) return name_of(scene, *row.open) + " is not closed";
@@ -326,7 +326,7 @@ std::string clash_csv(const Scene& scene, const ClashRecord& record, const Clash
                     row.pairs, row.inner ? csv_cell(name_of(scene, *row.inner)) : "");
     out += row.squared ? fmt::format("{},{},", row.distance, row.squared->text()) : ",,";
     out += row.depth ? fmt::format("{},{},", row.depth->lo, row.depth->hi) : ",,";
-    out += fmt::format("{},{}", csv_cell(no_depth_words(scene, record, row)), row.curve);
+    out += fmt::format("{},{}", csv_cell(no_depth_words(scene, row)), row.curve);
     for (const Vec3& p : {row.box.lo, row.box.hi, row.witness[0], row.witness[1]})
       out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
     out += fmt::format(",{},{}", row.objects.a, row.objects.b);

@@ -202,7 +202,7 @@ std::string clash_words(const Scene& scene, const ClashRow& row);
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
 
 /// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
-std::string no_depth_words(const Scene& scene, const ClashRecord& record, const ClashRow& row);
+std::string no_depth_words(const Scene& scene, const ClashRow& row);
 
 /// A row for each pair that is not clear; numbers with all digits. A row that is gone has only its
 /// names and the verdict it had.
