@@ -60,7 +60,7 @@ bad an object that comes | --ignore: '\*/b:floor' names '\*/b', and no object is
   | run parts.json --frames 2:2 --ignore '*/b:floor'
 0 an object that goes, in the file | verify ignores.json --frames 1:2 --pairs file.csv | $ cmp -s file.csv goes.csv
 0 the list of these frames | check ignores.json --frames 1:2 --pairs file.csv
-  | ^proved: in each of 2 frames .*, and no others, of objects that are not ignored: 2 in all$
+  | ~ proved:ineachof2frames.*,andnoothers,ofobjectsthatarenotignored:2inall
 bad an object that comes, in the file | ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so
   | run ignores.json --frames 2:2
 

@@ -31,7 +31,7 @@ for environment in environments:
         'env': f"LD_PRELOAD={others[0]} 'FARCULL_DISTURB={environment}'", 'environment': environment, 'callers': callers,
         'says': '! arithmetic' if usual else f'~ arithmeticroundstonearest,keepssubnormals;thecaller{unspaced}',
         'frames': '! ^arithmetic' if usual else f'~ arithmetic.*;thecaller{unspaced}',
-        'host': 'the same' if usual else callers + r' \(set aside\)'}
+        'host': 'thesame' if usual else f'{unspaced}.setaside.'}
     for scene, pairs in ('tiny', 1), ('huge', 1), ('subnormal', 0):
         rows(r"""
 0 {scene}, {environment}, {method} | {env} verify {scene}-a.obj {scene}-b.obj --method {method} --json r.json | {says}
@@ -47,7 +47,7 @@ for environment in environments:
     if environment in ('none', environments[-1]):
         rows(r"""
 0 doctor, {environment} | {env} doctor --device software --json d.json | @d.json "rounding": "to nearest"
-  | ^arithmetic of the host: rounds to nearest, keeps subnormals; the caller's: {host}$
+  | ~ arithmeticofthehost:roundstonearest,keepssubnormals;thecaller's:{host}
 """, limits={'seconds': 300, 'memory': None}, **values)
 
 # Twin: where the environment stays as it is, whatever we do, the program says so and answers nothing.
