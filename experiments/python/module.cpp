@@ -118,10 +118,11 @@ std::string as_parameters(const std::string& text) {
 
 // Whether an error of the library names a parameter of the caller.
 bool is_parameter(std::string_view where) {
-  constexpr std::array<std::string_view, 18> kNames = {
-      "V",       "F",         "vertices", "triangles",  "object_starts", "self_objects",
-      "threads", "clearance", "views",    "resolution", "neighbours",    "kind",
-      "within",  "k",         "ignore",   "limit",      "poses",         "names"};
+  constexpr std::array<std::string_view, 19> kNames = {
+      "V",       "F",         "vertices",  "triangles", "object_starts", "self_objects",
+      "threads", "clearance", "tolerance", "views",     "resolution",    "neighbours",
+      "kind",    "within",    "k",         "ignore",    "limit",         "poses",
+      "names"};
   return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
 }
 
