@@ -390,7 +390,7 @@ std::string run_heading(const Scene& scene, const Record& record) {
       not_asked_line(scene, tests_self(record.options.method) ? "--self" : "--method boxes --self");
   if (record.callers != kProved)
     out +=
-        "arithmetic " + to_string(record.used) + "; the caller " + to_string(record.callers) + "\n";
+        "floats     " + to_string(record.used) + "; the caller " + to_string(record.callers) + "\n";
   return answer(out);
 }
 

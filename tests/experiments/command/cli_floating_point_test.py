@@ -29,8 +29,8 @@ for environment in environments:
     usual, unspaced = environment == 'none', callers.replace(' ', '')  # an answer is wrapped at 80 columns
     values = {
         'env': f"LD_PRELOAD={others[0]} 'FARCULL_DISTURB={environment}'", 'environment': environment, 'callers': callers,
-        'says': '! arithmetic' if usual else f'~ arithmeticroundstonearest,keepssubnormals;thecaller{unspaced}',
-        'frames': '! ^arithmetic' if usual else f'~ arithmetic.*;thecaller{unspaced}',
+        'says': '! ^floats' if usual else f'~ floatsroundstonearest,keepssubnormals;thecaller{unspaced}',
+        'frames': '! ^floats' if usual else f'~ floats.*;thecaller{unspaced}',
         'host': 'thesame' if usual else f'{unspaced}.setaside.'}
     for scene, pairs in ('tiny', 1), ('huge', 1), ('subnormal', 0):
         rows(r"""

@@ -146,7 +146,7 @@ TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
       EXPECT_EQ(json["used"]["flushes_results"], false);
       EXPECT_EQ(json["used"]["flushes_operands"], false);
       const std::string table = lab::unwrapped(run_table(sample.scene, record));
-      EXPECT_TRUE(has_text(table, "arithmetic rounds to nearest, keeps subnormals; the caller " +
+      EXPECT_TRUE(has_text(table, "floats     rounds to nearest, keeps subnormals; the caller " +
                                       to_string(environment.found)));
     }
   });
