@@ -185,7 +185,7 @@ std::string time_text(const ClashRecord& record) {
   return fmt::format("{:.1f} ms = {}", record.ms, out);
 }
 
-Json row_json(const Scene& scene, const ClashRecord& record, const ClashRow& row) {
+Json row_json(const Scene& scene, const ClashRow& row) {
   Json kinds = Json::object();
   for (const ContactKind kind : kContactKinds) {
     if (const std::uint64_t n = row.kinds[static_cast<std::size_t>(kind)]; n > 0)
@@ -346,7 +346,7 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const ClashTable&
   const auto pair_json = [&](const ObjectPair& pair) {
     return Json{name_of(scene, pair.a), name_of(scene, pair.b)};
   };
-  Json rows = json_list(record.rows, [&](const ClashRow& r) { return row_json(scene, record, r); });
+  Json rows = json_list(record.rows, [&](const ClashRow& r) { return row_json(scene, r); });
   Json gone = Json::array();
   for (std::size_t k = 0; table.compared && k < rows.size(); ++k)
     rows[k]["compared"] = compared_word(table, k);
