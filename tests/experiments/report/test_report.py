@@ -51,8 +51,10 @@ def small(folder):
 
 
 def report(folder, *more, **environment):
-    return subprocess.run([PROGRAM, "report", "--no-pictures", folder, *more], capture_output=True, text=True,
+    done = subprocess.run([PROGRAM, "report", "--no-pictures", folder, *more], capture_output=True, text=True,
                           env={**os.environ, **environment})
+    done.stderr = re.sub(r"\n {9}(?=\S)", " ", done.stderr)  # a message on one line again
+    return done
 
 
 def patched(folder, body):
