@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import tempfile
 
@@ -111,7 +112,7 @@ def read_table(path):
 
 
 def call(*words, timeout=60, program=None, before=(), **options):
-    """The program's status (negative: a signal), stdout and stderr."""
+    """The program's status (negative: a signal), stdout and stderr, of which each message is one line again."""
     done = subprocess.run([*before, program or PROGRAM, *map(str, words)], capture_output=True, timeout=timeout, check=False,
                           stdin=options.pop("stdin", subprocess.DEVNULL), **options)
-    return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+    return done.returncode, done.stdout.decode(errors="replace"), re.sub(r"\n {9}(?=\S)", " ", done.stderr.decode(errors="replace"))
