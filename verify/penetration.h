@@ -2,7 +2,7 @@
 // one of them after which their insides have no point in common (Cameron and Culley, Determining
 // the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
 //
-// From above: a translation after which the insides are certainly apart (separates()).
+// From above: a translation after which the insides are certainly apart (verify/separates.h).
 //
 // From below: by cores, convex sets inside the objects (verify/convex_core.h). If A is a core of
 // object a and B one of object b, then a and b overlap after each translation inside the polytope
@@ -32,10 +32,6 @@ struct Penetration {
   double hi = 0;                    // and at most this: no less than the length of the translation
   Vec3 translation = Vec3::Zero();  // of object a
 };
-
-/// True only if the insides of a, moved by the translation, and of b have no point in common. Uses
-/// bounds of all roundings: false if the insides are too near to decide.
-bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
 /// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? Ways: of
 /// length 1, directions in which a translation by `most` may separate, as across faces that meet.

@@ -383,6 +383,22 @@ std::vector<std::string> time_cells(const TimedRow& row) {
           std::to_string(row.total_ms.n),
           ms_text(row.cold_ms)};
 }
+
+nlohmann::ordered_json bench_facts(const Scene& scene,
+                                   const std::vector<std::pair<std::string, std::string>>& left_out,
+                                   nlohmann::ordered_json options) {
+  return {{"left_out", json_list(left_out,
+                                 [](const auto& one) {
+                                   return Json{{"name", one.first}, {"reason", one.second}};
+                                 })},
+          {"objects", scene.objects.size()},
+          {"triangles", scene.triangles.size()},
+          {"hash", scene_hash(scene)},
+          {"options", std::move(options)},
+          {"cpu", cpu_model()},
+          {"commit", FARCULL_COMMIT}};
+}
+
 std::string bench_title(const Scene& scene, unsigned threads) {
   return fmt::format("{}: {}, {}; {}, {}\n\n", scene.name,
                      counted(scene.objects.size(), "object", "objects"),

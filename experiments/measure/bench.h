@@ -192,6 +192,11 @@ void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool cou
 std::string ms_text(double ms);
 std::string mib_text(const TimedRow& row);
 std::vector<std::string> time_cells(const TimedRow& row);
+/// The end of a record of distances or of poses: what was left out and why, the scene's facts, the
+/// options, the processor and the commit.
+nlohmann::ordered_json bench_facts(const Scene& scene,
+                                   const std::vector<std::pair<std::string, std::string>>& left_out,
+                                   nlohmann::ordered_json options);
 /// The first line of a table.
 std::string bench_title(const Scene& scene, unsigned threads);
 

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include "commit.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/view/view.h"
@@ -164,24 +163,16 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
     one["largest_relative_error"] = row.errors.largest_relative;
     rows.push_back(std::move(one));
   }
-  Json left_out = Json::array();
-  for (const auto& [name, reason] : result.left_out)
-    left_out.push_back({{"name", name}, {"reason", reason}});
   const double within = options.question.within;
-  return {{"scene", scene.name},
-          {"distances", task_name(options.question)},
-          {"within", json_if(!std::isinf(within), within)},
-          {"threads", options.threads},
-          {"rows", rows},
-          {"fastest_peer",
-           result.fastest_peer ? Json(result.rows[*result.fastest_peer].name) : Json(nullptr)},
-          {"left_out", left_out},
-          {"objects", scene.objects.size()},
-          {"triangles", scene.triangles.size()},
-          {"hash", scene_hash(scene)},
-          {"options", FARCULL_JSON(options, peers, repeat, limit_s)},
-          {"cpu", cpu_model()},
-          {"commit", FARCULL_COMMIT}};
+  Json json = {{"scene", scene.name},
+               {"distances", task_name(options.question)},
+               {"within", json_if(!std::isinf(within), within)},
+               {"threads", options.threads},
+               {"rows", rows},
+               {"fastest_peer", result.fastest_peer ? Json(result.rows[*result.fastest_peer].name)
+                                                    : Json(nullptr)}};
+  json.update(bench_facts(scene, result.left_out, FARCULL_JSON(options, peers, repeat, limit_s)));
+  return json;
 }
 
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,

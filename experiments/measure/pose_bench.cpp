@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "commit.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/boxes/block.h"
@@ -19,7 +18,6 @@
 #include "experiments/peers/pose_peer.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -193,20 +191,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const PoseBenchOptions& optio
     one["cpu_ratio_to_fastest_peer"] = json_of(cpu_ratio(result, row));
     return one;
   };
-  Json left_out = Json::array();
-  for (const auto& [name, reason] : result.left_out)
-    left_out.push_back({{"name", name}, {"reason", reason}});
-  return {{"scene", scene.name},
-          {"poses", true},
-          {"threads", options.threads},
-          {"rows", json_list(result.rows, row_json)},
-          {"left_out", left_out},
-          {"objects", scene.objects.size()},
-          {"triangles", scene.triangles.size()},
-          {"hash", scene_hash(scene)},
-          {"options", FARCULL_JSON(options, peers, repeat, limit_s)},
-          {"cpu", cpu_model()},
-          {"commit", FARCULL_COMMIT}};
+  Json json = {{"scene", scene.name},
+               {"poses", true},
+               {"threads", options.threads},
+               {"rows", json_list(result.rows, row_json)}};
+  json.update(bench_facts(scene, result.left_out, FARCULL_JSON(options, peers, repeat, limit_s)));
+  return json;
 }
 
 std::string pose_bench_table(const Scene& scene, const PoseBenchOptions& options,

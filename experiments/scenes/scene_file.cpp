@@ -23,6 +23,7 @@
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_values.h"
 
 namespace farcull {
 namespace {
@@ -122,23 +123,22 @@ std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
-// Reads values. Each function takes a value and its place in the file, as in objects[1].scale.
-class SceneFile {
+class SceneFile : SceneValues {
  public:
   SceneFile(std::string path, std::vector<long> ignore_lines, MeshCache& meshes)
-      : path_(std::move(path)), ignore_lines_(std::move(ignore_lines)), meshes_(meshes) {}
+      : SceneValues(std::move(path)), ignore_lines_(std::move(ignore_lines)), meshes_(meshes) {}
 
   // `added` is called after each object.
   SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
     check_keys(root, "", {"name", "objects", "ignore"});
-    const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path_);
+    const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path);
     const std::string form = "write \"objects\": [{\"mesh\": FILE}, ...]";
     require(root.contains("objects"), "objects", "is missing", form);
     const json& objects = root["objects"];
     require(objects.is_array(), "objects", "must be an array", form);
     require(!objects.empty(), "objects", "is empty", form);
-    SceneBuilder builder(clean_name(name) + meshes_.note(), path_);
+    SceneBuilder builder(clean_name(name) + meshes_.note(), path);
     for (std::size_t i = 0; i < objects.size(); ++i) {
       add_object(objects[i], fmt::format("objects[{}]", i), builder);
       if (added) added(builder);
@@ -158,7 +158,7 @@ class SceneFile {
       require(pair.is_array() && pair.size() == 2 && pair[0].is_string() && pair[1].is_string(),
               place, "must be an array of two names", form);
       const std::vector<ObjectPair> named =
-          pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path_, place,
+          pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path, place,
                         ignore_lines_.at(k), lacking);
       out.insert(out.end(), named.begin(), named.end());
     }
@@ -180,101 +180,11 @@ class SceneFile {
             "name a mesh file");
     std::string name = mesh_stem(mesh);
     if (object.contains("name")) name = text(object["name"], place + ".name");
-    const Placement placement = read_placement(object, place);
+    const Placement placement = placement_of(object, place);
     Split split = Split::kNone;
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
     const bool self = object.contains("self") && truth(object["self"], place + ".self");
-    builder.add(meshes_.get(mesh_path(path_, mesh)), name, split, placement, self);
-  }
-
-  Placement read_placement(const json& object, const std::string& place) const {
-    Placement placement;
-    if (object.contains("matrix")) {
-      for (const char* other : {"scale", "rotate", "translate"}) {
-        require(!object.contains(other), place + "." + other, "stands beside a matrix",
-                "give the matrix alone, or scale, rotate and translate");
-      }
-      placement.matrix = read_matrix(object["matrix"], place + ".matrix");
-    }
-    if (object.contains("scale")) {
-      const json& scale = object["scale"];
-      const std::string at = place + ".scale";
-      const std::string form = "give a number or an array of 3 numbers, none of them 0";
-      require(scale.is_number() || scale.is_array(), at, "must be a number or an array of 3", form);
-      placement.scale =
-          scale.is_array() ? vec3(scale, at) : Vec3(Vec3::Constant(number(scale, at)));
-      require((placement.scale->array() != 0).all(), at, "is 0, which leaves no mesh", form);
-    }
-    if (object.contains("rotate")) {
-      const json& rotate = object["rotate"];
-      const std::string at = place + ".rotate";
-      const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
-      require(rotate.is_object(), at, "must be a JSON object", form);
-      if (rotate.contains("quaternion")) {
-        check_keys(rotate, at, {"quaternion"});
-        const json& q = rotate["quaternion"];
-        const std::string of = at + ".quaternion";
-        const std::string four =
-            "write {\"w\": W, \"x\": X, \"y\": Y, \"z\": Z} or [X, Y, Z, W], not all of them 0";
-        std::array<double, 4> values{};
-        if (q.is_object()) {
-          check_keys(q, of, {"w", "x", "y", "z"});
-          for (std::size_t i = 0; i < 4; ++i) {
-            const std::string key(1, "xyzw"[i]);
-            require(q.contains(key), of + "." + key, "is missing", four);
-            values[i] = number(q[key], of + "." + key);
-          }
-        } else {
-          require(q.is_array() && q.size() == 4, of, "is neither four named numbers nor an array",
-                  four);
-          for (std::size_t i = 0; i < 4; ++i)
-            values[i] = number(q[i], fmt::format("{}[{}]", of, i));
-        }
-        require(values != std::array<double, 4>{}, of, "is 0", four);
-        placement.rotate = Placement::Rotation{.quaternion = values};
-      } else {
-        placement.rotate = read_rotation(rotate, at);
-      }
-    }
-    if (object.contains("translate"))
-      placement.translate = vec3(object["translate"], place + ".translate");
-    return placement;
-  }
-
-  Placement::Rotation read_rotation(const json& rotate, const std::string& at) const {
-    const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
-    check_keys(rotate, at, {"axis", "angle"});
-    require(rotate.contains("axis"), at + ".axis", "is missing", form);
-    require(rotate.contains("angle"), at + ".angle", "is missing", form);
-    const Placement::Rotation out{.axis = vec3(rotate["axis"], at + ".axis"),
-                                  .angle = number(rotate["angle"], at + ".angle")};
-    require((out.axis.array() != 0).any(), at + ".axis", "is the zero vector",
-            "give a direction of any length");
-    return out;
-  }
-
-  // The upper three rows of a matrix of 4 x 4 numbers, row by row.
-  std::array<std::array<double, 4>, 3> read_matrix(const json& value,
-                                                   const std::string& place) const {
-    const std::string form =
-        "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
-    require(value.is_array() && value.size() == 4, place, "must be an array of 4 rows", form);
-    std::array<std::array<double, 4>, 3> out{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::string row = fmt::format("{}[{}]", place, i);
-      require(value[i].is_array() && value[i].size() == 4, row, "must be an array of 4 numbers",
-              form);
-      for (std::size_t k = 0; k < 4; ++k) {
-        const double x = number(value[i][k], fmt::format("{}[{}]", row, k));
-        if (i < 3) out[i][k] = x;
-        require(i < 3 || x == (k == 3 ? 1 : 0), row, "must be [0, 0, 0, 1]", form);
-      }
-    }
-    std::array<double, 9> linear{};
-    for (std::size_t k = 0; k < 9; ++k) linear[k] = out[k / 3][k % 3];
-    require(is_invertible(linear), place, "has no inverse, so it flattens the mesh",
-            "give a matrix whose determinant is not 0");
-    return out;
+    builder.add(meshes_.get(mesh_path(path, mesh)), name, split, placement, self);
   }
 
   Split read_split(const json& value, const std::string& place) const {
@@ -286,60 +196,6 @@ class SceneFile {
     return Split::kNone;
   }
 
-  std::string text(const json& value, const std::string& place) const {
-    require(value.is_string(), place, fmt::format("is {}, not a string", kind(value)),
-            "write it in quotes");
-    return value.get<std::string>();
-  }
-
-  bool truth(const json& value, const std::string& place) const {
-    require(value.is_boolean(), place, fmt::format("is {}, not true or false", kind(value)),
-            "write true or false, without quotes");
-    return value.get<bool>();
-  }
-
-  double number(const json& value, const std::string& place) const {
-    require(value.is_number(), place, fmt::format("is {}, not a number", kind(value)),
-            "give a finite number");
-    const auto x = value.get<double>();
-    require(std::isfinite(x), place, "is not finite", "give a finite number");
-    return x;
-  }
-
-  Vec3 vec3(const json& value, const std::string& place) const {
-    require(value.is_array() && value.size() == 3, place, "must be an array of 3 numbers",
-            "write it as [X, Y, Z]");
-    Vec3 v;
-    for (std::size_t i = 0; i < 3; ++i)
-      v[static_cast<int>(i)] = number(value[i], fmt::format("{}[{}]", place, i));
-    return v;
-  }
-
-  static std::string kind(const json& value) {
-    return fmt::format("of type {}", value.type_name());
-  }
-
-  void check_keys(const json& object, const std::string& place,
-                  std::initializer_list<std::string_view> known) const {
-    for (const auto& item : object.items()) {
-      if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
-      const std::string at =
-          place.empty() ? clean_name(item.key()) : place + "." + clean_name(item.key());
-      fail(at, "is an unknown key", fmt::format("use only {}", fmt::join(known, ", ")));
-    }
-  }
-
-  void require(bool condition, const std::string& place, const std::string& reason,
-               const std::string& remedy) const {
-    if (!condition) fail(place, reason, remedy);
-  }
-
-  [[noreturn]] void fail(const std::string& place, const std::string& reason,
-                         const std::string& remedy) const {
-    throw Error(path_, place.empty() ? reason : place + " " + reason, remedy);
-  }
-
-  std::string path_;
   std::vector<long> ignore_lines_;
   MeshCache& meshes_;
 };

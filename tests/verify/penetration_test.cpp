@@ -11,6 +11,7 @@
 
 #include "tests/lab/parts.h"
 #include "verify/inside.h"
+#include "verify/separates.h"
 
 namespace farcull {
 namespace {
