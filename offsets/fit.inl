@@ -25,12 +25,12 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 
 // ---- rounding outward ----
 
-// A float at or above x, at most two above the smallest. x + |x| 2^-24 is half a unit in the last place above x or more, and
-// rounding to nearest takes at most that back; the second factor covers the rounding of these doubles, the last term
-// subnormal floats.
+// A float at or above x, at most two floats above the least such float. x + |x| 2^-24 is at least half a unit in the last
+// place above x, and rounding to nearest takes back at most that. kFitHalfUlp also covers the rounding of these doubles,
+// and kFitSubnormal covers subnormal floats.
 FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
-// A float below z - radius and one above z + radius, whatever the rounding errors of these functions.
+// A float at or below z - radius, and one at or above z + radius, despite the rounding errors of these functions.
 FAR_KERNEL double fit_below(double z, double radius) {
   return fit_down(z - radius - kFitDepth * (abs(z) + radius));
 }
@@ -38,7 +38,7 @@ FAR_KERNEL double fit_above(double z, double radius) {
   return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
-// Depths that no point of the fattened primitive comes before (depths[0]) and none behind (depths[1]); floats.
+// depths[0]: a float depth that is before every point of the fattened primitive; depths[1]: one that is behind every point.
 FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* depths) {
   double lowest = p[0].z;
   double highest = p[0].z;
@@ -52,14 +52,14 @@ FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* dep
 
 // ---- the proxy's rectangle ----
 
-// A rectangle, four corners x, y counterclockwise, that contains the image of the points fattened by a disc, inside |x| <=
-// bound_x, |y| <= bound_y: along the longest image of an edge where that fits (the tight direction for slivers, a fair one
-// for all else), else aligned with the axes and cut off. Corners are rounded to the nearest float, which the budget's term
-// "input" covers.
+// A rectangle inside |x| <= bound_x, |y| <= bound_y that contains the image of the points fattened by a disc: four corners
+// x, y, counterclockwise. It lies along the longest image of an edge if that fits (tight for slivers, fair for all else);
+// else it is aligned with the axes and cut off. Corners are rounded to the nearest float, which the budget's term "input"
+// covers.
 FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double bound_x, double bound_y, double* corners) {
   double ux = 1.0;
   double uy = 0.0;
-  double longest2 = 1e-200;  // shorter edges square to nothing
+  double longest2 = 1e-200;  // shorter edges count as points
   for (int i = 0; i < count; ++i) {
     const dvec3 e = fit_sub(p[(i + 1) % count], p[i]);
     const double length2 = e.x * e.x + e.y * e.y;
@@ -121,7 +121,7 @@ FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double b
 FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   dvec3 along = {1.0, 0.0, 0.0};
   dvec3 base = p[0];
-  double longest2 = 1e-200;  // shorter edges square to nothing
+  double longest2 = 1e-200;  // shorter edges count as points
   for (int i = 0; i < count; ++i) {
     const dvec3 e = fit_sub(p[(i + 1) % count], p[i]);
     const double length2 = fit_dot(e, e);
@@ -136,13 +136,13 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   for (int i = 0; i < count; ++i) {
     const dvec3 d = fit_sub(p[i], base);
     dvec3 off = fit_sub(d, fit_scaled(fit_dot(along, d), along));
-    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // what rounding left along the edge
+    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // removes what rounding left
     const double distance2 = fit_dot(off, off);
     const FAR_BOOL farther = distance2 > farthest2;
     across = fit_choose(farther, off, across);
     farthest2 = FAR_SELECT(farther, distance2, farthest2);
   }
-  // A needle or a point has any direction across: the axis farthest from the edge gives one.
+  // For a needle or a point any direction across is right: the axis farthest from the edge gives one.
   const FAR_BOOL thin = farthest2 <= max(0x1p-80 * longest2, 1e-200);
   const double ax = abs(along.x);
   const double ay = abs(along.y);

@@ -1,4 +1,4 @@
-// From a kernel that was compiled as C++ to the functions of a SolidProgram.
+// Turns a kernel that was compiled as C++ into the functions of a SolidProgram.
 #pragma once
 
 #include "core/base/glsl_shim.h"
@@ -20,8 +20,8 @@ bool kernel_interval(float cx, float cy, const Solid& s, float& entry, float& ex
                 vec4_of<vec4>(s[3]), vec4_of<vec4>(s[4]), entry, exit);
 }
 
-/// The same compiled with Worst: a miss where some rounding misses, else the latest entry and the
-/// earliest exit.
+/// The same for a kernel compiled with Worst: false if any permitted rounding misses, else the
+/// latest entry and the earliest exit.
 template <auto Kernel>
 bool kernel_interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   using glsl_worst::vec4;

@@ -29,7 +29,7 @@ FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   return extent;
 }
 
-// Cuts [lo, hi] with the solid's halfspace of normal n; false: the line misses it. Normals far from unit length say nothing.
+// Cuts [lo, hi] with the solid's halfspace of normal n; false: the line misses it. Unused: normals far from unit length.
 FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach, FAR_INOUT(float) lo,
                    FAR_INOUT(float) hi) {
   float squared = n.x * n.x + n.y * n.y + n.z * n.z;
@@ -42,8 +42,8 @@ FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v
   return !usable || hit;
 }
 
-// The contact of the line with the capsule about the edge a, a + e, first (sign -1) or last (sign 1). Keeps the normal there
-// in n (w: its z) where sign * z is beyond that of the contacts so far.
+// The first (sign -1) or last (sign 1) contact of the line with the capsule about the edge a, b. If it is before (after)
+// all contacts so far, its normal replaces n, and its z replaces n.w.
 FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -75,7 +75,7 @@ FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECIS
   n.w = FAR_SELECT(beyond, z, n.w);
 }
 
-// Keeps in n the direction in the image from the edge a, b to the pixel centre, where that is nearer (w: distance squared).
+// Sets n to the image direction from edge a, b to the pixel centre, and n.w to their squared distance, if less than n.w.
 FAR_KERNEL void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;

@@ -1,5 +1,5 @@
-// The fits on scalars; then, for each offset, its kernel as scalar C++ and on the worst device, and
-// its fatteners.
+// Compiles the fits for scalars. Then defines, for each offset, its kernel as scalar C++ and on the
+// worst device, and its fatteners.
 #include "offsets/offsets.h"
 
 #include <algorithm>

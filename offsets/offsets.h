@@ -1,5 +1,5 @@
-// Offsets: solids that are drawn in place of a primitive and contain each point within the radius
-// of it.
+// Offsets: solids that are drawn in place of a primitive and contain all points at most the radius
+// away from it.
 #pragma once
 
 #include <array>
@@ -30,9 +30,9 @@ Fattener minkowski_fattener();
 // The fits of offsets/fit.inl on doubles: rectangles and solids of primitives with any number of
 // corners.
 
-/// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
-/// `bounds`: along the longest edge if that fits, else aligned with the axes and cut off at
-/// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
+/// A rectangle inside `bounds` that contains the image of `points` fattened by a disc of `radius`
+/// px: along the longest edge if that fits; else aligned with the axes and cut off at `bounds`,
+/// which is at least a pixel outside the window. Corners are rounded to the nearest floats, which
 /// the budget's term "input" covers.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
                                      const ProxyBounds& bounds);
@@ -42,8 +42,8 @@ std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius
 Solid obb_of(std::span<const Vec3> points, double radius);
 
 /// The solid that contains the triangle a, b, c (px) fattened by a ball of `radius` px, rounded
-/// outward, as offsets/minkowski.glsl reads it: its corners are rounded to floats relative to a
-/// float centre, its radius grows by the largest of their displacements.
+/// outward, as offsets/minkowski.glsl reads it. Its corners are rounded to floats relative to a
+/// float centre, and its radius grows by the largest of their displacements.
 Solid minkowski_solid(const Vec3& a, const Vec3& b, const Vec3& c, double radius);
 
 }  // namespace farcull

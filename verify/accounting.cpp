@@ -1,18 +1,18 @@
-// Joins a tree of boxes with itself. This visits every pair of triangles that counts exactly once,
-// alone or in a product. The upper levels of the tree divide objects, the lower ones the
-// triangles of one object. So two disjoint subtrees hold different objects, or triangles of one
-// object; the latter are joined iff the object is `self`. Two nodes whose boxes are far enough
-// apart settle |a| * |b| pairs at once. Boxes are minima and maxima of the coordinates. One
-// difference in double is compared with the clearance. Rounding is monotone, so "apart" is proved,
-// and nodes that are apart hold only triangles that are apart. The order in which the tree divides
-// changes the speed, never the answer.
+// Joins a tree of boxes with itself. Each pair of triangles that counts is met exactly once: by
+// itself, or as one of all pairs of two nodes. The upper levels of the tree divide the objects, the
+// lower levels the triangles of one object. So two disjoint subtrees hold different objects, or
+// triangles of one object; in the second case they are joined iff the object is `self`. If the
+// boxes of two nodes are far enough apart, all pairs of the nodes are counted at once. Boxes are
+// minima and maxima of the coordinates. One difference in double is compared with the clearance.
+// Rounding is monotone, so "apart" is proved, and nodes that are apart hold only triangles that are
+// apart. The order in which the tree divides changes the speed, never the answer.
 //
 // A sweep along one axis would test every pair that overlaps on that axis: 1.4e8 on two bunnies,
 // and all 1.1e10 for bundles of long parallel needles (37 s; the tree takes 0.07 s on both). The
-// tree is as short to state, and it counts the pairs that it passes over, so the classes add up
-// only if no pair was lost. They would also add up if the tree lost one pair and met another twice.
-// So the certificate's BoxPairs enumerates the pairs whose boxes overlap a second time, and the two
-// sets are compared.
+// tree is as easy to state. It counts the pairs that it passes over, so the classes add up only if
+// no pair was lost; but they also add up if it lost one pair and met another twice. So the
+// certificate's BoxPairs enumerates the pairs whose boxes overlap again, and the two sets are
+// compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
 
 namespace {
 
-// Triangles of a leaf: more of them make fewer nodes, but more tests of single boxes.
+// Largest number of triangles in a leaf. More make fewer nodes, but more tests of single boxes.
 constexpr std::uint32_t kLeafSize = 4;
 // Pairs decided at a time, so that no list of overlaps is ever stored.
 constexpr std::size_t kChunk = 1 << 18;

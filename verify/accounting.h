@@ -1,8 +1,8 @@
-// Independent accounting: certifies the fate of every pair of triangles that counts, pair by pair.
-// A pair counts if its triangles are of different objects, or of one object marked `self`.
+// Independent accounting: each pair of triangles that counts is kept, proved apart, or missed. A
+// pair counts if its triangles are of different objects, or of one object marked `self`.
 //
-// The accounting shares no code with what culled: it makes its own boxes, enumerates the
-// overlapping ones by its own algorithm (neither CGAL's join nor core's), and decides those that
+// The accounting shares no code with what culled: it makes its own boxes, finds the pairs whose
+// boxes overlap by its own algorithm (neither CGAL's join nor core's), and decides the pairs that
 // were not kept with verify/exact. It knows nothing of offsets, views or budgets.
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace farcull {
 
-/// The number of pairs and a sum over hashes of the pairs, which does not depend on their order.
-/// Two different sets of the same size have equal sums with a probability of 2^-64.
+/// The number of pairs, and the sum of their hashes, which does not depend on their order. Two
+/// different sets of the same size have equal sums with a probability of 2^-64.
 struct PairSet {
   std::uint64_t count = 0;
   std::uint64_t sum = 0;
@@ -39,8 +39,8 @@ struct Accounting {
   std::uint64_t pairs_total = 0;         // by combinatorics from the sizes of the objects
   std::uint64_t ignored = 0;             // of two objects in AccountOptions::ignored
   std::uint64_t pairs_kept = 0;          // in `kept`, whether or not the boxes overlap
-  std::uint64_t certified_by_boxes = 0;  // closed boxes farther than D apart along an axis, by
-                                         // differences in double; for D = 0 by comparisons
+  std::uint64_t certified_by_boxes = 0;  // closed boxes farther than D apart along an axis, by a
+                                         // difference in double; exact for D = 0
   std::uint64_t neighbours = 0;          // neighbours whose intersection is only the shared part
   std::uint64_t certified_by_predicates = 0;  // farther than D apart by exact predicates
   std::uint64_t false_negatives = 0;          // pairs in no other class: missed
@@ -60,12 +60,12 @@ struct AccountOptions {
   std::vector<ObjectPair> ignored = {};  // sorted, a < b; no kept pair is of two such objects
 };
 
-/// kept: the pairs that culling left to the exact tests; sorted, each pair once, a < b, pairs of
-/// the scene that count and are not ignored. Throws std::logic_error if `kept` breaks this (it
-/// would be miscounted in silence), if validate() would not accept the ranges of the scene, or if
-/// the clearance is negative or not finite. Throws std::logic_error too if the accounting itself
-/// fails: a pair is left undecided, the classes do not sum to pairs_total, or the pairs whose boxes
-/// overlap are not those that the certificate's own enumeration finds. Memory O(triangles + kept).
+/// kept: the pairs that culling left to the exact tests; sorted, each pair once, a < b; they count
+/// and are not ignored. Throws std::logic_error if `kept` is not so (the counts would be wrong
+/// without notice), if validate() would not accept the ranges of the scene, or if the clearance is
+/// negative or not finite. Also throws it if the accounting itself fails: a pair is left undecided,
+/// the classes do not sum to pairs_total, or the pairs whose boxes overlap are not those that the
+/// certificate's own enumeration finds. Memory O(triangles + kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {});
 

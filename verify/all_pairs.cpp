@@ -23,10 +23,9 @@ namespace {
 
 // Whether the closed boxes of the triangles are farther apart than the clearance D along an axis,
 // by differences in double. Rounding is monotone: if a rounded difference is above D, so is the
-// exact one. If no rounded difference is above D, the boxes that the join grows overlap: each grows
-// by half of D, rounded up to the next double at least, so by D/2 + ulp(D)/2 or more. If grown
-// boxes are disjoint, the boxes are apart by more than D + ulp(D), which no rounding brings down to
-// D.
+// exact one. A pair for which none is above D is also found by the join. The join grows each box by
+// half of D, rounded up to the next double at least, so by D/2 + ulp(D)/2 or more. If grown boxes
+// are disjoint, an exact difference is above D + ulp(D), and no rounding brings it down to D.
 bool farther_along_an_axis(const Scene& scene, const TrianglePair& pair, double clearance) {
   const Box a = grown_box(scene, pair.a, 0), b = grown_box(scene, pair.b, 0);
   for (int k = 0; k < 3; ++k) {
@@ -50,7 +49,7 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
   ExactResult result;
   GatheredPairs pairs, neighbour_pairs;
   std::set<std::thread::id> deciding;
-  std::mutex mutex;  // of all three
+  std::mutex mutex;  // guards the four objects above
   OrderedPairs(scene, question.clearance, {}, true, threads)
       .give([&](std::vector<TrianglePair>& some) {
         if (question.clearance > 0) {

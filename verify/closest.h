@@ -22,7 +22,7 @@ namespace farcull {
 class SquaredDistance {
  public:
   SquaredDistance();  // 0
-  struct Value;       // verify/squared_distance.h, for verify alone
+  struct Value;       // defined in verify/squared_distance.h, for verify alone
   explicit SquaredDistance(std::shared_ptr<const Value> value);
   /// The square of this distance. Precondition: finite, >= 0.
   static SquaredDistance of(double distance);
@@ -42,8 +42,8 @@ class SquaredDistance {
   std::shared_ptr<const Value> value_;
 };
 
-/// The part of a triangle that a point lies on. If it lies on several, the first one counts: a
-/// corner before an edge before the face, a lower number before a higher one.
+/// The part of a triangle that a point lies on. If the point lies on several parts, the first
+/// counts: a corner before an edge before the face, a lower number before a higher one.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
   FeatureKind kind = FeatureKind::vertex;
@@ -58,9 +58,9 @@ constexpr std::uint8_t number_of(const Feature& feature) {
 }
 
 /// Two closest points of two triangles. If several pairs of points are equally near, as for
-/// parallel edges or triangles that overlap, the features choose among them: first the least
-/// feature of a on which a closest point lies, then the least feature of b on which a partner of
-/// such a point lies. Features include their boundary. Only one pair of points remains
+/// parallel edges or triangles that overlap, one is chosen by features, which here include their
+/// boundary: the point of a is on the least feature of a that has such a point; the point of b is
+/// on the least feature of b that has a partner of a point on that feature. This leaves one pair
 /// (verify/closest_points.cpp).
 struct Closest {
   SquaredDistance squared;
@@ -78,7 +78,7 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
 /// The square of the distance alone.
 SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The first of the pairs, in their order, at the least distance.
+/// The pair at the least distance; of several equally near pairs, the first in the order given.
 struct NearestPair {
   TrianglePair pair;
   Closest closest;
@@ -87,8 +87,8 @@ struct NearestPair {
 /// pair names a triangle that the scene does not have.
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
-// ---- the two parallel planes that keep two triangles apart, exactly. They prove of many other
-// pairs of triangles at once that they are no nearer.
+// ---- two parallel planes between two triangles, exactly. They show of many other pairs of
+// triangles at once that these are no nearer.
 
 /// Let p and q be closest points of the triangles a and b, and w = q - p. One plane goes through p,
 /// the other one through q; both are perpendicular to w. The reach of a triangle is how far it
@@ -102,9 +102,9 @@ class PlanesBetween {
   /// Throws std::logic_error if the triangles meet.
   PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-  /// Never below the exact reach, and equal to it if it is a double, such as 0.
+  /// At least the exact reach; equal to it if the exact reach is a double, such as 0.
   double reach(const std::array<Vec3, 3>& t) const { return place(t, 0); }
-  /// Never above the exact start, and equal to it if it is a double.
+  /// At most the exact start; equal to it if the exact start is a double.
   double start(const std::array<Vec3, 3>& t) const { return place(t, 1); }
 
  private:

@@ -1,7 +1,7 @@
 // Finds two closest points of two features (corner, edge or face of a triangle): the points whose
-// difference is perpendicular to both features. In integers, so nothing is rounded. For
-// verify/closest_points.cpp, which derives the answer for triangles from this; the vectors also for
-// other sources of verify.
+// difference is perpendicular to both features. In integers, so nothing is rounded.
+// verify/closest_points.cpp derives the answer for triangles from this. Other sources of verify use
+// only the vectors.
 //
 // Corners are integers of one scale. A point of a feature is a corner plus multiples of the edges
 // from that corner. The multiples of both points are fractions with one denominator (Found::below).
@@ -38,7 +38,7 @@ Vector<Integer> cross(const Vector<Integer>& x, const Vector<Integer>& y) {
           Integer(x[0] * y[1] - x[1] * y[0])};
 }
 
-/// The two ends of an edge by number.
+/// The number of the corner at which an edge ends. Edge i begins at corner i.
 constexpr int edge_end(int edge) { return edge == 2 ? 0 : edge + 1; }
 
 /// Bit i is set where corner i belongs to the feature.

@@ -25,8 +25,8 @@ namespace farcull {
 // Which answer. Triangles are convex, so the difference w = q - p is the same for all pairs (p, q)
 // of closest points, and the set of all p is P: the common part of a and of b moved by -w. Here
 // features include their boundary: an edge its ends, a face its edges. The answer is the first pair
-// of a feature F of a and a feature G of b, by F and then by G, such that some p on F and q on G
-// are closest points. F and G have only one such pair of points:
+// of features, F of a and G of b, ordered by F and then by G, for which some p on F and q on G are
+// closest points. F and G have only one such pair of points:
 //  - F is a corner: p is that corner.
 //  - F is an edge: no corner of a is in P, or F would be that corner. Suppose that P contains more
 //    than one point of F. These points are a segment that does not reach the ends of F, so it ends
@@ -38,24 +38,23 @@ namespace farcull {
 //    edge of b that does: one point.
 // Each point is inside its feature: on no corner or edge that comes earlier. The squared distance
 // from a point of the line or plane of F to a point of that of G is a polynomial of degree 2.
-// Inside F and G it takes its least value at only one pair of points, so it takes it nowhere else,
-// and the equations that find() of verify/closest_features.h solves have this one solution. For any
-// other features find() gives points of these features or nothing, never points that are nearer. So
-// the answer is the first of the nearest points that find() gives for all pairs of features in
-// order.
+// Inside F and G it has its minimum at only one pair of points, so it has no other minimum, and the
+// equations that find() of verify/closest_features.h solves have this one solution. For any other
+// features find() gives points of these features or nothing, so never nearer points. So the answer
+// is the first of the nearest points that find() gives for all pairs of features in order.
 //
 // Proof of a guess. Let p be a point of a, q one of b, and w = q - p not 0. They are closest points
 // iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. If this
-// holds, the triangles lie on both sides of the slab between the planes through p and q that are
-// perpendicular to w, so no points are nearer. If it does not hold, p comes nearer to q on the way
-// to some x, or q nearer to p on the way to some y. All closest points of a lie in the hull of the
-// corners x whose product is 0, and those of b in the hull of such y. So a guess is the answer if
-// these corners are just those of F and of G, if p and q are inside F and G, and if F or G is a
-// corner or both are edges that are not parallel. Else the features of these corners are tried in
-// order, until two of them are as near.
+// holds, the triangles lie on opposite sides of the slab between the planes through p and q that
+// are perpendicular to w, so no points are nearer. If it does not hold, p comes nearer to q on the
+// way to some x, or q nearer to p on the way to some y. All closest points of a lie in the hull of
+// the corners x whose product above is 0, and those of b in the hull of such y. So a guess is the
+// answer if these corners are just those of F and of G, if p and q are inside F and G, and if F or
+// G is a corner or both are edges that are not parallel. Else the features of these corners are
+// tried in order, until two of them are as near.
 //
 // Doubles only choose what to try, and leave out features that are provably not closest. So only
-// the last rounding changes the answer.
+// the final rounding affects the answer.
 
 namespace {
 
@@ -135,8 +134,8 @@ Boxes boxes_of(const std::array<Vec3, 3>& t) {
   return out;
 }
 
-/// True only if the boxes are farther apart along an axis than `most`: rounding is monotone, so a
-/// rounded difference above a double proves the exact difference above it.
+/// True only if the boxes are farther apart along an axis than `most`. Rounding is monotone, so if
+/// a rounded difference is above `most`, so is the exact one.
 bool farther(const Box& a, const Box& b, double most) {
   return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
 }
@@ -226,7 +225,7 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
     return rounded_point(point_of(corners, f, answer.found, side), answer.found.below,
                          pair.exponent);
   };
-  // A face that an edge passes through has the edge's point.
+  // If an edge passes through a face, the point of the face is the point of the edge.
   const bool passes = out.features[0].kind != FeatureKind::vertex &&
                       out.features[1].kind != FeatureKind::vertex &&
                       out.features[0].kind != out.features[1].kind;
@@ -246,7 +245,7 @@ SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<
 struct PlanesBetween::Planes {
   Vector direction;
   std::array<Vec3, 2> on;  // a corner of a on the one plane, a corner of b on the other
-  long exponent = 0;       // places are multiplied by 2^exponent, so that none is infinite
+  long exponent = 0;       // reach and start are multiplied by 2^exponent, so they are finite
 };
 
 PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
@@ -276,8 +275,8 @@ bool is_double(const Integer& m, long exponent) {
 
 }  // namespace
 
-// Each corner's place is the product of the direction and its difference from a point of the plane,
-// in integers, rounded outward.
+// Reach (side 0) or start. The place of a corner is the scalar product of the direction with the
+// corner minus a point of the plane, in integers, rounded outward: reach up, start down.
 double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
   const Vec3& origin = planes_->on[side];
   double out = 0;

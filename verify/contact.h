@@ -57,7 +57,7 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
 // treated as any other triangles: the part that they share is a contact too.
 
 enum class ContactKind : std::uint8_t {
-  apart,         // no point in common: pairs that a clearance lets collide
+  apart,         // no point in common: a pair that collides only by a clearance
   equal,         // the same set of points
   touch_vertex,  // one point in common, which is a corner of A or of B
   touch_edge,    // one point in common, which is on an edge of A and on an edge of B
@@ -94,10 +94,10 @@ ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 /// not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The corners of the common polygon in turn, each coordinate rounded once to the nearest double;
-/// empty unless the points in common have dimension 2. The lexicographically lowest corner comes
-/// first, and its lower neighbour second; that is the order of the exact corners, of which some may
-/// be rounded to the same doubles. Symmetric; the order of corners does not matter.
+/// The corners of the common polygon in order around it, each coordinate rounded once to the
+/// nearest double; empty unless the points in common have dimension 2. The lexicographically lowest
+/// corner comes first, and its lower neighbour second. The exact corners are compared; several of
+/// them may be rounded to the same doubles. Symmetric; the order of corners does not matter.
 std::vector<Vec3> contact_polygon(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.

@@ -1,7 +1,6 @@
-// Finds how two triangles meet of which one is a segment or a point: this one is cut by the
-// half-spaces that bound the other. All numbers are integers, and a point has one denominator for
-// its three coordinates, so nothing is rounded but the answer. Also kinds and points of lists of
-// pairs.
+// Finds how two triangles meet if one of them is a segment or a point: cuts this one by the
+// half-spaces that bound the other. All numbers are integers, and the three coordinates of a point
+// have one denominator, so only the answer is rounded. Also answers for lists of pairs.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -105,9 +104,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. The value is
-/// linear, and each value is scaled by its point's w. So the sum of both points, each times the
-/// size of the other's value, has the value 0.
+/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. The new end has the
+/// value 0: it is the sum of both ends, each times the magnitude of the other's value, since the
+/// value is linear, and the value of each end is scaled by its w.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;
@@ -128,7 +127,7 @@ auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned t
     if (std::max(pair.a, pair.b) >= scene.triangles.size())
       throw std::logic_error("contact kinds: a pair names a triangle that the scene lacks");
   }
-  constexpr std::size_t kLeast = 64;  // pairs per thread, enough to pay for it
+  constexpr std::size_t kLeast = 64;  // fewer pairs are not worth a thread
   std::vector<decltype(answer(Corners(), Corners()))> out(pairs.size());
   for_chunks(pairs.size(), chunks_for(pairs.size(), kLeast, std::max(threads, 1u)),
              [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -155,7 +154,7 @@ ContactKind contact_kind(const Corners& a, const Corners& b) {
 }
 
 bool penetrate(const Corners& a, const Corners& b) {
-  // Relative interiors of triangles in different planes meet iff some point is on no edge.
+  // Relative interiors of triangles in different planes meet iff a common point is on no edge.
   return contact_kind(a, b) == ContactKind::crossing;
 }
 

@@ -19,8 +19,8 @@ using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Exact signs of determinants of the corners of two triangles. Numbers 0 to 2 are the corners of
-/// a, 3 to 5 those of b. Doubles decide most of them. A determinant of which each term has a factor
-/// that is 0 is 0, as for faces of boxes; CGAL decides the rest.
+/// a, 3 to 5 those of b. Doubles decide most signs. If each term of a determinant has a factor 0,
+/// as for faces of boxes, the determinant is 0. CGAL decides the rest.
 class Signs {
  public:
   Signs(const Corners& a, const Corners& b) : a_(a), b_(b) {}
@@ -57,8 +57,8 @@ class Signs {
     return CGAL::orientation(point(p, u, v), point(q, u, v), point(r, u, v));
   }
 
-  /// The first axis along which the normal of the triangle whose first corner is `first` is not 0;
-  /// empty if the triangle is a segment or a point.
+  /// The first axis along which the normal of a triangle is not 0; empty if the triangle is a
+  /// segment or a point. first: the number of the triangle's first corner.
   std::optional<int> axis_of(int first) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (turn(axis, first, first + 1, first + 2) != 0) return axis;
@@ -66,8 +66,8 @@ class Signs {
     return std::nullopt;
   }
 
-  /// Whether corner k lies in the closed triangle whose first corner is `first`. Precondition: it
-  /// lies in its plane, whose normal is not 0 along the axis.
+  /// Whether corner k lies in the closed triangle whose first corner is `first`. Precondition: the
+  /// corner lies in the triangle's plane, whose normal is not 0 along the axis.
   bool holds(int first, int axis, int k) const {
     int least = 0, most = 0;
     for (int i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ class Signs {
 /// is a segment, its two ends are the only such corners.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
-  int turns[2][3][3];  // of edge i of one triangle and corner k of the other
+  int turns[2][3][3];  // [t][i][k]: of edge i of triangle t and corner k of the other
   for (int t = 0; t < 2; ++t) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k)
@@ -137,13 +137,13 @@ Meeting meeting_in_plane(const Signs& signs, int axis) {
 }  // namespace
 
 // If the planes of the triangles differ, let L be their common line. A triangle meets L in nothing,
-// in a corner alone, or in the segment between two of its edges from a corner that is alone on its
-// side of the other's plane; an end of the segment may be a corner. In the last case for both, let
-// p1 and p2 be the lone corners and q and r the other corners, ordered so that p1 lies on the
-// positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). L meets the edges p1q1, p1r1, p2q2,
-// p2r2 at u, v, s, t. Take L as the x axis and the planes as z = 0 and y = 0 (affine maps that keep
-// orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1 z2. Since q1 lies on the ray from p1
-// through u, at or behind u, and likewise for the other edges:
+// in one corner, or in a segment. In the last case one corner is alone on its side of the other's
+// plane, and the two edges from this corner meet L at the ends of the segment; an end may be a
+// corner. If both triangles meet L in a segment, let p1 and p2 be the lone corners and q and r the
+// others, ordered so that p1 is on the positive side of (p2, q2, r2) and p2 on that of (p1, q1,
+// r1). L meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Take L as the x axis and the planes
+// as z = 0 and y = 0 (affine maps that keep orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1
+// z2. Since q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
 //   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
 //   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
 //   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
@@ -175,14 +175,14 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
         alone = k;
       }
     }
-    if (alone < 0) {  // it meets the other's plane in the corner `on` alone
+    if (alone < 0) {  // the triangle meets the other's plane only in corner `on`
       const int corner = 3 * t + on;
       if (!signs.holds(t == 0 ? 3 : 0, t == 0 ? *axis_b : *axis_a, corner)) return Meeting{};
       return Meeting{ContactKind::touch_vertex, 0, 1, {{{corner, corner}}}};
     }
     order[t] = {alone, (alone + 1) % 3, (alone + 2) % 3};
   }
-  // Each lone corner is to lie on the positive side of the other plane.
+  // Orders q and r so that each lone corner is on the positive side of the other plane.
   const bool a_below = side[0][order[0][0]] < 0, b_below = side[1][order[1][0]] < 0;
   if (a_below) std::swap(order[1][1], order[1][2]);
   if (b_below) std::swap(order[0][1], order[0][2]);
@@ -191,12 +191,12 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
   const int first = signs.side(p1, q1, 3 + p2, 3 + q2);
   const int second = signs.side(p1, r1, 3 + r2, 3 + p2);
   if (first > 0 || second > 0) return Meeting{};
-  // Where the edge of triangle t from its lone corner to another one meets the other's plane.
+  // Where the edge of triangle t from its lone corner to corner `to` meets the other's plane.
   const auto place = [&](int t, int to) -> Place {
     if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
     return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
   };
-  // Two places are the same point: returns the one that is a corner, if any.
+  // For two places of one point: returns the one that is a corner, if any.
   const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
   const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {

@@ -9,9 +9,9 @@
 namespace farcull {
 
 /// A point that two triangles share, by numbers of corners: 0 to 2 are those of a, 3 to 5 those of
-/// b. If from == to, it is this corner. Else it is where the edge between them meets a plane: that
-/// of the corners `other`; or, if the triangles lie in one plane, the plane along `axis` through
-/// the first two.
+/// b. If from == to, the point is this corner. Else it is where the edge between these corners
+/// meets a plane: the plane of the corners `other`; or, if the triangles lie in one plane, the
+/// plane along `axis` through the first two corners of `other`.
 struct Place {
   int from = 0, to = 0;
   std::array<int, 3> other = {};
@@ -28,7 +28,7 @@ struct Meeting {
 };
 
 /// The meeting, decided by signs of determinants alone; empty iff a triangle is a segment or a
-/// point. places: without them, the places of a segment are not looked for.
+/// point. places: if false, the places of a common segment are left out.
 std::optional<Meeting> meeting_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                                   bool places);
 

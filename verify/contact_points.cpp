@@ -1,6 +1,6 @@
 // Computes the points that two triangles share, rounded to the nearest doubles. Numbers with about
 // 106 bits and bounds of their errors decide most roundings (verify/wide.h); integers decide the
-// rest. Which points these are is known from signs of determinants (verify/contact_meeting.cpp).
+// rest. Signs of determinants have found which points these are (verify/contact_meeting.cpp).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,8 +25,8 @@ using closest::Vector;
 template <class N>
 using SixCorners = std::array<Vector<N>, 6>;
 
-/// A normal of the plane of three corners; or, given an axis, of the plane along it through the
-/// first two.
+/// A normal of the plane of three corners; or, if an axis is given, of the plane along the axis
+/// through the first two corners.
 template <class N>
 Vector<N> normal_of(const SixCorners<N>& corners, const std::array<int, 3>& of, int axis = -1) {
   Vector<N> second = {N(0), N(0), N(0)};
@@ -45,8 +45,9 @@ struct Quotient {
   N w;
 };
 
-/// Let s and t be the products of the normal with the differences of the edge's ends p and q from a
-/// point of the plane. They have different signs, and (q s - p t) / (s - t) is in the plane.
+/// The point of a place: (q s - p t) / (s - t). p and q are the ends of the edge; s and t, which
+/// differ in sign, are the products of the plane's normal with p and q relative to a point of the
+/// plane.
 template <class N>
 Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
   const Vector<N>&p = corners[place.from], &q = corners[place.to];
@@ -61,7 +62,7 @@ Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
 }
 
 // Both kinds of arithmetic find a point at a place, round it, and compare two points. An empty
-// answer is in doubt.
+// answer means that rounding leaves a doubt.
 
 class InWideNumbers {
  public:
@@ -89,7 +90,7 @@ class InWideNumbers {
       const double fixed = corners_[i][k].hi;
       if (p[k].hi == q[k].hi) {  // the edge does not change this coordinate
         out[k] = p[k];
-      } else if (is(j, fixed) && is(l, fixed)) {  // all of the other triangle or line has it
+      } else if (is(j, fixed) && is(l, fixed)) {  // the whole other triangle or line has it
         out[k] = fixed;
       } else {
         if (!fits_) return std::nullopt;
@@ -120,7 +121,7 @@ class InWideNumbers {
   }
 
  private:
-  /// Whether the common line of both planes surely has one coordinate k.
+  /// True only if coordinate k is the same all along the common line of both planes.
   bool is_constant(int k) const {
     if (!planes_differ_ || !fits_) return false;
     return cross(normal_of(corners_, {0, 1, 2}), normal_of(corners_, {3, 4, 5}))[k].is_zero();
@@ -166,7 +167,7 @@ class InIntegers {
   int exponent_ = 0;
 };
 
-/// The lower end of a point or a segment, and the other one.
+/// The ends of a common segment, the lower one first; of a common point, the point twice.
 template <class Arithmetic>
 std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const auto p = arithmetic.at(meeting.places[0]),
@@ -180,8 +181,8 @@ std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const M
   return *sign < 0 ? std::array{*first, *second} : std::array{*second, *first};
 }
 
-/// The corners of a polygon as contact_polygon() has them. Each of its sides is on the line of an
-/// edge, so two corners are neighbours iff they are on one of these lines.
+/// The corners of a polygon in the order of contact_polygon(). Each of its sides is on the line of
+/// an edge, so two corners are neighbours iff they are on one of these lines.
 template <class Arithmetic>
 std::optional<std::vector<Vec3>> polygon_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const int count = meeting.count;

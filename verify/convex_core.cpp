@@ -1,8 +1,8 @@
-// A core grows around a seed: triangles are taken in the order of their distance from it, and each
-// that meets the core cuts it, along its own plane or across the shortest way to it (Deits and
-// Tedrake, Computing Large Convex Regions of Obstacle-Free Space through Semidefinite Programming,
-// 2015, cut so around ellipsoids). Of a solid with few flat faces the cores are its largest boxes,
-// wedges and the like.
+// A core grows around a seed, within a box. Triangles are taken in the order of their distance from
+// the seed. Each one that meets the core cuts it, by its own plane or by a plane across the
+// shortest way from the seed (Deits and Tedrake, Computing Large Convex Regions of Obstacle-Free
+// Space through Semidefinite Programming, 2015, cut so around ellipsoids). For a solid with few
+// flat faces the cores are its largest boxes, wedges and the like.
 #include "verify/convex_core.h"
 
 #include <Eigen/Geometry>
@@ -21,7 +21,7 @@ using Corners = ClosedObject::Corners;
 using separation::kU;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostCuts = 64;  // of a core
+constexpr std::size_t kMostCuts = 64;  // largest number of planes of a core
 
 /// The point of a triangle that is nearest to p, in plain doubles (Ericson, Real-Time Collision
 /// Detection, 2005, section 5.1.5).
@@ -51,8 +51,8 @@ struct HalfSpace {
   double reach;
 };
 
-/// True only if all points are beyond: normal . (p - seed) > most. A product of differences has 5
-/// roundings, relative to the magnitudes, and `most` likewise; so 16 u covers both.
+/// True only if normal . (p - seed) > most for all p of t. A product of differences has 5
+/// roundings, relative to the magnitudes, and so has `most`; 16 u covers both.
 bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
   double least = kInf, magnitude = size;
   for (const Vec3& v : t) {
@@ -63,8 +63,8 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
   return least - most > 16 * kU * normal.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
-/// The proof at the top of the header, of the hull of the points. `near`: all triangles that may
-/// meet the hull. normals: of planes that may divide, tried first; then that of the triangle.
+/// The proof at the top of the header, for the hull of the points. near: all triangles that may
+/// meet the hull. planes: their normals are tried first, then that of the triangle.
 template <class Near>
 bool is_core(const ClosedObject& solid, const Near& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
@@ -106,7 +106,7 @@ std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const Ha
   return polygon;
 }
 
-/// A box, moved inward, relative to the seed.
+/// The sides of a box, moved inward, relative to the seed.
 std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward) {
   std::vector<HalfSpace> out;
   for (int axis = 0; axis < 3; ++axis) {
@@ -152,9 +152,9 @@ struct Grown {
   }
 };
 
-/// The core around a seed. Planes are pulled towards the seed by a part of their distance, so that
-/// one plane keeps off many triangles of a curved surface. near: all triangles that meet the
-/// region, the nearest to the seed first.
+/// The core around a seed. Each plane is pulled towards the seed by the part `pull` of its
+/// distance, so that one plane cuts off many triangles of a curved surface. near: all triangles
+/// that meet the region, the nearest to the seed first.
 std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>& near,
                           const Box& region, const Vec3& seed, double pull) {
   const double size = (region.hi - region.lo).norm();

@@ -1,10 +1,10 @@
-// Convex sets of points that lie inside a closed object: its *cores*. Bounds of penetration depths
-// are made of them (verify/penetration.h).
+// Convex sets of points that lie inside a closed object: its *cores*. They give bounds of
+// penetration depths (verify/penetration.h).
 //
-// A core is found in any way, in plain doubles. Then it is proved:
-// - each triangle of the object is divided from the core by a plane, with all roundings, so that
-//   the surface does not meet the core;
-// - one point of the core is inside the object, exactly. So all of it is.
+// A core is guessed in plain doubles. Then it is proved:
+// - A plane divides each triangle of the object from the core; bounds of all roundings show this.
+//   So the surface does not meet the core.
+// - One point of the core is inside the object, which is decided exactly. So all of the core is.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ class ClosedObject {
  public:
   using Corners = std::array<Vec3, 3>;
 
-  /// surface: by doubted_surface_of(), not open. pieces: a corner of each piece of the object that
-  /// hangs together. Precondition: the object has triangles. The scene has to outlive this.
+  /// surface: by doubted_surface_of(), not `open`. pieces: one corner of each connected piece of
+  /// the object. Precondition: the object has triangles. The scene has to outlive this.
   ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
                std::span<const Vec3> pieces);
 
@@ -34,12 +34,12 @@ class ClosedObject {
   const std::vector<Vec3>& pieces() const { return pieces_; }
   const BoundsTree& tree() const { return tree_; }
   const Box& box() const { return box_; }
-  double largest() const { return largest_; }  // coordinate, by magnitude
-  /// The whole object as a core, if it is convex: all corners, moved inward a little.
+  double largest() const { return largest_; }  // magnitude of any coordinate
+  /// The whole object as a core: all corners, moved inward a little. Empty if it is not convex.
   const std::vector<Vec3>& convex() const { return convex_; }
   bool has(const Vec3& point) const;      // strictly inside, exactly
   Vec3 nearest(const Vec3& point) const;  // point of the surface, in plain doubles
-  /// True if a point off the surface is certainly outside.
+  /// True only if the point is certainly outside. Precondition: it is not on the surface.
   bool has_not(const Vec3& point) const;
 
  private:
@@ -58,8 +58,8 @@ class ClosedObject {
 /// A core is made smaller by this much, relative to the size of its region.
 inline constexpr double kCoreInward = 1e-10;
 
-/// Cores of the part of the object in the region; at most `most`. seeds: points near which cores
-/// are wanted; others are added at the surface. Empty if none is found.
+/// At most `most` cores of the part of the object in the region; empty if none is found. seeds:
+/// points to grow cores around; points close to the surface are added.
 std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,
                                         std::span<const Vec3> seeds, std::size_t most);
 

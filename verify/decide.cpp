@@ -148,7 +148,7 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// Pairs of a block: enough work to pay for the shared counter, little enough to balance threads.
+// Pairs in a block, at most: enough to pay for the shared counter, few enough to balance threads.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with
 
@@ -321,7 +321,7 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // while this call decides
+  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // none while this decides
   decided_ = candidates.size();
   const bool sorted =
       std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();

@@ -1,7 +1,7 @@
 // Each object has a tree of boxes over its triangles. The trees of every two objects that are asked
 // about are joined. Two nodes settle all their pairs at once if their boxes are farther apart than
-// the threshold of these objects, or if all the pairs come after an answer of distance 0 (only an
-// earlier pair could be wrong then). The pairs that are left are decided one by one: by two
+// the threshold of these objects, or if all these pairs come after an answer of distance 0 (then
+// only an earlier pair could refute it). The pairs that are left are decided one by one: by two
 // parallel planes in doubles, then in integers (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
@@ -27,11 +27,11 @@
 
 namespace farcull {
 
-// The claims of answers. `objects`: an answer claims that no pair of these objects is nearer; a
+// What the answers claim. `objects`: an answer claims that no pair of these objects is nearer; a
 // missing answer claims that no pair is within the distance asked for. `nearest`: if an answer is
 // missing, neither object is among the k nearest of the other. So no pair of their triangles is
-// nearer than the kth neighbour of either object, or as near if the other object comes before that
-// neighbour. `all`: every pair within the distance is an answer.
+// nearer than the kth neighbour of either object; nor as near, if the other object comes before
+// that neighbour. `all`: every pair within the distance is an answer.
 
 namespace {
 
@@ -223,7 +223,7 @@ class Undecided {
   }
 
  private:
-  /// The count of a class of pairs.
+  /// A class of pairs: the member that counts it.
   using Class = std::uint64_t DistanceAccounting::*;
   struct Asked {
     Threshold threshold;
@@ -289,7 +289,7 @@ class Join {
     if (nothing_is_nearer(threshold) && !answers.empty()) first_ = answers.front().pair;
   }
 
-  /// A threshold that no pair is below.
+  /// True if no pair can be below the threshold, which is then 0.
   static bool nothing_is_nearer(const Threshold& threshold) {
     return threshold.length && threshold.length->squared.over == 0 &&
            threshold.bound == Bound::below;
@@ -309,7 +309,7 @@ class Join {
   }
 
  private:
-  /// True if all pairs of triangles from `least` on come after an answer of distance 0.
+  /// True if all pairs of triangles numbered `least` or higher come after an answer of distance 0.
   bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
   bool farther(const BoundsTree::Bounds& a, const BoundsTree::Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&

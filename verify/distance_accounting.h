@@ -2,8 +2,9 @@
 // answer allows.
 //
 // The accounting shares no code with what culled, nor with what computed the answers
-// (verify/closest.h). Its boxes are those of the checker of certificates; pairs that boxes do not
-// prove far apart, and each answer, it decides in integers (verify/certificate/integer_distance.h).
+// (verify/closest.h). Its boxes are those of the checker of certificates. Each answer, and each
+// pair that neither boxes nor planes prove far apart, is decided in integers
+// (verify/certificate/integer_distance.h).
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ namespace farcull {
 struct ClaimedDistance {
   std::uint32_t a = 0, b = 0;  // objects
   TrianglePair pair;           // a triangle of a and one of b
-  double distance = 0;         // the root, rounded to the nearest double
-  std::string squared;         // its square, "numerator/denominator" in lowest terms
+  double distance = 0;         // the root of `squared`, rounded to the nearest double
+  std::string squared;         // the square, "numerator/denominator" in lowest terms
   std::array<Vec3, 2> points;  // two nearest points, of a and of b, each coordinate rounded once
   std::array<std::uint8_t, 2> features{};     // the points lie on these, numbered as in
                                               // verify/certificate/integer_distance.h
@@ -47,7 +48,7 @@ struct DistanceQuestion {
   enum class Kind : std::uint8_t { objects, nearest, all };
   Kind kind = Kind::objects;
   std::size_t k = 1;
-  /// Pairs that are farther apart are not asked for. World units, >= 0; finite with `all`.
+  /// Pairs farther apart than this are not asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
   bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
@@ -90,10 +91,10 @@ struct DistanceAccounting {
 DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
                                      const DistanceQuestion& question);
 
-// ---- what account_distances() has to prove about the pairs of triangles of two objects: derived
-// from question and answers, for distance_accounting.cpp and its tests
+// ---- what account_distances() has to prove about the pairs of triangles of two objects, derived
+// from question and answers. For distance_accounting.cpp and its tests.
 
-/// The distances in question: those below a length, or at most the length.
+/// Which distances are meant: those below a length, or those up to and including it.
 enum class Bound : std::uint8_t { below, at_most };
 
 /// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,
@@ -118,12 +119,12 @@ class DistanceClaims {
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
   /// Whether the question is about the objects a <= b.
   bool asked(std::uint32_t a, std::uint32_t b) const;
-  /// How many answers are wrong, in themselves or because of other answers (not one of the k
-  /// nearest).
+  /// How many answers are wrong: in themselves, or because the other answers show that neither
+  /// object of the answer has the other one among its k nearest.
   std::uint64_t wrong(unsigned threads) const;
 
  private:
-  struct Farthest {  // the kth nearest neighbour of an object
+  struct Farthest {  // the kth nearest neighbour of an object; known iff answers == k
     std::size_t answers = 0;
     Fraction squared;
     std::uint32_t other = 0;

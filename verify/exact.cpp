@@ -76,7 +76,7 @@ std::vector<Corners> parts_at(const Corners& t, int corner) {
   return {{v, v, t[(corner + 1) % 3]}, {v, v, t[(corner + 2) % 3]}};
 }
 
-/// The rim of such a part: where a ray from the corner v leaves the part.
+/// The rim of such a part: the points where rays from the corner v leave the part.
 Hull rim_at(const Corners& part, const Vec3& v) {
   std::array<Vec3, 2> others;
   int count = 0;
@@ -90,7 +90,7 @@ Hull rim_at(const Corners& part, const Vec3& v) {
 /// Decides about neighbours with one shared position v. Both triangles are unions of parts that are
 /// convex, contain v and do not have v on their rims, unless a part is v itself. If two parts have
 /// a common point other than v, the point can be moved away from v until it leaves one of them.
-/// There it is on the rim of that part, so a rim meets the other part.
+/// Where it leaves, it is on the rim of that part, so a rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {

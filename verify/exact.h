@@ -50,7 +50,7 @@ struct Collisions {
   std::vector<TrianglePair> pairs;            // that collide and are not neighbours
   std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
   std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
-  std::uint64_t apart = 0;                    // candidates that do not collide, no neighbours
+  std::uint64_t apart = 0;                    // other candidates that do not collide
   std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
 
   /// pairs and neighbour_pairs together; sorted if both lists are sorted.
@@ -120,8 +120,8 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
 /// whether there were more. The counts stay. Precondition: both lists are sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);
 
-/// decide() for one frame of a scene after the other. The answer about a pair depends only on the
-/// corners of its triangles, so if neither triangle moved, the answer of the last frame holds.
+/// decide() for successive frames of a scene. The answer about a pair depends only on the corners
+/// of its triangles, so if neither triangle moved, the answer of the last frame holds.
 class FrameDecider {
  public:
   /// As farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses the
@@ -149,18 +149,18 @@ class FrameDecider {
 /// The answers about the pairs that count: two triangles of different objects, or of one object
 /// marked `self`.
 struct ExactResult : Collisions {  // both lists sorted, each pair once
-  std::uint64_t box_pairs = 0;     // pairs that count whose closed boxes overlap; with a clearance,
-                                   // are no farther apart along any axis, by differences in double
+  std::uint64_t box_pairs = 0;     // pairs that count whose closed boxes overlap, or have no gap
+                                   // above the clearance along any axis, by differences in double
   std::uint64_t ignored = 0;  // pairs whose boxes overlap likewise, but whose objects are ignored
   double join_ms = 0;         // boxes and box join, wall clock, without the decisions
-  double predicates_ms = 0;   // decisions, a thread's share of them, and the sort of the answers
+  double predicates_ms = 0;   // decisions (mean of the deciding threads), and sort of the answers
 };
 
 /// The method `exact`: a tree of boxes in doubles finds the pairs whose boxes overlap, and decide()
 /// decides them in the threads that find them. Memory O(triangles + colliding pairs): candidates
-/// are not kept. The tree is core/boxes/join.h, which no view, no error budget and no float takes
-/// part in. A test compares its pairs with those of CGAL's join, which shares no code with it.
-/// ignored: pairs of objects that do not count, as in_order() gives them.
+/// are not kept. The tree (core/boxes/join.h) uses no view, no error budget and no float. A test
+/// compares its pairs with those of CGAL's join, which shares no code with it. ignored: pairs of
+/// objects that do not count, as in_order() gives them.
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});
 

@@ -20,8 +20,8 @@ mpq_class coordinate(const ExactPoint& point, int axis) {
   return sum / weights;
 }
 
-// First and last index of the pixels of `size` that contain x; empty (first > last) if no pixel
-// does.
+// First and last index of the pixels that contain x, in a row of `size` pixels centred on 0; empty
+// (first > last) if no pixel does.
 std::pair<int, int> indices(const mpq_class& x, int size) {
   const mpq_class at = x + mpq_class(size) / 2;
   if (at < 0 || at > size) return {0, -1};

@@ -31,7 +31,7 @@ std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int hei
 bool bounded(const ExactPoint& point, float entry, float exit);
 
 /// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly
-/// and cut off to a double. Not positive if bounded(). Precondition: finite samples.
+/// and rounded toward 0 to a double. Not positive if bounded(). Precondition: finite samples.
 double beyond(const ExactPoint& point, float entry, float exit);
 /// beyond() for depths of a depth buffer: the larger of entry - D and D - exit, with
 /// D = z(point) * scale + 1/2.

@@ -4,9 +4,8 @@
 // (core/native) that it checks.
 //
 // Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
-// triangles. The few pairs of which each triangle crosses the plane of the other are gathered
-// again, so that the lanes stay full; their corners are in the order for the comparison along the
-// line.
+// triangles. The few pairs whose triangles cross each other's planes are gathered again, so that
+// the lanes stay full. Their corners are then in the order for the comparison along the line.
 #include "verify/filter.h"
 
 #include <algorithm>
@@ -85,7 +84,7 @@ struct PointOf {
   HWY_INLINE Real z() const { return Real(hn::Load(Tag(), at + 2 * stride)); }
 };
 
-constexpr int kBatch = 64;  // pairs whose corners lie in the fastest cache
+constexpr int kBatch = 64;  // pairs: their corners fit into the fastest cache
 using Point = PointOf<kBatch>;
 
 #define FAR_FILTER HWY_INLINE

@@ -24,8 +24,8 @@ inline constexpr std::size_t kAhead = 8;
 /// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks at their planes
 /// alone. `yes`: the triangles cross. `no`: one triangle is on one side of the other's plane and
 /// farther from it than the clearance, or, with clearance 0, the triangles miss each other along
-/// the line of the planes. `unknown` for degenerate triangles and contacts without overlap, and for
-/// triangles that are nearly degenerate or nearly such a contact.
+/// the line of the planes. `unknown` for triangles that are degenerate or touch without crossing,
+/// and for those so close to either case that rounding leaves a doubt.
 Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                      double clearance = 0);
 
@@ -38,7 +38,7 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
 /// Is the distance of the triangles at most `clearance` (> 0)? Decides by two points close to each
-/// other and the direction between them. If the triangles cross, it uses only their boundaries.
+/// other and the direction between them. Does not look for points where an edge crosses a face.
 /// `unknown` if distance and clearance differ by less than about 1e-14 of the pair's extent.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 

@@ -1,7 +1,7 @@
 // Compares two triangles with each other's planes, and along the line where the planes cross. This
 // file is compiled for scalars (in filter_scalars.h, which derives the bounds) and for lanes (in
 // filter.cpp, where each lane is another pair). Both include it in a namespace that defines
-//   Real, Truth   a number and an answer, of every lane; PlainReal is a number for all lanes
+//   Real, Truth   a number and an answer for each lane; PlainReal is one number for all lanes
 //   Point         a corner, with x(), y() and z()
 //   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.
 // The only branches are early returns once all lanes are decided.
@@ -34,8 +34,8 @@ FAR_FILTER Normal normal_of(const Triple& e, const Triple& f) {
   return {{yz - zy, zx - xz, xy - yx}, {abs(yz) + abs(zy), abs(zx) + abs(xz), abs(xy) + abs(yx)}};
 }
 
-/// Error bound of dot(normal.n, x) for points x with |x| <= w per axis, from the origin of the
-/// normal.
+/// Error bound of dot(normal.n, x) for points x relative to the origin of the normal, with |x| <= w
+/// per axis.
 template <class Bounds>
 FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
   return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
@@ -63,8 +63,8 @@ struct Sides {
 };
 
 /// The clearance times the length of the normal, rounded up: the computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and kLeastSquare stands for squares that
-/// underflow. 8 roundings follow.
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and kLeastSquare makes up for squares
+/// that underflow. 8 roundings follow.
 FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
   const Real length = sqrt(dot(normal.n, normal.n) + kLeastSquare);
   return clearance * (length + sum(normal.m) * kNormalLength) * (1 + kNormalRounding) + 0x1p-1000;

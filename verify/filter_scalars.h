@@ -1,5 +1,5 @@
-// The filters (verify/filter.h) on scalars, with a type for their bounds; and the derivations of
-// these bounds.
+// The filters (verify/filter.h) on scalars. They take their bounds as a type. Also the derivations
+// of these bounds.
 #pragma once
 
 #include <algorithm>
@@ -60,13 +60,13 @@ namespace farcull::filters {
 // u = 2^-53; without underflow and overflow every operation multiplies its exact result by some
 // 1 + d, |d| <= u.
 //
-// Side of a plane. With e = p - o, f = q - o, w = x - o, the determinant is the sum over k of
+// Side of a plane. With e = p - o, f = q - o, w = x - o, the determinant D is the sum over k of
 // n_k w_k, n = e x f: six terms e_i f_j w_k. A term meets at most 8 roundings: one in each of its
-// three differences, e_i f_j, the difference in n_k, n_k w_k, and two sums. So the computed D
-// differs from the exact one by at most ((1 + u)^8 - 1) P, where P is the sum of the six exact
-// |e_i f_j w_k|. The permanent is computed by the same operations on magnitudes, with at most 8
-// roundings a term, hence P <= (1 - u)^-8 times the computed one, and larger |w_k| only enlarge it.
-// The bound itself takes two more roundings. ((1 + u)^8 - 1) (1 - u)^-10 < 8 u + 150 u^2 < 9 u.
+// three differences, e_i f_j, the difference in n_k, n_k w_k, and two sums. So the computed D is
+// off by at most ((1 + u)^8 - 1) P, where P is the sum of the six exact |e_i f_j w_k|. This
+// permanent P is computed by the same operations on magnitudes, with at most 8 roundings a term,
+// hence P <= (1 - u)^-8 times the computed one. Larger |w_k| only make it larger. The bound itself
+// takes two more roundings. ((1 + u)^8 - 1) (1 - u)^-10 < 8 u + 150 u^2 < 9 u.
 //
 // Product of two normals n.m. The terms of either normal meet 4 roundings each, the product and
 // sums 3 more: 11 in all. The bound meets 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below
@@ -80,7 +80,7 @@ namespace farcull::filters {
 // at most 2^-1075 more. D has two such products in each n_k, times w_k, and one in each n_k w_k:
 // with all later roundings at most 2^-1073 (|w|_1 + 2). n.m is off by 2^-1073 (|n|_1 + |m|_1 + 2),
 // also with |n|_1 as computed from magnitudes, and a projection by 2^-1073. The permanent is off
-// likewise, times 12 u. `absolute` is more than 2^70 times all of this: 2^-1000 and its products
+// likewise, times 12 u. `absolute` is more than 2^70 times all of this, so that it and its products
 // with numbers of at least 1 are normal numbers, on which every processor is fast.
 //
 // Overflow. For every operation of D the permanent has the same operation on magnitudes, whose
@@ -224,8 +224,8 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 
 using Corners = std::array<Vec3, 3>;
 
-/// What a point is a mean of: edge 0 to 2 (from corner i to the next), corner i as kCorner + i, or
-/// the face.
+/// What a point lies on: edge 0 to 2 (from corner i to the next), corner i as kCorner + i, or the
+/// face.
 constexpr int kCorner = 3, kFace = 6;
 
 /// The best guess so far.
@@ -233,7 +233,7 @@ struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
   int of_a = kCorner, of_b = kCorner;  // what the points lie on
-  double s = 0, t = 0;  // of edges: how far along that of a and that of b; of a face: the weights
+  double s = 0, t = 0;  // on edges: how far along that of a and that of b; on a face: the weights
                         // of its corners 1 and 2
 
   void offer(const Vec3& d, int on_a, int on_b, double along_a, double along_b) {
@@ -263,8 +263,8 @@ inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Clo
   closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s), i, j, s, t);
 }
 
-/// Offers the difference from corner i of a triangle to the face of t if the corner lies over the
-/// face; with `sense` -1, where the triangle is b and t is a, the opposite vector.
+/// If corner i of triangle `of` lies over the face of t, offers the difference from the corner to
+/// the face. sense: 1 if `of` is a; -1 if it is b: then the opposite vector is offered.
 inline void offer_face(const Corners& of, int i, const Corners& t, double sense, Closest& closest) {
   const Vec3& p = of[i];
   const Vec3 e = t[1] - t[0];
@@ -315,8 +315,8 @@ inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
   return out;
 }
 
-/// A lower bound of the gap between the projections onto the difference of the closest points,
-/// times the length of this difference.
+/// A lower bound of the gap between the projections of the triangles onto the difference of the
+/// closest points, times the length of this difference.
 template <class Bounds>
 double gap_along(const Near& near, const Vec3& extent) {
   const auto& [s, t, closest] = near;

@@ -79,7 +79,7 @@ bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
 }
 
 struct Crossings {
-  std::int64_t winding = 0;  // the sum by direction
+  std::int64_t winding = 0;  // crossings, counted as 1 or -1 by their direction
   bool odd = false;          // true if the number of crossings is odd
 };
 
@@ -110,10 +110,10 @@ std::optional<Crossings> crossings(const Scene& scene, const Object& object, con
 
 Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
   if (const auto answer = crossings(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
-  // For each edge of a triangle that is no segment, the directions to avoid lie in a plane. This
-  // holds also if x is in the plane of the triangle, but not on it: for all other directions two of
-  // the signs are opposite. With 2^52 values per axis each such plane holds at most 2^-52 of all
-  // directions, so with 2^34 edges at most one draw in 2^18 is unclear.
+  // The unclear directions: for each edge of a triangle that is not degenerate, they lie in a
+  // plane. This holds also if x is in the plane of the triangle, but not on it: for all other
+  // directions two of the signs are opposite. With 2^52 values per axis each such plane holds at
+  // most 2^-52 of all directions, so with 2^34 edges at most one draw in 2^18 is unclear.
   RandomNumbers random(1);
   constexpr int kDraws = 16;
   for (int k = 0; k < kDraws; ++k) {
@@ -135,7 +135,7 @@ namespace {
 using Place = std::array<double, 3>;
 using Places = std::array<Place, 3>;
 
-/// The corners of the object's triangles that have three different ones.
+/// The corners of those triangles of the object that have three different corners.
 std::vector<Places> places_of(const Scene& scene, const Object& o) {
   std::vector<Places> out;
   out.reserve(o.triangle_count);
@@ -156,8 +156,8 @@ struct Edge {
   std::uint32_t triangle = 0;  // that has it
 };
 
-/// Calls group(edges) for the edges with each two ends; stops at one for which that is false, and
-/// returns whether there was none.
+/// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
+/// returns false; returns whether none did.
 template <class Group>
 bool each_edge(std::span<const Edge> edges, const Group& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
@@ -193,20 +193,20 @@ Surface surface_of(const std::vector<Edge>& edges) {
   return oriented ? Surface::oriented : Surface::closed;
 }
 
-/// Whether two triangles at an edge may lie on each other; false only if rounding leaves no doubt.
+/// False only if two triangles with a common edge certainly do not lie on each other.
 bool may_be_folded(const Corners& a, const Corners& b) {
   const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
   const double of_a = e.norm() * f.norm(), of_b = e.norm() * g.norm();
-  // Negative if the triangles lie on both sides of the edge. It is off by less than 30 u of_a of_b,
-  // and by underflow: of the products of two lengths, which is far below 1e-12 of these if they are
-  // above 1e-280, and of the product of four, which is below 1e-290.
+  // Negative if the triangles lie on different sides of the edge. It is off by less than 30 u of_a
+  // of_b, and by underflow. Products of two lengths above 1e-280 lose far less than 1e-12 of
+  // themselves, the product of four loses less than 1e-290.
   const double sides = e.cross(f).dot(e.cross(g));
   return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
 
-/// True if two triangles of one plane that pass an edge in both senses lie on the same side of it,
-/// as the two sides of a face do, however each is cut into triangles. Also true if more than 64
-/// triangles have one edge.
+/// True if two triangles of one plane pass a common edge in opposite directions and lie on the same
+/// side of it, as the two sides of a face do, however each side is cut into triangles. Also true if
+/// more than 64 triangles have one edge.
 bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>& edges) {
   const auto corners_at = [&](const Edge& edge) {
     const auto point = [](const Place& p) { return Vec3(p[0], p[1], p[2]); };

@@ -112,7 +112,7 @@ inline Weights random_weights(Draws& random) {
 }
 
 /// A triangle and the centre of a pixel near it. The centre is inside the triangle's image,
-/// outside, or at the radius, up to 2^-5 to 2^-50 of it, from a point of the image.
+/// outside, or about a radius from a point of the image: off by 2^-50 to 2^-5 of the radius.
 struct Case {
   int kind;
   Triangle triangle;

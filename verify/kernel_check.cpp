@@ -1,4 +1,4 @@
-// Draws cases by seed and index, and counts answers that do not contain all they must: the exact
+// Draws cases by seed and index, and counts answers that do not contain what they must: the exact
 // interval of a box, or points of the solid of an exact offset.
 #include "verify/kernel_check.h"
 

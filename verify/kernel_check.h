@@ -1,6 +1,6 @@
 // Decides with rationals whether a kernel's answer is right: the answer has to contain the part of
-// the real solid on the line, and must not be much wider. The answers may come from a device or
-// from this CPU.
+// the line that is in the exact solid, and must not be much wider. The answers may come from a
+// device or from this CPU.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Contacts: near triangles by the filter of distances (verify/filter_scalars.h), which keeps the
-// weights of its points; crossing ones by an edge that passes through a face; the rest exactly.
+// Finds contacts: of near triangles by the filter of distances (verify/filter_scalars.h), which
+// keeps the weights of its points; of crossing ones by an edge through a face; of the rest exactly.
 #include "verify/near_contact.h"
 
 #include <algorithm>
@@ -20,23 +20,23 @@ using Integer = mpz_class;
 // ---- in doubles
 //
 // Distance. distance_bounds() proves lower <= D <= upper of the exact distance D, from the computed
-// length L of the difference of two points: upper is L plus a bound, and lower is L minus one
-// (less, if the points are not nearest). So |L - D| <= upper - lower, and where this is at most
-// 2^-33 lower, L is off by 2^-32 D at most; the factor 2 covers the roundings of that comparison.
+// length L of the difference of two points: upper is L plus a bound, and lower is at most L minus a
+// bound. So |L - D| <= upper - lower, and where this is at most 2^-33 lower, L is off by 2^-32 D at
+// most; the factor 2 covers the roundings of that comparison.
 //
 // Normal. Let w* be the exact difference of nearest points, |w*| = D, and x that of the exact
-// points with the same weights (divided by their sum). The computed difference is off from x by at
-// most upper - lower <= 2^-33 D, so |x| <= D (1 + 2^-32). w* is the point of a convex set, b minus
-// a, that is nearest to 0, and x is in the set: so (x - w*) . w* >= 0, and |x - w*|^2 <= |x|^2 -
-// |w*|^2 < 2^-30.9 D^2. With the error of x the computed difference is off from w* by less than
-// 2^-15.4 D. Two vectors that differ by e D, one of them of length D, differ by an angle of at most
-// asin(e), so the unit vectors differ by less than 2^-15.3, and by some u more for the roundings of
-// the quotient.
+// points with the computed weights (divided by their sum). The computed difference is off from x by
+// at most upper - lower <= 2^-33 D, so |x| <= D (1 + 2^-32). w* is the point of a convex set, b
+// minus a, that is nearest to 0, and x is in the set: so (x - w*) . w* >= 0, and |x - w*|^2 <=
+// |x|^2 - |w*|^2 < 2^-30.9 D^2. With the error of x the computed difference is off from w* by less
+// than 2^-15.4 D. Two vectors that differ by e D, one of them of length D, differ by an angle of at
+// most asin(e), so the unit vectors differ by less than 2^-15.3, and by some u more for the
+// roundings of the quotient.
 //
 // Points. With weights l_1, l_2 and corners c_0 to c_2 the point is c_0 + ((c_1 - c_0) l_1 +
-// (c_2 - c_0) l_2). The differences are off by u R, products and sums by 3 u R more, each for
-// weights that sum to at most 1 + u, and a weight of c_0 that was below 0 by rounding, and is 0,
-// moves the point by 2 u R: less than 8 u R, and then comes the sum with c_0.
+// (c_2 - c_0) l_2). The differences are off by u R, products and sums by 3 u R more, for weights
+// that sum to at most 1 + u. If rounding makes the weight of c_0 negative, it is set to 0, which
+// moves the point by 2 u R. In all less than 8 u R; then comes the sum with c_0.
 
 /// What the point of these weights lies on.
 Feature feature_of(const Vec3& weights) {
@@ -59,7 +59,7 @@ Vec3 edge_weights(int edge, double along) {
   return out;
 }
 
-/// The point `on` a triangle, as filters::Closest numbers them; along: how far along the edge.
+/// The weights of a point. on: its place, as in filters::Closest; along: how far along an edge.
 Vec3 weights_of(int on, double along, double l, double m) {
   if (on == filters::kFace) return {std::max(1 - l - m, 0.0), l, m};
   return on < filters::kCorner ? edge_weights(on, along) : edge_weights(on - filters::kCorner, 0);
@@ -83,7 +83,7 @@ NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3
 struct Passing {
   double least = -HUGE_VAL;  // the least weight of the point in the face
   std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of a and of b
-  int side = 0;                                                // of the edge
+  int side = 0;                                                // 0: the edge is one of a; 1: of b
   double gap = HUGE_VAL;  // between the points of the edge and of the face, summed over axes
 };
 
@@ -111,8 +111,8 @@ void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) 
   }
 }
 
-/// The contact of triangles that cross; empty if the point of an edge, which is the answer, may be
-/// farther than 64 u R from the other triangle.
+/// The contact of triangles that cross: the point of an edge. Empty if this point may be farther
+/// than 64 u R from the other triangle.
 std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
   Corners s, t;
   for (int i = 0; i < 3; ++i) {
@@ -153,7 +153,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
       weights[closest::edge_end(feature.index)] = rounded_quotient(l, below, 0);
       continue;
     }
-    if (other.kind == FeatureKind::edge) {  // it passes through the face, whose multiples these are
+    if (other.kind == FeatureKind::edge) {  // it passes through the face: the face's multiples
       const Scaled::Corners& face = side == 0 ? pair.a : pair.b;
       const auto e = closest::minus(face[1], face[0]), f = closest::minus(face[2], face[0]);
       const auto n = closest::cross(e, f);

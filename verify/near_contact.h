@@ -12,9 +12,9 @@
 
 namespace farcull {
 
-/// Two nearest points p of a and q of b. weights: those of the corners, whose mean a point is; >=
-/// 0. features: what the points lie on, by the weights that are not 0. normal: (q - p) / |q - p|;
-/// zeros if the triangles meet. Then the distance is 0 and the points are one point of both.
+/// Two nearest points p of a and q of b. weights: a point is the mean of the corners with these
+/// weights (>= 0). features: what the points lie on, by which weights are not 0. normal: (q - p) /
+/// |q - p|; zeros if the triangles meet: then the distance is 0, and the points are equal.
 struct NearContact {
   double distance = 0;
   std::array<Vec3, 2> points;
@@ -23,13 +23,13 @@ struct NearContact {
   std::array<Feature, 2> features;
 };
 
-/// The contact of closest_points(a, b), which is `closest`. Distance, points and weights are each
-/// rounded once; each coordinate of the normal is off by at most 8 u of itself.
+/// closest: the result of closest_points(a, b). Distance, points and weights are each rounded once;
+/// each coordinate of the normal is off by at most 8 u of itself.
 NearContact exact_contact(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                           const Closest& closest);
 
-/// Largest relative width of the bounds with which contact_within() accepts a distance in doubles.
-/// With an infinite one tests show wrong answers.
+/// contact_within() accepts a distance in doubles if its bounds are at most this far apart,
+/// relative to the lower one. Tests show wrong answers with an infinite tolerance.
 constexpr double kContactTolerance = 0x1p-33;
 
 /// The contact of triangles whose distance is at most `within` (finite, >= 0); empty if they are
@@ -38,7 +38,7 @@ constexpr double kContactTolerance = 0x1p-33;
 /// one axis, u = 2^-53. Each of these then holds:
 /// - distance: off by at most 2^-32 of itself, a subnormal one by half of its last bit; 0 iff the
 ///   triangles meet, unless it is below the least double.
-/// - points: each within 2^-45 R, and the rounding of its coordinates (u of each), of its triangle.
+/// - points: each is in its triangle up to 2^-45 R and the rounding of its coordinates (u of each).
 /// - weights: sum to 1 up to 4 u. Their mean of the corners is the point, up to the same errors.
 /// - p and q are as far apart as the distance, up to the same errors. Other points may be as near.
 /// - normal: off by at most 2^-15 in length from the exact one, which is unique.

@@ -23,9 +23,9 @@ namespace farcull {
 // points. Let F and G be the features of closest points of a pair that was solved, and w the
 // difference of these points. If the triangles of another pair have the corners of F and of G, the
 // pair has points as near. It has no nearer points if w . (x - p) < 0 for the other corners x of
-// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G ("Proof
-// of a guess"). Here p and q may be any corners of F and G, since w is perpendicular to both
-// features.
+// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G
+// (closest_points.cpp, "Proof of a guess"). Here p and q may be any corners of F and G, since w is
+// perpendicular to both features.
 //
 // Doubles decide this if rounding leaves no doubt. The computed w is the difference of two rounded
 // points: off by u (|p| + |q|) and by u |w| more per axis, u = 2^-53. x - p is off by u of itself.
@@ -75,7 +75,7 @@ class SamePoints {
         continue;
       }
       const Vec3 from = x - side.corners[0];
-      // If a product overflows, so may the sum with it, while the bound does not.
+      // If a product overflows, the sum may be infinite although the bound is finite.
       if (!(w_.cwiseAbs().dot(from.cwiseAbs()) < HUGE_VAL)) return false;
       if (!(sense * w_.dot(from) < -(off_.dot(from.cwiseAbs()) + kTieAbsolute))) return false;
     }
@@ -91,8 +91,8 @@ class SamePoints {
   std::array<Side, 2> sides_;
 };
 
-/// Recognises pairs that are no nearer than a pair by the planes between its triangles. The exact
-/// places of each triangle are found once, so many pairs of the same triangles cost little.
+/// Recognises pairs that are no nearer than a given pair, by the planes between its triangles.
+/// Reach and start of a triangle are computed once, for all pairs that have it.
 class NoNearer {
  public:
   NoNearer(const Scene& scene, const TrianglePair& pair)
@@ -163,7 +163,7 @@ NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) 
   std::size_t best = 0, solved = 0;
   double at_most = not_below(closest);
   SamePoints same(first_a, first_b, closest);
-  std::optional<NoNearer> no_nearer;  // made once a pair is found to be as near or hardly farther
+  std::optional<NoNearer> no_nearer;  // made once a candidate is found to be no nearer
   std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
   // By lower bound, so that near pairs come early. The sort is stable, so pairs with lower bound 0
   // stay in order, and the first that touches ends the search.
@@ -171,7 +171,7 @@ NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) 
     return x.bounds.lower < y.bounds.lower;
   });
   for (const auto& [at, bounds] : left) {
-    if (bounds.lower > at_most) break;  // all later ones are as far
+    if (bounds.lower > at_most) break;  // all later ones are farther, too
     if (at_most == 0 && at > best) continue;
     const auto [a, b] = corners(at);
     if (at_most > 0 && same.are_those_of(a, b)) {

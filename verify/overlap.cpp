@@ -27,8 +27,8 @@ using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
 constexpr std::size_t kMostPlanes = 64;    // at most this many are tried as dividing planes
-constexpr std::size_t kMostPieces = 2048;  // of a triangle
-// Tests of a piece with a triangle of the objects, about two seconds.
+constexpr std::size_t kMostPieces = 2048;  // of a triangle, at most
+// Largest number of tests of a piece with a triangle of the objects. They take about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
 
 /// The points p with normal . p = offset.
@@ -123,8 +123,8 @@ void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& othe
   }
 }
 
-/// A point inside the polygon, with random weights: it lies on no line that is not that of the
-/// polygon's plane, but by a rare chance.
+/// A point inside the polygon, by random weights of its corners. Only by a rare chance does it lie
+/// on a given line.
 Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   Q3 sum = {0, 0, 0};
   Q total = 0;
@@ -144,7 +144,8 @@ struct Sides {
   std::array<bool, 2> inside{};   // both rules show it
 };
 
-/// Empty if the ray meets an edge, or if a triangle that is not in the plane has the point.
+/// The sides of p. Empty if the line through p along the axis meets an edge, or if a triangle that
+/// is not in the plane contains p.
 std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
                               const Q3& p, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -193,8 +194,8 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
   return out;
 }
 
-/// Whether a ray from the point along an axis meets no triangle of the object. A ray that may meet
-/// an edge is taken for one that does.
+/// Whether one of the six rays along the axes from the point meets no triangle of the object. A ray
+/// that may meet an edge counts as one that meets a triangle.
 bool sees_out(const Scene& scene, std::uint32_t object, const Vec3& point) {
   const Q3 p = exact(point);
   unsigned free = 0x3f;  // two bits for each axis: forward, backward
@@ -301,7 +302,7 @@ Overlap any_inside(const Scene& scene, std::uint32_t object, Surface surface,
   return out;
 }
 
-/// The triangles of the contacts by their first triangle, or by the second one.
+/// The contacts, sorted by their first triangle; if `second`, exchanged and sorted by their second.
 std::vector<TrianglePair> sorted_by(std::span<const TrianglePair> contacts, bool second) {
   std::vector<TrianglePair> out(contacts.begin(), contacts.end());
   if (second) {

@@ -1,6 +1,6 @@
-// The expanding polytope algorithm of all corners gives the first upper bound: a direction in which
-// the hulls are apart soonest. Then comes the search. All this is in plain doubles; what it finds
-// is proved.
+// The expanding polytope algorithm on all corners gives the first upper bound: the direction in
+// which the hulls come apart soonest. Then comes the search. All this is in plain doubles; what it
+// finds is proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -45,12 +45,12 @@ class Polytope {
     bool final;       // no point of the differences is above it
   };
 
-  /// flat: a point this far above a plane is in it, relative to the size. Corners are rounded, so
-  /// that planes of small faces are uncertain far from them.
+  /// flat: a point up to this far above a plane counts as in the plane; relative to the size.
+  /// Corners are rounded, so planes of small faces are uncertain far from them.
   Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
 
-  /// Adds points, always above the face that is nearest to the origin, until the nearest face is
-  /// final, or all faces are (whole), or `steps` points were added.
+  /// Adds points, always above the face that is nearest to the origin, until that face is final
+  /// (whole: until all faces are), or `steps` points were added.
   void expand(int steps, bool whole) {
     if (!begin()) faces_.clear();
     while (steps > 0 && !faces_.empty()) {
@@ -128,7 +128,7 @@ class Polytope {
     return true;
   }
 
-  // Replaces the faces that see the point by faces to it; nothing if a new one would be flat.
+  // Replaces the faces that see the point by faces to it; does nothing if a new one would be flat.
   void add(const Vec3& point) {
     std::vector<std::array<std::uint32_t, 2>> edges;  // of faces that see the point, directed
     std::vector<Face> kept;
@@ -143,7 +143,7 @@ class Polytope {
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    // An edge stays as many times as it is passed more often in one direction than in the other.
+    // An edge is used as many times as it occurs more often than its opposite.
     std::ranges::sort(edges);
     for (auto at = edges.begin(); at != edges.end();) {
       const auto [from, to] = *at;
@@ -173,15 +173,15 @@ struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
     double distance;  // the translation t is held if normal . t < distance for all sides
-    double error;     // of the difference of the two, relative to the magnitudes
+    double error;     // of normal . t - distance, relative to the magnitudes
     Vec3 support;     // |normal . axis| for each axis of boxes
   };
   std::vector<Side> sides;
-  double largest = 0;  // coordinate of a corner
+  double largest = 0;  // |coordinate| of a corner
 };
 
-// A component of a normal has 4 roundings, relative to the product of the two differences, which
-// are at most 2 `largest` each; to make its length 1 multiplies that by 1 / length. Products with a
+// A component of a normal e x f has 4 roundings, relative to products of components of e and f.
+// Making its length 1 divides this error by |e x f|; `thin` is this part. Products with a
 // translation and a corner, the corner's own rounding, sums and axes are 24 more, relative to 1. So
 // 40 covers both.
 Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
@@ -222,8 +222,8 @@ double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   return out;
 }
 
-/// Three directions, perpendicular except for rounding. The first is that of most of the area, the
-/// second that of most of the rest.
+/// Three directions, perpendicular except for rounding. The first is the normal of most of the
+/// area, the second that of most of the area that is perpendicular to the first.
 std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
   std::vector<std::pair<double, Vec3>> normals;
   for (const ClosedObject* solid : {&a, &b}) {
@@ -231,7 +231,7 @@ std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
     for (std::size_t k = 0; k < solid->triangles().size(); k += stride) {
       const ClosedObject::Corners& t = solid->triangles()[k];
       const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-      // Squares of shorter ones may be subnormal.
+      // Squares of shorter normals may be subnormal.
       if (const double length = n.norm(); length > 0x1p-500)
         normals.emplace_back(length, n / length);
     }
@@ -264,7 +264,7 @@ class Search {
         64 * kU * (a.largest() + b.largest());
   }
 
-  /// Makes the upper bound less, if the translation, and a little more, separates.
+  /// Lowers the upper bound if the translation, made a little longer, separates.
   bool try_translation(const Vec3& t) {
     if (failures_ == 0 || !t.allFinite()) return false;
     const double length = t.norm();
@@ -366,7 +366,7 @@ class Search {
   double work_ = 0;
 };
 
-/// A translation across a plane: what the hulls of all corners need.
+/// The first upper bound: a translation that moves the convex hulls of all corners apart.
 void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& out) {
   Polytope hull(a.corners(), b.corners(), 1e-14);
   hull.expand(200, false);
@@ -383,7 +383,7 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   }
 }
 
-/// Translations of the limit's length along its ways; one that separates is made shorter.
+/// Tries translations of the limit's length along its ways; shortens one as long as it separates.
 void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimit& limit,
                    Penetration& out) {
   for (const Vec3& way : limit.ways) {
@@ -417,7 +417,7 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   std::vector<Deep> found;
   for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
     for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5}) {
-      // Along the translation alone, a common point of the surfaces may stay on one surface.
+      // Moved along the translation alone, a common point of the surfaces may stay on one surface.
       const Vec3 p = starts[k] + part * translation + std::abs(part) * (middle - starts[k]);
       if (a.has(p) && b.has(p)) found.push_back(deep(p));
     }
@@ -426,7 +426,7 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   const std::size_t most = std::min(found.size(), kMost);
   for (std::size_t k = 0; k < most; ++k) {
     Deep& d = found[k];
-    // A step away from the nearest point that is shorter than the way to it stays inside.
+    // A step away from the nearest point that is shorter than the distance to it stays inside.
     for (int step = 0; step < 20; ++step) {
       const Deep next = deep(d.point + (step % 2 == 0 ? 0.8 : 0.2) * (d.point - d.nearest));
       if (next.distance() > d.distance()) d = next;
@@ -441,9 +441,9 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
 
 }  // namespace
 
-// Whether products of four lengths are normal numbers, down to 2^-50 of the object's extent: the
-// squares of cross products, by whose roots normals get the length 1. Elsewhere the depth has no
-// lower bound.
+// True if products of four lengths are normal numbers, for lengths down to 2^-50 of the object's
+// extent. Squares of cross products are such, and their roots make normals of length 1. If false,
+// the depth has no lower bound.
 bool has_normal_products(const ClosedObject& solid) {
   const Vec3 extent = solid.box().hi - solid.box().lo;
   return extent.maxCoeff() > 0x1p-200 && solid.largest() < 0x1p200;
@@ -462,8 +462,8 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   if (limit && out.hi <= limit->most) return out;
   const Points seeds = out.hi < kInf ? deep_points(a, b, starts, out.translation) : Points();
   if (limit) {
-    // A point inside both that is farther than this from both surfaces stays a common point after
-    // each such translation. So nothing shorter is looked for. This only saves time.
+    // A point inside both that is farther than `most` from both surfaces stays a common point after
+    // each translation by at most `most`. Then none is tried. This only saves time.
     const auto deeper = [&](const ClosedObject& solid, const Vec3& p) {
       return solid.has(p) && (solid.nearest(p) - p).norm() > limit->most;
     };
@@ -505,14 +505,14 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   for (const Cover& cover : covers) {
     double least = out.hi;
     for (const Cover::Side& side : cover.sides) {
-      // After a translation by less than `least` nothing is above the plane.
+      // Every translation shorter than `least` is below this plane.
       least = std::min(least, side.distance - side.error * (cover.largest + out.hi));
     }
     out.lo = std::max(out.lo, least);
   }
   if (covers.empty() || out.lo * 1.001 >= out.hi) return out;
   if (limit && out.lo > limit->most) return out;
-  // Only shorter translations are asked for, so the search is about those alone.
+  // With a limit only translations shorter than `most` matter, so only these are searched.
   Penetration found = out;
   if (limit) found.hi = limit->most;
   Search search(a, b, std::move(covers), axes, found);

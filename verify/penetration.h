@@ -6,16 +6,16 @@
 //
 // From below: by cores, convex sets inside the objects (verify/convex_core.h). If A is a core of
 // object a and B one of object b, then a and b overlap after each translation inside the polytope
-// B - A, the differences of a point of B and a point of A. A search divides the ball of
+// B - A: the set of differences of a point of B and a point of A. A search divides the ball of
 // translations that are shorter than the upper bound into boxes. A box is settled if one polytope
-// holds it. The depth is at least the distance of the nearest box that is not settled. As the
-// boxes become smaller, their middles are tried as translations.
+// holds it. The depth is at least the distance of the nearest box that is not settled. As the boxes
+// become smaller, their middles are tried as translations.
 //
 // A polytope is found by the expanding polytope algorithm (van den Bergen, Proximity Queries and
-// Penetration Depth Computation on 3D Game Objects, 2001), as a surface of triangles. Each edge
-// has as many triangles on one side as on the other, so a point that lies below the planes of all
-// of them, which all are seen from it the same way round, has a winding number that is not 0. So
-// it is inside the convex hull of the corners, whether or not the surface is convex.
+// Penetration Depth Computation on 3D Game Objects, 2001), as a closed surface of triangles: each
+// edge is passed equally often in both directions. From a point below the planes of all triangles,
+// all of them are seen the same way round, so its winding number is not 0. So the point is inside
+// the convex hull of the corners, whether or not the surface is convex.
 //
 // World units. Preconditions of verify/exact.h.
 #pragma once
@@ -33,8 +33,8 @@ struct Penetration {
   Vec3 translation = Vec3::Zero();  // of object a
 };
 
-/// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? Ways: of
-/// length 1, directions in which a translation by `most` may separate, as across faces that meet.
+/// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? ways: unit
+/// vectors along which a translation by `most` may separate, such as normals of faces that meet.
 struct DepthLimit {
   double most = 0;
   std::span<const Vec3> ways = {};
@@ -42,7 +42,7 @@ struct DepthLimit {
 
 /// starts: points inside both or near such points, such as common points of their surfaces.
 /// threads: as in for_each_shared(); changes no answer. limit: the bounds are then those found when
-/// the question was decided; where `hi` is above `most`, it is not proved.
+/// its question was decided; if hi > most, nothing proves that the depth is at most `most`.
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads = 1, const std::optional<DepthLimit>& limit = {});
 

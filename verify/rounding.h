@@ -12,14 +12,14 @@ enum class Triage : std::uint8_t { no, yes, unknown };
 /// can show that smaller bounds give wrong answers.
 struct FilterBounds {
   static constexpr double side =
-      9 * 0x1p-53;  // of a determinant, in its permanent; of a projection
+      9 * 0x1p-53;  // of a determinant, relative to its permanent; of a projection
   static constexpr double normals = 12 * 0x1p-53;  // of the product of two normals
   static constexpr double point =
-      64 * 0x1p-53;  // of a constructed difference of points, in their extent
+      64 * 0x1p-53;  // of a constructed difference of points, relative to their extent
   static constexpr double gap =
-      16 * 0x1p-53;  // of a gap along a direction, in the magnitudes projected
+      16 * 0x1p-53;  // of a gap along a direction, relative to the projected magnitudes
   static constexpr double absolute =
-      0x1p-1000;  // underflow, per unit of what is multiplied last, plus one
+      0x1p-1000;  // of underflow; times 1 + the sum of the last factors
 };
 
 /// For an upper bound of the length of a normal: the error of the length, relative to the sum of

@@ -25,10 +25,10 @@ inline mpz_class integer_of(double x, int exponent) {
   if (std::isfinite(whole)) return mpz_class(whole);
   int of_x = 0;
   mpz_class out(std::ldexp(std::frexp(x, &of_x), 53));
-  return out << static_cast<mp_bitcnt_t>(of_x - 53 - exponent);  // whole overflows, so this is > 0
+  return out << static_cast<mp_bitcnt_t>(of_x - 53 - exponent);  // > 0, since `whole` overflows
 }
 
-/// The corners of two triangles as integers, times 2^exponent, which is as large as it can be.
+/// The corners of two triangles: integers times 2^exponent. The exponent is the largest possible.
 struct Scaled {
   using Corners = std::array<std::array<mpz_class, 3>, 3>;
   Corners a, b;

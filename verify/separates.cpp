@@ -20,7 +20,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 /// Whether all corners of a, moved, lie on one side of a plane across the direction, and all of b
 /// on the other. A corner that is moved and projected has 6 roundings, relative to the magnitude.
 /// Far from the origin, corners are taken relative to a corner of the box of both: along an axis on
-/// which no coordinate is more than twice another, their differences are doubles (Sterbenz,
+/// which no coordinate is more than twice another, their differences are exact (Sterbenz,
 /// Floating-Point Computation, 1974).
 bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   Vec3 origin = Vec3::Zero();
@@ -80,10 +80,10 @@ bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t,
 
 }  // namespace
 
-// Where the surfaces are apart, a common point of the insides would lie in a region whose boundary
-// has a point of one surface that is inside the other object, and with it all of its piece. So one
-// corner of each piece decides. A coordinate that is moved in doubles is off by 2^-53 of its
-// magnitude at most; the surfaces are farther apart than such an error of a and one of b, so the
+// If the surfaces are apart, but the insides have a common point, then a point of one surface is
+// inside the other object, and with it the whole connected piece of that surface. So one corner of
+// each piece decides. A coordinate that is moved in doubles is off by at most 2^-53 of its
+// magnitude. The surfaces are farther apart than two such errors, one of a and one of b, so the
 // rounded corner and the true one lie on the same side.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   const FloatingPointGuard guard;

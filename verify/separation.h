@@ -39,8 +39,8 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 }
 
 /// True only if all points of the two triangles, or convex hulls of other points, are farther apart
-/// than `limit` (>= 0, finite): there are two parallel planes, farther apart than the limit, with
-/// one of them on either side.
+/// than `limit` (>= 0, finite): there are two parallel planes farther apart than the limit, with
+/// all of a before the first and all of b beyond the second.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
 /// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any direction

@@ -114,15 +114,15 @@ namespace farcull::minkowski_line {
 
 // A line along z and a triangle fattened by a ball, as the floats of a Solid define it
 // (offsets/minkowski.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d =
-// c - m in the image; p a point of the triangle; root = sqrt(r^2 - |d - p.xy|^2). The ball about p
-// cuts the line in the chord from m.z + p.z - root to m.z + p.z + root. The solid's interval is the
-// hull of all chords, so a kernel's answer has to contain the chord of any p. Rationals decide this
-// wherever long doubles leave a doubt.
+// c - m in the image, c the place of the line; p a point of the triangle; root =
+// sqrt(r^2 - |d - p.xy|^2). The ball about p cuts the line in the chord from m.z + p.z - root to
+// m.z + p.z + root. The solid's interval is the hull of all chords, so a kernel's answer has to
+// contain the chord of any p. Rationals decide this wherever long doubles leave a doubt.
 
 using rational::Q;
 using Real = long double;
 using Real3 = std::array<Real, 3>;
-// The bounds below are for 2^-64.
+// The error bounds below assume that an operation on Real rounds by at most 2^-64 of its result.
 static_assert(std::numeric_limits<Real>::digits >= 64);
 using Kernel = bool (*)(float cx, float cy, const Solid& solid, float& entry, float& exit);
 

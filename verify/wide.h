@@ -4,19 +4,20 @@
 // Last Bit, 1991). For verify/contact_points.cpp alone.
 //
 // u = 2^-53. Products, quotients and sums are rounded to nearest: off by at most u times the
-// result. exact_sum() and exact_product() give the rest as well, so they lose nothing. Where all
-// rests are 0, as for coordinates of few digits, the error is 0.
+// result. exact_sum() and exact_product() also give the part that rounding cuts off, so they lose
+// nothing. Where no such part is left out, as for coordinates of few digits, the error is 0.
 //
 // A bound is a sum of terms >= 0 that meets at most 12 roundings. So the computed one is at least
 // (1 - u)^12 times the exact one, and Bounds::factor makes up for that. It also makes up for
 // a factor 1 + u, since |hi + lo| <= (1 + u) |hi|.
 //
-// Underflow. Precondition: the numbers that one begins with are sums of two doubles that are 0 or
-// in [2^-100, 2^100], and a value is a product of at most four of them, or a sum of such. Sums and
-// differences are multiples of 2^-152, and products of four are multiples of 2^-608; no rounding
-// changes that. An error above 0 is u times such a product at least, so nothing underflows before
-// a division. A quotient of values of four and of three factors is 0 or above 2^-916. It may
-// underflow in its low part and in its bound, by 2^-1070 in all: the term kUnderflow covers this.
+// Underflow. Precondition: each number that one begins with is the sum of two doubles, each 0 or of
+// a magnitude in [2^-100, 2^100]; a value is a product of at most four of these numbers, or a sum
+// of such products. Sums and differences are multiples of 2^-152, and products of four are
+// multiples of 2^-608; no rounding changes that. An error above 0 is u times such a product at
+// least, so nothing underflows before a division. A quotient of values of four and of three factors
+// is 0 or above 2^-916. It may underflow in its low part and in its bound, by 2^-1070 in all: the
+// term kUnderflow covers this.
 #pragma once
 
 #include <cmath>

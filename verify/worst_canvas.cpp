@@ -55,8 +55,8 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
 
 // The same for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x - a.x) in floats.
 // Each operation is off by half a unit in its last place to the worse side. A product has three
-// roundings, one in each factor and one of its own; the comparison has none. Doubles hold these
-// products of floats to 2^-53.
+// roundings, one in each factor and one of its own; the comparison has none. The doubles here are
+// off by only 2^-53 of these products.
 bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
   constexpr double kHalfUnit = 0x1p-24;
   const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
@@ -106,7 +106,7 @@ float WorstCanvas::held(float z) const {
 float WorstCanvas::held(float z, Verb verb) const {
   if (options_.exact_samples) return held(z);
   const bool ask = verb == Verb::ask;
-  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // a bit for each choice
+  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // each choice takes one bit: 1 is down
   if (options_.rounding_seed != 0)
     down =
         mixed(mixed(options_.rounding_seed * 2 + (ask ? 1 : 0)) ^ std::bit_cast<std::uint32_t>(z));

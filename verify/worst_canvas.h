@@ -1,6 +1,6 @@
 // A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more:
-// of all results that they allow it takes the worst for culling. It models the steps that a
-// coordinate takes through a rasterizer, and does not know the budget's terms.
+// of all results that these allow, it takes the one that is worst for culling. It models the steps
+// that a coordinate takes through a rasterizer, and does not know the budget's terms.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct WorstCanvasOptions {
   /// moved, but the floats that compare a pixel centre with an edge are rounded as badly as IEEE
   /// 754 allows.
   bool exact_samples = false;
-  /// The asked depth lies this far behind D(exit), as on a GL device. Tests set less, to show that
-  /// culling then fails.
+  /// An asked depth lies this far behind D(exit), the mapped exit depth, as on a GL device. Tests
+  /// set less, to show that culling then fails.
   float asked_behind = kAskedBehind;
   /// 0: each program rounds depths as badly as it may: stored depths up, asked depths down.
   /// Else: the seed by which each program, independently, rounds each depth up or down.

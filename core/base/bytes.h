@@ -1,4 +1,4 @@
-// Bytes as text: in Base64, and by two hashes.
+// Base64, and two hashes of bytes: FNV-1a and SHA-256.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ namespace farcull {
 
 std::string to_base64(std::span<const std::uint8_t> bytes);
 
-/// The bytes whose to_base64() is `text`; empty if no bytes have it, as when unused bits before the
-/// padding are not 0.
+/// Decodes the output of to_base64(). Empty if to_base64() never returns `text`, for example
+/// because unused bits before the padding are not 0.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
-// FNV-1a, the hash of fingerprints: 64 bits over a sequence of bytes.
+// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
 
 class Fnv1a {
  public:
@@ -29,7 +29,7 @@ class Fnv1a {
   void add(std::string_view text) {
     for (const char c : text) add_byte(static_cast<unsigned char>(c));
   }
-  /// The bytes of the word, the lowest first.
+  /// Adds the 8 bytes of the word, the lowest first.
   void add(std::uint64_t word) {
     for (int byte = 0; byte < 8; ++byte, word >>= 8) add_byte(static_cast<unsigned char>(word));
   }
@@ -45,7 +45,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-// SHA-256 (FIPS 180-4), as `sha256sum` computes it; a certificate names its list of pairs by it.
+// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate names its list of pairs by it.
 
 class Sha256 {
  public:
@@ -59,8 +59,8 @@ class Sha256 {
   std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                          0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   std::array<std::uint8_t, 64> block_{};
-  std::size_t filled_ = 0;   // bytes of block_
-  std::uint64_t bytes_ = 0;  // bytes of all calls so far
+  std::size_t filled_ = 0;   // bytes of block_ in use
+  std::uint64_t bytes_ = 0;  // bytes added so far
 };
 
 /// The SHA-256 of a text.

@@ -33,7 +33,7 @@ std::string spelled(const std::string& text) {
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
     const std::string word =
         is_parameter(name) && spelling_of_program ? spelling_of_program(name) : name;
-    if (!is_parameter(name) || word.empty()) {  // braces of a file's name, perhaps
+    if (!is_parameter(name) || word.empty()) {  // such as the braces of a file's name
       out += text[at++];
       continue;
     }

@@ -10,8 +10,8 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// line: of a text file, from 1; 0: no line. A parameter in braces, as in "{radius}", is written
-  /// as its reader knows it.
+  /// line: of a text file, from 1; 0: no line. A text may name a parameter in braces, as in
+  /// "{radius}"; spelled() replaces it.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
@@ -22,15 +22,15 @@ class Error : public std::runtime_error {
 
 // ---- names of parameters ----
 //
-// A text names a parameter as {depth_format}, and a command as {doctor}, so that nothing below the
-// command line knows how its words are written.
+// A text names a parameter as {depth_format} and a command as {doctor}. Only the program knows how
+// its users write these names (--depth-format).
 
-/// Writes each {parameter} in the text as its reader does: by the name alone, unless the program
-/// has set another spelling.
+/// Replaces each {parameter} in the text by the program's spelling of it, or by the bare name if
+/// the program has set no spelling.
 std::string spelled(const std::string& text);
 /// Sets how the program spells a parameter's name, such as --depth-format on a command line.
-/// `spelling` returns an empty text for a name that is no parameter; the text then stays as it is
-/// (a file may be called a{b}.obj). Call it before any thread runs.
+/// `spelling` returns an empty text for a name that is no parameter; the braces then stay (a file
+/// may be called a{b}.obj). Call this before any other thread runs.
 void spell_parameters(std::string (*spelling)(const std::string& name));
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// The fields of a struct: its members with their names. Code that writes, adds up or compares a
-// struct member by member uses them, so that a new member has to be named only once more.
+// The fields of a struct: its members with their names. Code that writes, adds up or compares the
+// members one by one uses this list, so a new member is added to one list only.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Inside a struct: these members, by these names and in this order, are its fields.
+/// Use inside a struct: makes these members its fields, with these names and in this order.
 ///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };
 /// Then sizes.fields(visit) calls visit("width", sizes.width), visit("height", sizes.height).
 #define FARCULL_FIELDS(...)                                                                     \
@@ -40,7 +40,7 @@ concept HasFields = requires(const T& value) {
   value.fields([](std::string_view, const auto&) {});
 };
 
-/// Adds each field of `more` to that of `sum`.
+/// Adds each field of `more` to the same field of `sum`.
 template <HasFields T>
 void add_fields(const T& more, T& sum) {
   const auto from = more.members();

@@ -24,24 +24,24 @@ struct FloatingPoint {
 /// The floating-point environment that all proofs assume.
 inline constexpr FloatingPoint kProved;
 
-/// As in "rounds to nearest, keeps subnormals".
+/// For example "rounds to nearest, keeps subnormals".
 std::string to_string(const FloatingPoint& floating_point);
 
-/// The environment of the calling thread, found out by arithmetic, so that the same code serves
-/// every processor. May raise floating-point exceptions.
+/// The environment of the calling thread. Test operations find it, so the same code serves every
+/// processor. May raise floating-point exceptions.
 FloatingPoint floating_point();
 
 /// Throws Error naming `where` unless the calling thread computes as kProved says. Call it after
 /// foreign code, which may have changed the environment, and before its results are used.
 void require_proved(const std::string& where);
 
-/// Sets kProved for the calling thread, with no exception trapping. Restores the previous
+/// Sets kProved for the calling thread and turns floating-point traps off. Restores the previous
 /// environment (rounding, flushing, traps, raised exceptions) at the end of its scope. Guards may
 /// be nested: an inner one ends before the outer one. Takes less than a microsecond.
 ///
-/// A compiler that knows nothing of the environment may move arithmetic on local variables across
-/// the guard. So the guarded function leaves arithmetic that matters to functions that it calls and
-/// that are not inlined, or does it on memory that the guard's constructor might have changed.
+/// A compiler may ignore that the environment changes and move arithmetic on local variables across
+/// the guard. So put arithmetic that matters into functions that are called and not inlined, or do
+/// it on memory that the guard's constructor might have changed.
 class FloatingPointGuard {
  public:
   /// Throws Error if arithmetic shows that the setting took no effect; the environment is then as

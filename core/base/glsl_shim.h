@@ -1,7 +1,7 @@
 // Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
-// A kernel writes FAR_OUT(t) and FAR_INOUT(t) for its parameters, FAR_PRECISE before a float that
-// no compiler may reassociate, and FAR_KERNEL before a function that several files may compile.
-// Contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
+// A kernel writes FAR_OUT(t) and FAR_INOUT(t) for its parameters, FAR_PRECISE before a float whose
+// computation no compiler may reassociate, and FAR_KERNEL before a function that several files may
+// compile. Contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
 // operation once.
 #pragma once
 

@@ -1,10 +1,10 @@
 // A device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as C++ with
 // `float` standing for Worst. A Worst is the range of all floats that some permitted rounding could
-// have given: sums, differences and products are rounded in any direction, quotients err by 2.5
-// units in the last place, roots (as good as 1 / inversesqrt) by 5, and numbers below 2^-126, given
-// or computed, may be flushed to zero (GLSL 4.50, section 4.7.1; A4). A comparison is true only if
-// it is true for every choice. Include the kernel between `#define float Worst` and `#undef float`,
-// after all other headers.
+// have given (GLSL 4.50, section 4.7.1; A4): sums, differences and products are rounded in any
+// direction; quotients err by 2.5 units in the last place, square roots by 5 (as 1 / inversesqrt);
+// operands and results below 2^-126 may be flushed to zero. A comparison is true only if it is true
+// for every choice. Include the kernel between `#define float Worst` and `#undef float`, after all
+// other headers.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class Worst {
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
-  /// One value of the range, for what a kernel may choose freely.
+  /// One float of the range, for a value that a kernel may choose freely, such as a direction.
   friend Worst fixed(Worst a) {
     return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_)));
   }
@@ -61,16 +61,16 @@ class Worst {
  private:
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
 
-  // a + b rounded up (`sign` 1) or down (-1), to the next double if to-nearest went the other way.
-  // `lost` is the exact rounding error, by Knuth's two-sum.
+  // a + b rounded up (`sign` 1) or down (-1): the sum rounded to nearest, or the next double if
+  // that went the other way. `lost` is the exact rounding error, by Knuth's two-sum.
   static double sum(double a, double b, double sign) {
     const double s = a + b, part = s - a;
     const double lost = (a - (s - part)) + (b - part);
     return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
   }
 
-  // The floats around [lo, hi], `units` of the last place farther out. A result that is a float
-  // already stays exact, as correct rounding demands, unless it is flushed.
+  // The smallest range of floats around [lo, hi] widened by `units` of the last place. A bound that
+  // is a float already stays exact, as correct rounding demands, unless it is flushed.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

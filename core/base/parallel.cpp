@@ -36,8 +36,8 @@ class WorksFor {
   const std::atomic<bool>* before_;
 };
 
-// How long a thread spins for work, or for the end of it, before it sleeps: steps of a query follow
-// each other faster than a sleeping thread wakes.
+// A thread that waits for work, or for its end, spins this long before it sleeps: the next step of
+// a query mostly comes sooner than a sleeping thread wakes.
 constexpr std::chrono::microseconds kSpin{50};
 
 template <class Done>
@@ -54,8 +54,8 @@ bool spin_until(const Done& done) {
   return done();
 }
 
-// Blocks all signals in the calling thread. Threads that it starts meanwhile inherit that, so
-// signals go to threads of the caller.
+// Blocks all signals in the calling thread. Threads that it starts in this scope inherit the block,
+// so signals go to threads of the caller.
 class SignalsBlocked {
  public:
 #ifndef _WIN32
@@ -78,7 +78,7 @@ struct Batch {
   void (*part)(const void*, std::size_t);
   const void* data;
   std::size_t parts;
-  const std::atomic<bool>* stop_request;  // of the thread that calls
+  const std::atomic<bool>* stop_request;  // of the calling thread
   std::size_t next = 0;                   // guarded by the pool's mutex
   std::atomic<std::size_t> done = 0;      // parts that have returned
 };
@@ -146,7 +146,7 @@ class Pool {
         batch.part(batch.data, k);
       }
       lock.lock();
-      // The batch may be gone after this increment: then its run_parts() may return.
+      // Read before the increment: after it run_parts() may return, which destroys the batch.
       const std::size_t parts = batch.parts;
       const bool last = batch.done.fetch_add(1) + 1 == parts;
       lock.unlock();
@@ -156,7 +156,7 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
-  std::deque<Batch*> batches_;            // those with a part that no thread has begun
+  std::deque<Batch*> batches_;            // batches with a part that no thread has begun
   std::atomic<std::size_t> waiting_ = 0;  // parts that nobody has begun; changed under the mutex
   std::size_t threads_ = 0;
 };

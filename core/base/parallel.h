@@ -1,6 +1,6 @@
-// Divides work among all cores: in contiguous chunks, so that results can be joined in order, or
-// item by item. Also calls that can be stopped. All threads of farcull's own work start here, so
-// each computes as the proofs say (core/base/floating_point.h).
+// Divides work among all cores, either in contiguous chunks, so that results can be joined in
+// order, or item by item. Also runs calls that can be stopped. Every thread that does work of
+// farcull starts here, so each computes as the proofs say (core/base/floating_point.h).
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 namespace farcull {
 
 /// Calls part(data, k) once for each k in 0 .. parts - 1: the first in the calling thread, the
-/// others in pooled threads, or in the calling thread if none is free, so calls may be nested.
-/// Returns when all have returned. part throws nothing.
+/// others in pooled threads. Those for which no pooled thread is free run in the calling thread, so
+/// calls may be nested. Returns when all have returned. `part` must not throw.
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
 /// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if
 /// threads are free. Inside, threads round to nearest and keep subnormals, whatever the caller's
-/// environment. No chunk may wait for another. The first exception of the lowest chunk is thrown
-/// again here.
+/// environment. No chunk may wait for another. If chunks throw, the exception of the lowest one is
+/// thrown again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -45,7 +45,7 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   }
 }
 
-/// As many chunks as cores (or `threads` if it is not 0), but none with fewer than `least` items.
+/// As many chunks as cores (or `threads` if it is not 0), or fewer so that each has `least` items.
 inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
   const std::size_t cores =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
@@ -55,8 +55,8 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
 // ---- work of many items of unlike length, shared by all threads ----
 
 /// Calls work(k, memory) once for each k in 0 .. count - 1; the next k goes to any thread that is
-/// free. Each thread makes a Memory, and uses it in all its calls. threads: 0 for as many as there
-/// are cores. An exception of work is thrown again here.
+/// free. Each thread makes one Memory and uses it in all its calls. threads: 0 for as many as there
+/// are cores. An exception of `work` is thrown again here.
 template <class Memory, class Work>
 void for_each_with_memory(std::size_t count, unsigned threads, const Work& work) {
   const std::size_t chunks = chunks_for(count, 1, threads);
@@ -83,12 +83,12 @@ class Stopped : public std::exception {
 };
 
 /// Throws Stopped if the calling thread works for a StoppableCall that was asked to stop. Else it
-/// does nothing. Each call of run_parts(), and so of for_chunks(), begins with it.
+/// does nothing. Each run_parts(), and so each for_chunks(), calls it first.
 void stop_point();
 
 /// Runs `work` in a thread of its own. The threads that help with it in for_chunks() see the same
-/// request to stop. All these threads block signals, which go to threads of the caller. The thread
-/// starts with the floating-point environment of the thread that constructs the object.
+/// request to stop. All these threads block signals, so signals go to threads of the caller. The
+/// thread starts with the floating-point environment of the thread that constructs the object.
 class StoppableCall {
  public:
   /// Throws std::system_error if no thread can be started; nothing has run then.

@@ -13,7 +13,7 @@ constexpr std::uint64_t scrambled(std::uint64_t x) {
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
-/// 2^64 over the golden ratio, by which seeds and numbers are moved before they are scrambled.
+/// A constant for mixing bits: 2^64 divided by the golden ratio.
 constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
 /// Draws from std::mt19937_64, whose words are specified. The distributions of <random> differ
@@ -28,7 +28,7 @@ class RandomNumbers {
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
   /// -1 or 1.
   double sign() { return (word() & 1) != 0 ? 1 : -1; }
-  /// In 0 .. n - 1, n >= 1. Not quite uniform: a word modulo n.
+  /// In 0 .. n - 1, n >= 1: a word modulo n, so not quite uniform.
   template <class Integer>
   Integer below(Integer n) {
     return static_cast<Integer>(word() % static_cast<std::uint64_t>(n));

@@ -1,7 +1,7 @@
-// A stage of a run: what is done, or left out, and why. A plan lists the stages that are to come, a
-// trace those that were. The same structure serves both, so a run can be compared with its plan.
-// Also the callback by which a long computation reports its current step. Words for all of it are
-// made in experiments/record/stage_words.h.
+// A stage of a run: a step that runs or is left out, and why. A plan lists the stages that are to
+// come, a trace those that have passed; both use this structure, so a run can be compared with its
+// plan. Also the callback by which a long computation reports its current step. The texts for all
+// of this are in experiments/record/stage_words.h.
 #pragma once
 
 #include <cstdint>
@@ -14,94 +14,94 @@
 namespace farcull {
 
 enum class StageKind : std::uint8_t {
-  boxes,           // which triangles can take part, by boxes
-  blocks,          // boxes of blocks of triangles
-  setup,           // the device: context, shaders, threads
+  boxes,           // finds by boxes which triangles can take part
+  blocks,          // compares boxes of blocks of triangles
+  setup,           // starts the device: context, shaders, threads
   draw,            // all drawing; listed only if nothing is drawn
-  patches,         // owners inside objects that are tested against themselves
-  objects,         // whether objects are asked as a whole before their triangles
-  clusters,        // whether there is a level between objects and triangles
-  view,            // a view as a whole
-  fatten,          // the primitives of one view
-  cull,            // the passes of one level in one view
-  agreement,       // the triangles that every view of a round has cleared
+  patches,         // cuts objects that are tested against themselves into owners
+  objects,         // decides whether objects are asked as a whole before their triangles
+  clusters,        // decides whether there is a level between objects and triangles
+  view,            // a whole view that is left out
+  fatten,          // makes the primitives of one view
+  cull,            // runs the passes of one level in one view
+  agreement,       // finds the triangles that every view of a round has cleared
   further_views,   // further views, left out because few triangles are left
   further_rounds,  // rounds after the first
-  offset,          // a further fattener
+  offset,          // culls with a further fattener
   sweep,           // sweep and prune
-  join,            // pairs of triangles whose boxes overlap
-  exact,           // exact predicates on the candidates
-  near,            // the triangles of two objects that can be nearest
-  closest,         // distances and closest points, exactly
-  inside,          // whether objects lie inside others
-  verify,          // accounting for every pair
-  read,            // the files
-  contacts,        // how triangles meet
-  touch,           // whether objects that meet overlap
-  depth,           // bounds of the penetration depth
+  join,            // finds pairs of triangles whose boxes overlap
+  exact,           // runs exact predicates on the candidates
+  near,            // finds the triangles of two objects that can be nearest
+  closest,         // computes distances and closest points, exactly
+  inside,          // decides whether objects lie inside others
+  verify,          // accounts for every pair
+  read,            // reads the files
+  contacts,        // finds how triangles meet
+  touch,           // decides whether objects that meet overlap
+  depth,           // bounds the penetration depth
 };
 
 /// The things that a stage counts.
 enum class Unit : std::uint8_t { none, triangles, pairs };
 
-/// Why a stage runs, was left out, or how it went. n, m, k, l and `fattener` are those of Stage.
+/// Why a stage runs or was left out, or how it went. n, m, k, l, fattener: members of Stage.
 enum class Reason : std::uint8_t {
   none,
   full,            // the option `full`: nothing is left out
   regions,         // n pairs of objects' boxes overlap
-  meetings,        // n such pairs without k ignored ones; m objects are tested against themselves
-  crowded,         // too many such pairs to list; m and k as above
-  block_pairs,     // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
-                   // k were compared, since a corner moved; empty: all
-  normal_pairs,    // the same, and triangles are compared along their normals too
-  oriented_pairs,  // the same, but oriented boxes of the blocks overlap too
-  moved_pairs,     // the same, but boxes of blocks were kept, and moved with their objects
+  meetings,        // k such pairs are ignored, n are not; m objects are tested against themselves
+  crowded,         // too many such pairs to list; m and k as in meetings
+  block_pairs,     // boxes of n pairs of blocks overlap, in m pairs of objects (or of one and
+                   // itself); k pairs have a corner that moved and were compared; no k: all were
+  normal_pairs,    // as block_pairs; triangles are also compared along their normals
+  oriented_pairs,  // as block_pairs; oriented boxes of the blocks overlap too
+  moved_pairs,     // as block_pairs; boxes of blocks were kept and moved with their objects
   boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
-  boxes_decide_little,  // boxes of triangles would settle little, or cost much: not compared
-  no_boxes_overlap,     // no two objects' boxes overlap (k as above, none tested against itself)
-  no_box_pairs,         // no boxes of two triangles that could collide overlap
+  boxes_decide_little,  // not compared: boxes of triangles would settle little or cost much
+  no_boxes_overlap,     // no two objects' boxes overlap except k ignored pairs; none has `self` set
+  no_box_pairs,         // no two triangles that could collide have boxes that overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
   shaders,              // the canvas for the fattener is set up; on GL also context and shaders
-  fattener,             // its name; n triangles are beyond its budget and kept
+  fattener,             // n triangles are beyond the budget of `fattener` and kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
-  passes,               // n passes ran; fewer than 2: the other one's stored set has not changed
+  passes,               // n passes ran; n < 2: the stored set of the other has not changed
   few_left,             // n triangles are left, at most m, so no further view is drawn
-  few_to_test,          // n triangles are left: m or fewer are cheaper to test
+  few_to_test,          // n triangles are left; m or fewer are cheaper to test than to cull
   patches_cut,          // n patches of at most m triangles
-  patches_whole,        // n objects, none of more than m triangles: each is one patch
+  patches_whole,        // no object tested against itself has more than m triangles: not cut
   few_objects,          // n objects take part, fewer than m: one seldom hides all of another
   rounds_given,         // n rounds were asked for
   all_views,            // a triangle is culled if every view clears it
   little_culled,        // the round culled n of m triangles, too few for another round
-  owners,               // every triangle is an owner by itself
+  owners,               // every triangle is an owner of its own
   clusters_given,       // sizes of clusters are given
-  clusters_large,       // occlusion queries on many triangles
-  clusters_small,       // occlusion queries on n triangles or fewer
-  clusters_flags,       // flags are read back at once
-  sweep,                // boxes of n objects overlap, which have m triangles; k, l below
+  clusters_large,       // occlusion queries, on more than n triangles
+  clusters_small,       // occlusion queries, on n triangles, at most m
+  clusters_flags,       // flags, not queries: asking about a triangle costs nothing
+  sweep,                // boxes of n objects with m triangles overlap; k and l: see Stage
   not_cleared,          // pairs that boxes found, without those that drawing cleared
-  join_kept,            // boxes of what is kept
-  join_patches,         // boxes of what is kept in different patches, and of all in one patch
+  join_kept,            // boxes of the triangles that are kept
+  join_patches,         // as join_kept, and boxes of all triangles inside each patch
   join_all,             // boxes of all triangles
   join_uneven,          // triangles lie too unevenly for blocks; a tree of boxes decides
-  join_crowded,         // too many pairs of objects' boxes overlap: as above
-  join_often,           // boxes of blocks overlap too often, also oriented ones: as above
-  join_many_blocks,     // boxes of more than n pairs of blocks overlap: as above
+  join_crowded,         // boxes of too many pairs of objects overlap; a tree decides
+  join_often,           // boxes and oriented boxes of blocks overlap too often; a tree decides
+  join_many_blocks,     // boxes of more than n pairs of blocks overlap; a tree decides
   predicates,           // exact predicates on the candidates
   no_candidates,        // there is no candidate to decide
   every_pair,           // every pair is accounted for
   not_asked,            // the option `no_verify`
-  near_boxes,           // of n pairs of objects; m bounds of boxes were compared
+  near_boxes,           // n pairs of objects; m pairs of boxes were compared
   inside_not_asked,     // the option `inside` is no
-  // Only in a plan: conditions that depend on pixels.
+  // Conditions that depend on pixels; only in a plan.
   if_more_left,   // if more than n triangles are left (n = 0: any)
   if_changed,     // if the previous round changed something
   if_culled,      // if the previous round culled at least one triangle in n
   if_candidates,  // if there are candidates
-  limited,        // the option `limit` ended the search, so not all pairs are known
+  limited,        // in a trace: the option `limit` ended the search, so not all pairs are known
 };
 
 /// Level of a stage that culls: none, objects, single triangles; any other value is the size of
@@ -111,15 +111,15 @@ inline constexpr std::uint32_t kNoLevel = 0, kObjectLevel = UINT32_MAX,
 
 struct Stage {
   StageKind kind = StageKind::boxes;
-  std::string subject = {};        // the view or the offset; of setup and boxes: empty
-  std::uint32_t level = kNoLevel;  // of cull
-  int round = 0;                   // of a visit, from 1; 0: the stage belongs to no round
+  std::string subject = {};        // the view or the offset; empty for setup and boxes
+  std::uint32_t level = kNoLevel;  // for cull
+  int round = 0;                   // of a visit, from 1; 0: belongs to no round
   bool ran = false;                // in a plan: it will run
-  bool depends = false;            // pixels decide whether it runs, or decided it
+  bool depends = false;            // pixels decide, or decided, whether it runs
   Reason reason = Reason::none;
-  std::string fattener = {};   // the name of the one that the reason is about
+  std::string fattener = {};   // name of the fattener that the reason is about
   std::uint64_t n = 0, m = 0;  // numbers that the reason is about
-  // Pairs that are ignored, or were compared; of a sweep: places changed, and l lists sorted anew.
+  // k: pairs that were ignored or compared. For a sweep: k places changed, l lists sorted anew.
   std::optional<std::uint64_t> k = {};
   std::uint64_t l = 0;
   double ms = 0;
@@ -133,8 +133,8 @@ struct Stage {
   std::uint64_t queries_saved = 0;
 };
 
-/// A stage with the sums over all stages of draws, queries, draws_saved and queries_saved; its
-/// other fields are empty.
+/// Sums draws, queries, draws_saved and queries_saved over all stages. The other fields of the
+/// result are empty.
 inline Stage work_of(const std::vector<Stage>& stages) {
   Stage sum;
   for (const Stage& stage : stages) {

@@ -1,5 +1,5 @@
-// Numbers from text, numbers as people read them, and whether a stream is a terminal and how wide
-// it is.
+// Reads numbers from text, writes numbers as people read them, and tells whether a stream is a
+// terminal and how wide it is.
 #pragma once
 
 #include <charconv>
@@ -56,8 +56,8 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
-/// The reason in a message of nlohmann-json, which begins with "[json.exception.parse_error.101]
-/// parse error at line 1, column 2: ".
+/// The reason in a message of nlohmann-json, without its beginning such as
+/// "[json.exception.parse_error.101] parse error at line 1, column 2: ".
 inline std::string_view json_fault(std::string_view message) {
   for (const std::string_view mark : {"] ", "column "}) {
     const std::size_t found = message.find(mark);
@@ -79,7 +79,7 @@ inline std::string counted(std::uint64_t n, const std::string& one, const std::s
 /// True if the stream is a terminal; false also if the stream is closed.
 bool is_terminal(std::FILE* stream);
 
-/// Columns of the stream's terminal now; 0 if the stream is no terminal or their number is unknown.
+/// Columns of the stream's terminal now; 0 if the stream is no terminal or its width is unknown.
 unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

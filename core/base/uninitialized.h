@@ -1,5 +1,5 @@
-// A vector of plain data whose resize() does not clear memory, for arrays that are written
-// completely right after it.
+// A vector of plain data whose resize() does not clear memory. For arrays that are completely
+// written right after it.
 #pragma once
 
 #include <memory>

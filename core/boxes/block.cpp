@@ -1,5 +1,5 @@
-// Bounds of points are kept in two pairs of registers, and converted to floats and columns.
-// spatial_order() cuts boxes in halves along the axis along which they lie farthest apart.
+// Computes bounds of triangles in registers, and converts them to floats and columns.
+// spatial_order() halves sets of boxes along the axis in which they lie farthest apart.
 #include "core/boxes/block.h"
 
 #include <ranges>
@@ -8,7 +8,7 @@
 namespace farcull {
 namespace {
 
-// How many triangles ahead corners are prefetched.
+// Corners are prefetched this many triangles ahead.
 constexpr std::uint32_t kAhead = 16;
 constexpr float kLargest = std::numeric_limits<float>::max();
 
@@ -96,7 +96,7 @@ FloatBox relative_box(const Bounds& bounds, double half, const Bounds& origin) {
   return of(grow(bounds.box(), half)).relative_to(origin);
 }
 
-// The boxes box(0) .. box(15).
+// Writes the boxes box(0) .. box(15) to the columns of `out`, and their bound.
 template <class BoxAt>
 void fill_columns(const BoxAt& box, BlockLanes& out) {
 #ifdef __SSE2__
@@ -193,7 +193,7 @@ namespace {
 
 // A box to be put in order. Sides are halved, since a difference of two doubles may be infinite.
 struct Placed {
-  std::array<double, 3> middle, half;  // half of its sides
+  std::array<double, 3> middle, half;  // half: halves of its sides
   std::uint32_t box;
 };
 
@@ -210,7 +210,7 @@ Placed placed(const Box& box, std::uint32_t k) {
   return out;
 }
 
-// The axis along which most middles lie farthest apart, and the range of their coordinates there.
+// The axis along which most middles lie farthest apart, and the range of their coordinates on it.
 struct Spread {
   std::size_t axis = 0;
   double lo = 0, hi = 0;
@@ -250,8 +250,8 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     Spread spread = sampled_spread(items);
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
-    // Boxes that span the whole spread would make both parts as long as the whole. Each is set
-    // apart once, and only if they are at most half of the items: so the depth stays logarithmic.
+    // Boxes that span the whole spread would make both parts as long as the whole, so they are set
+    // apart first, if they are at most half of the items (so that the depth stays logarithmic).
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;

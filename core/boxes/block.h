@@ -1,10 +1,10 @@
-// Boxes of triangles. In doubles they are grown by half the clearance, so that two triangles at
-// that distance or less have boxes that overlap. They are also kept in floats, sixteen as columns
-// for lanes, and in trees over such columns, with an order of boxes that makes the nodes compact.
+// Boxes of triangles. In doubles they are grown by half the clearance, so that the boxes of two
+// triangles at the clearance or less overlap. They are also kept in floats: as columns of sixteen,
+// for lanes, and in trees over such columns. An order of boxes makes the nodes compact.
 //
-// Boxes in floats are taken relative to a common origin and rounded. Subtraction and rounding are
+// Boxes in floats are relative to a common origin and rounded. Subtraction and rounding are
 // monotone, so boxes that overlap in doubles overlap in floats; and if one float is less than
-// another, so was the double. So no margin is needed, and only boxes that touch in floats are
+// another, so is the double. So no margin is needed, and only boxes that touch in floats are
 // compared again in doubles.
 #pragma once
 
@@ -25,7 +25,7 @@
 
 namespace farcull {
 
-/// How far each of two boxes grows so that boxes `clearance` apart meet: half of it, rounded up.
+/// How far to grow boxes so that two at the distance `clearance` meet: half of it, rounded up.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
@@ -89,8 +89,8 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 /// The empty box, which meets nothing.
 constexpr FloatBox kNowhere = {{kInfinite, kInfinite, kInfinite, 0},
                                {-kInfinite, -kInfinite, -kInfinite, 0}};
-/// The box relative to a finite origin, rounded to finite floats, so that it never meets a missing
-/// box. An empty box becomes kNowhere.
+/// The box relative to a finite origin, rounded to finite floats, so that it never meets kNowhere.
+/// An empty box becomes kNowhere.
 FloatBox relative(const Box& box, const Vec3& origin);
 /// True iff the closed boxes share a point.
 inline bool overlap(const FloatBox& a, const FloatBox& b) {
@@ -116,10 +116,10 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// Boxes in a WideBoxes. Also the most children of a node, and the most triangles of a block.
+/// Number of boxes in a WideBoxes; also the most children of a node and triangles of a block.
 constexpr std::uint32_t kWide = 16;
 
-/// Sixteen boxes as columns. A missing box meets nothing.
+/// Sixteen boxes as columns. Missing boxes are empty, so they meet nothing.
 template <class Number>
 struct alignas(64) WideBoxes {
   std::array<std::array<Number, kWide>, 6> column;  // x0, y0, z0, x1, y1, z1
@@ -150,18 +150,18 @@ Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to);
 void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
                     const Vec3& origin, FloatBox* out);
 
-/// Some triangles, at most kWide, and their boxes. The boxes behind the last one meet nothing.
+/// At most kWide triangles and their boxes. Boxes after the last triangle meet nothing.
 struct BlockLanes {
   WideBoxes<float> boxes;
   alignas(64) std::array<std::uint32_t, kWide> triangles;
-  FloatBox bound;  // of all of them
+  FloatBox bound;  // of all boxes
 };
 /// Fills `out` with these triangles and computes their boxes from the scene, grown by `half` and
 /// relative to the origin. Returns the box of all the triangles, not grown.
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,
                const Vec3& origin, BlockLanes& out);
 
-constexpr int kMostLevels = 8;  // 2^32 leaves
+constexpr int kMostLevels = 8;  // enough for 2^32 leaves
 
 /// A tree over leaves 0 .. leaves - 1. A node of height h > 0 and number k holds the nodes of
 /// height h - 1 with the numbers 16 k .. 16 k + 15, as far as there are any; their boxes are
@@ -177,8 +177,8 @@ struct BoxTree {
 /// The number of blocks of a tree with this many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
-/// Makes the tree over the boxes, and writes its blocks_of_tree() blocks from blocks[at] on. boxes:
-/// one per leaf; this function overwrites them.
+/// Makes the tree over the boxes and writes its blocks_of_tree() blocks to blocks[at] and after.
+/// boxes: one per leaf; this function overwrites them.
 template <class Number>
 BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Number>> blocks,
                           std::size_t at) {
@@ -206,15 +206,15 @@ BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Nu
   return out;
 }
 
-/// Brings a tree up to date in which these leaves (ascending, each once) have other boxes than
-/// before. box_of_leaf(leaf): its box now.
+/// Updates a tree after the boxes of these leaves have changed. leaves: ascending, each once.
+/// box_of_leaf(leaf): its new box.
 template <class Number, class BoxOfLeaf>
 void update_tree(const BoxOfLeaf& box_of_leaf, std::vector<std::uint32_t> leaves,
                  std::span<WideBoxes<Number>> blocks, BoxTree<Number>& tree) {
   for (const std::uint32_t leaf : leaves)
     blocks[tree.first[0] + leaf / kWide].set(leaf % kWide, box_of_leaf(leaf));
   for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
-    std::size_t nodes = 0;  // the numbers of those of the next height take the place of `leaves`
+    std::size_t nodes = 0;  // nodes found; `leaves` begins with their numbers, as the next children
     for (const std::uint32_t child : leaves) {
       const std::uint32_t node = child / kWide;
       if (nodes > 0 && leaves[nodes - 1] == node) continue;
@@ -233,8 +233,8 @@ void update_tree(const BoxOfLeaf& box_of_leaf, std::vector<std::uint32_t> leaves
 
 /// Orders boxes for a tree over them, so that boxes that follow one another are close. Each cut
 /// puts half of the boxes on either side, wherever they lie; boxes that reach across most of the
-/// others come first. So a distant or huge box enlarges only the nodes that it is in. Any boxes,
-/// also infinite ones. O(n log n).
+/// others come first. So a distant or huge box enlarges only the nodes that it is in. Boxes may be
+/// infinite. order: receives their indices. O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

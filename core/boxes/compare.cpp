@@ -1,7 +1,7 @@
-// The triangles of a block are sixteen lanes of boxes in floats, which are compared with each
-// other. Boxes that touch in floats are compared again in doubles (core/boxes/join.cpp). Only
-// comparisons, sums and products of floats decide, without fused operations, so every instruction
-// set gives the same pairs in the same order.
+// Compares the boxes of two blocks in floats, on lanes: one box with as many others at once as a
+// vector holds. Boxes that touch in floats are compared again in doubles (core/boxes/join.cpp).
+// Only comparisons, sums and products of floats decide, without fused operations, so every
+// instruction set gives the same pairs in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/compare.cpp"
 #include <hwy/foreach_target.h>
@@ -24,7 +24,7 @@ using OneBox = boxes::OneBox<float>;
 constexpr std::size_t kLanes = boxes::kLanes<float>;
 static_assert(kWide % kLanes == 0);
 
-// Triangles, from lane `from` on, that are not apart from the box along their normals.
+// Mask of the triangles, from lane `from` on, whose normals do not separate them from the box.
 HWY_INLINE hn::Mask<Numbers> near(const NormalLanes& normals, std::size_t from, const OneBox& box) {
   auto lo = hn::Zero(Numbers()), hi = lo;
   const auto add = [&](std::size_t k, hn::Vec<Numbers> low, hn::Vec<Numbers> high) {
@@ -50,7 +50,7 @@ HWY_INLINE std::uint32_t near_bits(const NormalLanes& normals, const OneBox& box
 // Compares the triangles of two blocks.
 class Comparison {
  public:
-  // vertices: of the two; null: neighbours stay. normals: likewise; null: not compared.
+  // Null vertices: pairs with a common vertex stay. Null normals: they are not compared.
   HWY_INLINE Comparison(const BlockLanes& a, const BlockLanes& b, const VertexBlock* a_vertices,
                         const VertexBlock* b_vertices, const NormalLanes* a_normals,
                         const NormalLanes* b_normals)
@@ -61,7 +61,7 @@ class Comparison {
         a_normals_(a_normals),
         b_normals_(b_normals) {}
 
-  // Writes to `certain` and `perhaps`, which have room for 272 pairs each.
+  // Appends to `certain` and `perhaps`, which have room for 272 more pairs each.
   HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
     const OneBox bound(b_.bound);
     std::uint32_t rows = boxes::overlapping_bits(a_.boxes, bound);
@@ -96,7 +96,7 @@ class Comparison {
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
     }
   }
-  // Boxes of b, from lane `from` on, that are not apart from triangle `row` of a along its normal.
+  // Mask of the boxes of b, from lane `from` on, that meet triangle `row` of a along its normal.
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -109,7 +109,7 @@ class Comparison {
     return hn::And(hn::Le(lo, hn::Set(Numbers(), a_normals_->hi[row])),
                    hn::Ge(hi, hn::Set(Numbers(), a_normals_->lo[row])));
   }
-  // Boxes of b, from lane `from` on, that overlap the box by more than touching.
+  // Mask of the boxes of b, from lane `from` on, that overlap the box and do not only touch it.
   HWY_INLINE hn::Mask<Numbers> overlapping_inside(std::size_t from, const OneBox& box) const {
     const auto along = [&](std::size_t axis, hn::Vec<Numbers> lo, hn::Vec<Numbers> hi) {
       return hn::And(hn::Lt(boxes::column(b_.boxes, axis, from), hi),
@@ -118,7 +118,7 @@ class Comparison {
     return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
                    along(2, box.z0, box.z1));
   }
-  // The lanes of a block that come after the row.
+  // Mask of the lanes, from `from` on, that come after the row.
   HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
     return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
                   hn::Set(Words(), static_cast<std::uint32_t>(row)));
@@ -193,10 +193,11 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 }
 
 std::optional<NormalMargin> normal_margin(float reach, double clearance) {
-  // In units of the distance of the farthest corner of a box from the origin, a bound of the
-  // rounding when a triangle and a box are compared (docs/reliability.md, "Boxes of blocks").
+  // Bounds the rounding error when a triangle and a box are compared, relative to `farthest`, a
+  // bound of the distance from the origin to any corner of a box (docs/reliability.md, "Boxes of
+  // blocks").
   constexpr double kMargin = 0x1p-20;
-  const double farthest = 1.74 * static_cast<double>(reach);  // more than the root of 3
+  const double farthest = 1.74 * static_cast<double>(reach);  // 1.74 > sqrt(3)
   if (!(farthest >= 0x1p-60 && farthest <= 0x1p60)) return std::nullopt;
   return NormalMargin{static_cast<float>(farthest),
                       static_cast<float>(kMargin * farthest + 1.001 * clearance)};
@@ -204,9 +205,9 @@ std::optional<NormalMargin> normal_margin(float reach, double clearance) {
 
 void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, const Vec3& origin,
                   const NormalMargin& margin, NormalLanes& out) {
-  std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate
+  std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // The last triangle fills the lanes that have none; their boxes meet nothing.
+    // Lanes without a triangle repeat the last one; their boxes are empty, so they meet nothing.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;
@@ -227,7 +228,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
     constexpr float kLeast = 0x1p-100f;
     const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     const float inverse = square > kLeast ? 1 / std::sqrt(square) : 0;
-    std::array<float, 3> at = {0, 0, 0};  // of the corners
+    std::array<float, 3> at = {0, 0, 0};  // of the corners along the normal
     for (std::size_t k = 0; k < 3; ++k) {
       out.normal[k][lane] = inverse * n[k];
       for (std::size_t c = 0; c < 3; ++c) at[c] += out.normal[k][lane] * corner[c][k][lane];

@@ -11,7 +11,7 @@
 namespace farcull {
 namespace {
 
-// Per triangle the block that it is in.
+// The block of each triangle.
 std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std::size_t triangles) {
   std::vector<std::uint32_t> out(triangles);
   for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
@@ -21,13 +21,13 @@ std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std:
   return out;
 }
 
-// Pairs of blocks that overlap and of which one moved, each once. moved: per block; moved_blocks:
-// the blocks that did, ascending.
+// Overlapping pairs of blocks of which at least one moved, each pair once. moved: per block,
+// whether it did. moved_blocks: those that did, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
   struct Question {
-    std::uint32_t block, of, with;  // block of object `of`, and the other object
+    std::uint32_t block, of, with;  // a block of object `of`, and the other object
     bool second;                    // `of` is the second object of its meeting
   };
   std::vector<Question> questions;
@@ -49,7 +49,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
       own.clear();
       pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
       for (const auto& [a, b] : own) {
-        // If both moved, each finds the other.
+        // If both moved, each finds the other, so one finding is dropped.
         if (of == with) {
           if (!moved[b] || a <= b) {
             found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
@@ -81,8 +81,8 @@ BlockDecision unmoved_decision(const FrameMemory& memory) {
 }
 
 // The decision for a frame in which some blocks moved. Recomputes the boxes, trees and pairs of
-// these. Null if many more pairs of blocks overlap than when the blocks were made, or if the
-// meetings say that a tree decides.
+// these blocks. Empty if many more pairs of blocks overlap than when the blocks were made, or if
+// decide_by_meetings() decides.
 std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
                                                FrameMemory& memory) {
   constexpr std::size_t kMostGrowth = 2;

@@ -12,33 +12,32 @@
 
 namespace farcull {
 
-/// Kept between plan_boxes() and find_boxes() of one frame and those of the next. A frame that does
+/// What plan_boxes() and find_boxes() of one frame keep for those of the next. A frame that does
 /// not come to its end leaves nothing behind for the next one.
 ///
-/// Whether the boxes of two triangles overlap depends on their corners alone, and whether those of
-/// two blocks do depends on the corners of their triangles. So the pairs of two blocks in which no
-/// corner moved are those of the last frame, and only blocks in which one moved are looked at. The
-/// order of triangles is kept too: any order is right, and one that was good remains so for a
-/// while.
+/// Whether the boxes of two triangles or of two blocks overlap depends on the corners of triangles
+/// alone. So two blocks in which no corner moved have the pairs of the last frame, and only blocks
+/// with a corner that moved are examined. The order of triangles is kept too: any order gives right
+/// results, and a good one stays good for a while.
 struct FrameMemory {
   MovedCorners moved;
-  std::optional<std::uint64_t> frame;  // the last one that was planned, found and decided by blocks
+  std::optional<std::uint64_t> frame;  // last frame that was planned, found and decided by blocks
   double clearance = 0;
   bool neighbours = true;
   std::vector<ObjectPair> ignored;
   std::vector<TrianglePair> pairs;  // candidates from the blocks of the last frame
   bool oriented = false;  // pairs are from oriented boxes: usable only while nothing moves
-  /// Counts of that frame: of BlockMeetings and ObjectOverlaps.
+  /// Counts of the last frame, as in BlockMeetings and ObjectOverlaps.
   std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
 
-  /// Blocks of the last frame, with all triangles of scattered objects in order; null: not made
-  /// yet, and what follows is empty. Its plan has it too, until it is destroyed.
+  /// Blocks of the last frame, with all triangles of scattered objects in order. Null: not made
+  /// yet, and the members below are empty. The plan of that frame shares them.
   std::shared_ptr<TriangleBlocks> blocks;
   std::optional<BlockTrees> trees;      // of all objects
   std::vector<std::uint32_t> block_of;  // per triangle
-  BlockPairs overlapping;               // all of the last frame
+  BlockPairs overlapping;               // all pairs of the last frame that overlap
   bool normals = false;                 // their triangles are compared along normals too
-  std::size_t usual = 0;                // their number when the blocks were made
+  std::size_t usual = 0;                // overlapping.size() when the blocks were made
 };
 
 /// decide_by_blocks() for the frame after the one in `memory`. Preconditions: memory.moved says

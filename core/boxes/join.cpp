@@ -1,6 +1,6 @@
 // Finds pairs with a tree of boxes, item by item, several items in parallel. The pairs of an item a
-// are those with b > a, so the result is sorted by a. If owners are few, their leaves come one
-// owner after the other, and an item is compared with later owners alone.
+// are those with b > a, so the result is sorted by a. If there are few owners, leaves are grouped
+// by owner, in order, and an item is only compared with leaves of later owners.
 //
 // Trees of blocks are searched block by block. Triangles whose boxes touch in floats are compared
 // again in doubles.
@@ -63,13 +63,13 @@ std::uint64_t find_leaves(const BoxTree<double>& tree, const WideBoxes<double>* 
   return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, least, leaves);
 }
 
-// With fewer items, a second thread that only finds pairs costs more than it saves.
+// With fewer items than this, a second thread to find pairs costs more than it saves.
 constexpr std::size_t kLeast = 4096;
-// Pairs that are found at a time, so that they stay in caches until they are copied.
+// About this many pairs are found at a time; they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
-// Makes room for some more pairs, and for those still to come if the remaining items have as many
-// pairs each. Grows at least to twice and at most to eight times: each growth copies the list.
+// Makes room for `more` pairs, and for later ones as if the remaining items had as many pairs each.
+// Reserves 2 to 8 times what is needed, because each growth copies the list.
 void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
   const std::size_t needed = pairs.size() + more;
   if (needed <= pairs.capacity()) return;
@@ -124,8 +124,8 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
 
 namespace {
 
-// True if owners ascend with the items and are at most as many as the children of a node. Leaves in
-// the order of owners then cost a few more nodes, but overlaps inside an owner are never examined.
+// True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
+// cost a few more nodes, but overlaps inside an owner are never examined.
 bool are_few(std::span<const std::uint32_t> owners) {
   std::size_t changes = 0;
   for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
@@ -152,8 +152,8 @@ void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>
 
 }  // namespace
 
-// Drops items whose boxes overlap the box of no other owner. Such an item has no pair, since that
-// box contains all boxes of the owner. Precondition: owners are few, and ascend with the items.
+// Drops items whose boxes overlap the box of no other owner. The box of an owner contains all of
+// its boxes, so such an item has no pair. Precondition: owners are few and ascend with the items.
 void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
   std::vector<Box> of_owner;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -194,8 +194,8 @@ void OrderedPairs::plant(std::vector<Box> boxes) {
   tree_ = make_tree<double>(leaves, blocks_, 0);
 }
 
-// Replaces part.found by the items of the leaves from `least` on whose boxes overlap that of the
-// leaf.
+// Replaces part.found by the items of the leaves from `least` on whose boxes overlap the box of
+// `leaf`.
 void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) const {
   part.found.clear();
   const Box box = blocks_[tree_.first[0] + leaf / kWide].get(leaf % kWide);
@@ -203,8 +203,8 @@ void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) con
   for (std::uint32_t& other : part.found) other = order_[other];
 }
 
-// For leaves in the order of owners. Items then ascend with their owners, so the result is the
-// number of items whose owner is this one or an earlier one.
+// The first item of a later owner, if leaves are grouped by owner: owners then ascend with the
+// items, so the result is the number of items of this owner and of earlier ones.
 std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
   const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
   return static_cast<std::uint32_t>(behind - owner_.begin());
@@ -354,7 +354,7 @@ namespace {
 
 constexpr std::uint32_t kNoLanes = 0xffffffff;
 
-// Per block the place of its lanes, or kNoLanes.
+// For each block, the index of its lanes, or kNoLanes.
 std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
   std::vector<std::uint32_t> out(blocks.ranges.size(), kNoLanes);
   for (std::uint32_t o = 0; o < blocks.objects.size(); ++o) {
@@ -367,8 +367,8 @@ std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
 
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;      // per block, or kNoLanes
-  UninitializedVector<BlockLanes> more;  // behind those that the blocks have
+  std::vector<std::uint32_t> place;      // index for each block, or kNoLanes
+  UninitializedVector<BlockLanes> more;  // indexed after those in TriangleBlocks
 };
 
 // Calls work(block, its triangles) for some blocks.
@@ -405,7 +405,7 @@ Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPair
   return out;
 }
 
-// The vertices by the places of lanes, filled only for the blocks of these pairs.
+// Vertices, indexed by Lanes::place, and filled only for the blocks of these pairs.
 UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
                                              const Lanes& lanes, std::span<const BlockPair> pairs,
                                              unsigned threads) {
@@ -421,7 +421,7 @@ UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleB
   return out;
 }
 
-// The normals by the places of lanes, filled only for the blocks of these pairs; none if floats
+// Normals, indexed by Lanes::place, and filled only for the blocks of these pairs. Empty if floats
 // cannot hold the coordinates.
 UninitializedVector<NormalLanes> normals_of(const Scene& scene, const TriangleBlocks& blocks,
                                             const Lanes& lanes, const BlockPairs& pairs,

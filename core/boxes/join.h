@@ -1,5 +1,5 @@
-// Pairs of overlapping boxes, by a tree: all at once, or in order and some at a time, so that the
-// memory does not grow with their number.
+// Finds pairs of overlapping boxes with a tree: all at once, or in order and some at a time, so
+// that memory does not grow with the number of pairs.
 #pragma once
 
 #include <array>
@@ -20,21 +20,21 @@ namespace farcull {
 
 struct OrientedBlocks;  // core/boxes/oriented.h
 
-/// All pairs a < b of `items` (indices into boxes and owners) of different owners whose closed
-/// boxes overlap, sorted. Exact: compares doubles only. Empty boxes overlap nothing. If there are
-/// more than `most`, returns most + 1 of them. threads: 0 for as many as there are cores; changes
-/// no answer.
+/// All pairs a < b of `items` (indices into boxes and owners) that have different owners and closed
+/// boxes that overlap, sorted. Exact: compares doubles only. Empty boxes overlap nothing. If there
+/// are more than `most`, returns most + 1 of them. threads: 0 for as many as there are cores;
+/// changes no answer.
 std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
                                    std::span<const std::uint32_t> items,
                                    std::size_t most = SIZE_MAX, unsigned threads = 1);
 
-/// Owners for box_join() that count pairs inside objects marked `self` too: a triangle of one is an
-/// owner by itself.
+/// Owners for box_join() with which it also finds pairs inside objects marked `self`: each triangle
+/// of such an object is an owner of its own.
 std::vector<std::uint32_t> join_owners(const Scene& scene);
 
-/// Takes pairs, some thousands at a time, in no order, from several threads at once. May change the
-/// list.
+/// A function that takes pairs: some thousands at a time, in no order, from several threads at
+/// once. May change the list.
 using TakePairs = std::function<void(std::vector<TrianglePair>& some)>;
 
 /// All pairs a < b of items of different owners whose closed boxes overlap, in ascending order.
@@ -49,12 +49,12 @@ class OrderedPairs {
   /// this object.
   OrderedPairs(const Scene& scene, double clearance, std::span<const ObjectPair> ignored,
                bool neighbours, unsigned threads);
-  /// Of `items`, as box_join(); their boxes and owners are copied. threads: as above.
+  /// Pairs of `items`, as box_join(); boxes and owners are copied. threads: as above.
   OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                std::span<const std::uint32_t> items, unsigned threads);
 
-  /// Replaces `out` by about the next `most` pairs, fewer at the end, and at most all pairs of one
-  /// more item for each thread. May leave it empty before the end. Precondition: most > 0.
+  /// Replaces `out` by about the next `most` pairs, fewer at the end. May exceed `most` by all
+  /// pairs of one item per thread; may be empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == items_.size(); }
   /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. An
@@ -66,16 +66,16 @@ class OrderedPairs {
   double share() const {
     return items_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(items_.size());
   }
-  /// Blocks of sixteen boxes that items were compared with. Does not depend on the threads or on
-  /// `most`, but is smaller for give() than for next().
+  /// Number of blocks of sixteen boxes that items were compared with. Does not depend on the
+  /// threads or on `most`, but is smaller for give() than for next().
   std::uint64_t compared() const { return compared_; }
 
  private:
-  // The pairs of some items that follow one another. Kept from call to call, since new memory is
-  // cleared by the system, which takes longer than to find the pairs.
+  // The pairs of some items that follow one another. Kept from call to call, because the system
+  // clears new memory, which takes longer than finding the pairs.
   struct Part {
     std::vector<TrianglePair> pairs;
-    std::uint32_t done = 0;  // items whose pairs these are
+    std::uint32_t done = 0;  // number of items whose pairs these are
     std::uint64_t compared = 0;
     bool complete = false;
     std::vector<std::uint32_t> found;
@@ -85,20 +85,20 @@ class OrderedPairs {
   void append_of_leaf(std::uint32_t leaf, Part& part) const;  // pairs with later leaves
   void find(std::uint32_t leaf, std::uint32_t least, Part& part) const;
   std::uint32_t first_of_later_owners(std::uint32_t item) const;
-  bool is_asked(const TrianglePair& pair) const;  // not ignored, and no neighbours left out
+  bool is_asked(const TrianglePair& pair) const;  // not ignored, not left out as neighbours
 
-  void plant(std::vector<Box> boxes);  // the tree over the boxes of the items
+  void plant(std::vector<Box> boxes);  // makes the tree over the boxes of the items
   void drop_apart(std::vector<Box>& boxes);
 
   const Scene* scene_ = nullptr;        // not null if neighbours are left out
-  std::vector<std::uint32_t> objects_;  // per triangle; likewise
+  std::vector<std::uint32_t> objects_;  // per triangle, if neighbours are left out
   std::optional<IgnoredObjects> ignored_;
   unsigned threads_;
   std::vector<std::uint32_t> owner_;  // per item
   std::vector<std::uint32_t> items_;  // ascending
-  std::vector<std::uint32_t> order_;  // the item of each leaf of the tree, by its place in items_
-  std::vector<std::uint32_t> leaf_;   // per item
-  bool by_owner_ = false;             // leaves of one owner follow those of the one before
+  std::vector<std::uint32_t> order_;  // per leaf of the tree: the index of its item in items_
+  std::vector<std::uint32_t> leaf_;   // per item: its leaf
+  bool by_owner_ = false;             // leaves are grouped by owner, in order
   std::vector<WideBoxes<double>> blocks_;
   BoxTree<double> tree_;
   std::uint64_t compared_ = 0;
@@ -107,15 +107,15 @@ class OrderedPairs {
   std::vector<Part> parts_;
 };
 
-// Pairs of blocks whose boxes overlap, and the pairs of their triangles whose boxes do, on lanes
-// (Google Highway): one box is compared with as many others at once as a vector holds.
+// Finds pairs of blocks whose boxes overlap, and in these the pairs of triangles whose boxes
+// overlap, on lanes (Google Highway): one box with as many others at once as a vector holds.
 
 /// The blocks of each object as a tree of boxes.
 class BlockTrees {
  public:
   /// Objects with an empty region have no tree.
   BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions);
-  /// Updates the trees if these blocks (ascending, each once) have other boxes than before.
+  /// Updates the trees after the boxes of these blocks (ascending, each once) have changed.
   /// Precondition: blocks.origin is unchanged, and every object has a tree.
   void update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed);
 
@@ -136,9 +136,9 @@ struct BlockPair {
   auto operator<=>(const BlockPair&) const = default;
 };
 
-/// Appends the pairs of a block in from .. to - 1 (of object a) and a block of object b whose boxes
-/// overlap; if a and b are one object and not `twice`, those with a <= b. Stops after more than
-/// `most` pairs.
+/// Appends the pairs of a block from .. to - 1 (of object a) and a block of object b whose boxes
+/// overlap. If a == b and not `twice`, only pairs whose first block is not after the second. Stops
+/// after more than `most` pairs.
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
                  std::uint32_t to, std::size_t most, std::vector<BlockPair>& out,
                  bool twice = false);
@@ -152,38 +152,38 @@ struct BlockPairs {
 /// The numbers of the blocks that occur in the pairs, ascending. blocks: number of all blocks.
 std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks);
 
-/// Pairs of blocks whose boxes overlap. Two triangles that are at most the clearance apart have
-/// grown boxes with a common point, which lies in the boxes of their blocks: so their blocks are a
-/// pair here, or their objects are left to views.
+/// Pairs of blocks whose boxes overlap. If two triangles are at most the clearance apart, their
+/// grown boxes have a common point, which lies in the boxes of their blocks. So these blocks are a
+/// pair here, or the objects are left to views.
 struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
   bool normals = false;                            // triangles are compared along their normals too
   BlockPairs pairs;
-  std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
+  std::vector<TrianglePair> kept;  // pairs of the last frame that are still right
   std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap, including pairs in
                                    // which nothing moved; those are not listed
-  std::uint64_t meetings = 0;      // that these decide: of two objects, or of one with itself
-  std::uint64_t triangles = 0;     // in all blocks of a pair
+  std::uint64_t meetings = 0;      // pairs of objects, or of one and itself, that these decide
+  std::uint64_t triangles = 0;     // in all blocks that are in a pair
   bool moved = false;  // boxes were kept, and moved with their objects (core/boxes/rigid.h)
   bool empty() const { return meetings == 0; }
 };
 
-/// Gives the pairs a < b of triangles of some pairs of blocks whose boxes overlap to `take`, and
+/// Gives to `take` the pairs a < b of triangles whose boxes overlap, of these pairs of blocks, and
 /// returns their number. Blocks share no triangle, so each pair is given once if each pair of
-/// blocks is there once. along_normals: leaves out pairs that are apart along the normal of one of
-/// the two, by their boxes. neighbours: false leaves out pairs of one object that share a vertex
-/// index. An exception of `take` is thrown again here, and some pairs are not given then.
+/// blocks is there once. along_normals: leaves out pairs in which the normal of one triangle
+/// separates it from the other's box. neighbours: false leaves out pairs of one object that share a
+/// vertex index. An exception of `take` is thrown again here, and some pairs are not given then.
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
                                  const BlockPairs& pairs, bool along_normals, double clearance,
                                  bool neighbours, unsigned threads, const TakePairs& take);
 
-/// Pairs that `give(take)` gives to `take`, sorted.
+/// Returns the pairs that `give(take)` gives to `take`, sorted.
 std::vector<TrianglePair> sorted_pairs(
     unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give);
 
-/// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1, and gives what it
-/// appends to `take`: certain pairs, and those others whose boxes overlap in doubles. Returns how
+/// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1. Gives to `take` the
+/// certain pairs that `find` appends, and those others whose boxes overlap in doubles. Returns how
 /// many it gave. An exception of `find` or `take` is thrown again here.
 std::uint64_t give_findings(
     const Scene& scene, std::size_t count, double clearance, unsigned threads,

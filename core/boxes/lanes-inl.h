@@ -25,7 +25,7 @@ using Vector = hn::Vec<Tag<Number>>;
 template <class Number>
 constexpr std::size_t kLanes = hn::MaxLanes(Tag<Number>());
 
-/// A box in all lanes.
+/// One box, copied to all lanes.
 template <class Number>
 struct OneBox {
   Vector<Number> x0, y0, z0, x1, y1, z1;
@@ -51,7 +51,7 @@ HWY_INLINE Vector<Number> column(const WideBoxes<Number>& block, std::size_t k, 
   return hn::Load(Tag<Number>(), &block.column[k][from]);
 }
 
-/// Boxes of the block, from lane `from` on, that overlap the box; touching counts.
+/// Mask of the boxes of the block, from lane `from` on, that overlap the box; touching counts.
 template <class Number>
 HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std::size_t from,
                                              const OneBox<Number>& box) {
@@ -64,7 +64,7 @@ HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std
   return hn::And(hn::And(x, y), z);
 }
 
-/// The lanes as bits.
+/// The mask as bits, one for each lane.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -84,8 +84,8 @@ HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
 
 using Gaps = std::array<double, kWide>;
 
-/// Sets `squares` to the squared gaps from a box to the boxes of a block. Returns as bits which of
-/// them are at most `square_limit`.
+/// Sets `squares` to the squared gaps between a box and the boxes of a block. Returns as bits which
+/// of these are at most `square_limit`.
 HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox<double>& box,
                                     double square_limit, Gaps& squares) {
   const Tag<double> n;
@@ -113,9 +113,9 @@ HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   return bit;
 }
 
-/// Calls visit(leaf) for each leaf from `least` on of which bits(block) has its bit at all heights,
-/// in an order that the tree fixes; block: an index of the tree's blocks. Returns how many blocks
-/// were compared.
+/// Calls visit(leaf) for leaves from `least` on, in an order that the tree fixes. bits_of_block(k):
+/// which children in the tree's block k to visit (leaves) or to search (nodes), as bits. Returns
+/// how many blocks were compared.
 template <class Number, class Bits, class Visit>
 HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t least,
                                     const Bits& bits_of_block, const Visit& visit) {
@@ -123,7 +123,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
     int height;
     std::uint32_t number;
   };
-  // A node leaves at most 15 others behind for each level below it.
+  // For each level, at most 15 siblings of a searched node wait on the stack.
   Node stack[(kWide - 1) * kMostLevels + 1];
   int size = 0;
   if (tree.levels > 0) stack[size++] = {tree.levels, 0};
@@ -136,7 +136,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
       const std::uint32_t child = kWide * at.number + next_bit(bits);
       const std::uint64_t begin = std::uint64_t{child} << (4 * below);
       const std::uint64_t end = (std::uint64_t{child} + 1) << (4 * below);
-      // Skips missing boxes too: they overlap an infinite box.
+      // Skips missing boxes too, since an infinite box overlaps them.
       if (end <= least || begin >= tree.leaves) continue;
       if (below == 0) {
         visit(child);

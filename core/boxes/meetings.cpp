@@ -60,7 +60,7 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 
 namespace {
 
-// Whether an object whose blocks are too small for floats can meet another one or itself.
+// True if an object whose blocks are too small for floats can meet another one or itself.
 bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
   if (blocks.stretched.empty()) return false;
   return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {
@@ -68,7 +68,7 @@ bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
          });
 }
 
-// A part of a meeting: some blocks of the object a, and what they meet.
+// A part of a meeting: the blocks from .. to - 1 of its object a, and the pairs that they are in.
 struct MeetingPart {
   std::uint32_t meeting;
   std::uint32_t from, to;
@@ -76,8 +76,8 @@ struct MeetingPart {
 };
 constexpr std::uint32_t kBlocksOfPart = 256;
 
-// The most pairs of blocks of a meeting: kPairsPerBlock for each block, whether or not it overlaps
-// any.
+// Limit of the pairs of blocks of a meeting: kPairsPerBlock for each block of its objects,
+// including blocks that overlap none.
 std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectOverlap& meeting) {
   const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
   return kPairsPerBlock * (blocks.count(meeting.a) + b);
@@ -95,7 +95,7 @@ std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
   return parts;
 }
 
-// Counts different blocks.
+// Counts distinct blocks. start() begins a new count.
 class BlockCounter {
  public:
   explicit BlockCounter(std::size_t blocks) : seen_(blocks, 0) {}
@@ -112,14 +112,14 @@ class BlockCounter {
   std::size_t count_ = 0;
 };
 
-// Appends at most `count` of the pairs, evenly.
+// Appends at most `count` of the pairs, evenly spaced.
 void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
                    std::vector<BlockPair>& to) {
   count = std::min(count, from.size());
   for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
 }
 
-// Puts the pairs of each meeting where they belong. Returns false if too many of a meeting overlap.
+// Moves the pairs of all parts to `out`. Returns false if a meeting has too many pairs.
 bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts,
              BlockMeetings& out) {
   BlockCounter counter(out.of->ranges.size());
@@ -141,7 +141,7 @@ bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts
     std::vector<BlockPair>& to = meeting.a == meeting.b ? out.pairs.inside : out.pairs.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
-      std::vector<BlockPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
+      std::vector<BlockPair>().swap(parts[k].pairs);  // frees memory, which `= {}` would not
     }
     ++out.meetings;
   }
@@ -150,17 +150,17 @@ bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts
   return true;
 }
 
-// No more pairs of blocks of a whole scene are listed.
+// Limit of the pairs of blocks of the whole scene.
 std::size_t most_pairs(const TriangleBlocks& blocks) {
   return kMostPairsPerBlock * blocks.ranges.size();
 }
 
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
-// Finds the pairs of blocks of each part. Gives up a meeting with more than most_pairs(), or all
-// meetings if the whole scene has more. A meeting that is given up counts as one pair more than it
-// may have, so that the answer does not depend on threads. find(meeting, part, most): appends
-// pairs to the part, as pair_blocks().
+// Finds the pairs of blocks of each part. Gives up a meeting that exceeds its most_pairs(), and all
+// meetings if the scene exceeds its own. A meeting that is given up counts as its limit plus one
+// pair, so that the answer does not depend on threads. find(meeting, part, most): appends pairs to
+// the part, as pair_blocks().
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
@@ -171,7 +171,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> given_up = false;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    MeetingPart scratch;  // so that a part has room for its own pairs only
+    MeetingPart scratch;  // pairs are copied from it, so that a part holds no unused memory
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
       const ObjectOverlap& meeting = meetings[part.meeting];
@@ -196,11 +196,11 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   return given_up ? Found::too_many_of_a_meeting : Found::all;
 }
 
-// Oriented boxes are used if, in a sample, they leave at most this many pairs for each triangle.
+// Oriented boxes are used if, in a sample, they leave at most this many pairs per triangle.
 constexpr double kOrientedPerTriangle = 64;
-// Normals are compared if, in a sample, boxes along the axes leave more than kFewOverlaps pairs for
-// each triangle, normals leave at most 1 / kLeastDrop of these, and at most kMostLeft: normals cost
-// about as much as an exact decision of two pairs for each triangle, oriented boxes as of ten.
+// Normals are compared if, in a sample, boxes along the axes leave more than kFewOverlaps pairs per
+// triangle, and normals leave at most 1 / kLeastDrop of these and at most kMostLeft. Per triangle,
+// normals cost about as much as deciding two pairs exactly, and oriented boxes as ten.
 constexpr double kFewOverlaps = 2, kLeastDrop = 4, kMostLeft = 8;
 
 }  // namespace
@@ -222,7 +222,7 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
 
 namespace {
 
-// All meetings, decided by oriented boxes of blocks; nothing if these overlap too often as well.
+// Decides all meetings by oriented boxes of blocks. Null if these overlap too often as well.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
                                                const std::vector<ObjectOverlap>& meetings,
                                                std::span<const Box> regions, double clearance,

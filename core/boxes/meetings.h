@@ -16,8 +16,8 @@
 
 namespace farcull {
 
-/// Two objects whose boxes, grown by half the clearance, overlap, or one that is tested against
-/// itself (a == b). a has no more blocks than b.
+/// A meeting: two objects whose boxes, grown by half the clearance, overlap; or one object that is
+/// tested against itself (a == b). Object a has no more blocks than b.
 struct ObjectOverlap {
   std::uint32_t a, b;
 };
@@ -25,27 +25,27 @@ struct ObjectOverlap {
 /// All meetings of a scene.
 struct ObjectOverlaps {
   std::vector<ObjectOverlap> all;
-  std::uint64_t pairs = 0;  // of two objects
-  std::uint64_t self = 0;   // of an object with itself
-  bool crowded = false;     // there are more pairs of objects than 8 for each block. They are not
-                            // listed, since that takes more memory than the scene: `all` is empty
+  std::uint64_t pairs = 0;  // number of meetings of two objects
+  std::uint64_t self = 0;   // number of meetings of an object with itself
+  bool crowded = false;     // more than 8 pairs of objects per block overlap. To list them would
+                            // take more memory than the scene, so `all` is empty
 };
 /// ignored: objects that are not tested against each other, as in_order() gives them.
 ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored);
 
-/// Per object the box in which it can meet another one or itself; empty if it cannot.
+/// For each object, the box in which it can meet another one or itself; empty if it cannot.
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
                                    std::span<const ObjectOverlap> meetings);
 
-/// Boxes of blocks are used if every meeting has at most this many overlapping pairs of blocks for
-/// each block that overlaps any.
+/// Boxes of blocks are used if every meeting has at most this many overlapping pairs of blocks per
+/// block that is in such a pair.
 constexpr std::size_t kPairsPerBlock = 32;
-/// Oriented boxes of blocks are tried if, in a sample, the boxes of more pairs of triangles overlap
-/// than this for each triangle, neighbours apart: slivers that lie askew have such boxes.
+/// Oriented boxes of blocks are tried if, in a sample, more than this many pairs of triangles per
+/// triangle have overlapping boxes (neighbours not counted), as slivers that lie askew have.
 constexpr double kOverlapsPerTriangle = 16;
-/// If boxes of more pairs of blocks overlap than this for each block of the scene, oriented boxes
-/// are not tried.
+/// Oriented boxes are not tried if more than this many pairs of blocks per block of the scene
+/// overlap.
 constexpr std::size_t kMostPairsPerBlock = 1024;
 
 /// How the pairs of a scene are found: by boxes of blocks, or by a tree of the boxes of all
@@ -53,35 +53,35 @@ constexpr std::size_t kMostPairsPerBlock = 1024;
 struct BlockDecision {
   BlockMeetings blocks;               // empty if nothing can meet, or if a tree decides
   Reason tree = Reason::none;         // why a tree decides; none: blocks decide
-  std::uint64_t tree_n = 0;           // the number that the reason speaks of
-  std::uint64_t pairs = 0, self = 0;  // as ObjectOverlaps has them
+  std::uint64_t tree_n = 0;           // the number n of that reason
+  std::uint64_t pairs = 0, self = 0;  // as in ObjectOverlaps
 };
 
 /// Compares the boxes of the blocks of objects that meet. The number of overlaps decides how pairs
-/// are found: by blocks along the axes if few of them overlap, and along the normals of triangles
-/// too if these drop most pairs of a sample, as where large triangles lie among small ones; by
-/// oriented blocks if few of those overlap in a sample; else by a tree; also by a tree if there are
-/// too many meetings to list, or an object is stretched beyond kUneven
-/// (core/boxes/triangle_blocks.h). Each way finds every pair at most the clearance apart. threads:
-/// 0 for as many as there are cores; changes no answer. ignored: as find_meetings().
+/// are found. By blocks along the axes if few of them overlap; along the normals of triangles too
+/// if these drop most pairs of a sample, as where large triangles lie among small ones. By oriented
+/// blocks if few of those overlap in a sample. Else by a tree; also if there are too many meetings
+/// to list, or an object is stretched beyond kUneven (core/boxes/triangle_blocks.h). Each way finds
+/// every pair at most the clearance apart. threads: 0 for as many as there are cores; changes no
+/// answer. ignored: as find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
-/// As above, if the blocks and meetings are known. Null: the decision depends on the pairs of
-/// blocks.
+/// The decision of decide_by_blocks(), if the blocks and meetings alone make it. Null: it depends
+/// on the pairs of blocks.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);
-/// As above, if the blocks have their boxes or lanes, and decide_by_meetings() does not decide.
-/// regions: where its objects meet.
+/// The decision of decide_by_blocks(), if decide_by_meetings() makes none. Precondition: the blocks
+/// have their boxes or lanes. regions: as boxes_of_meetings() gives them.
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 
-/// How many pairs of triangles these meetings leave for each triangle in one of their blocks,
-/// neighbours apart, by a sample of the pairs of blocks. Reads only vertices of their blocks.
+/// Estimates by a sample of the pairs of blocks how many pairs of triangles these meetings leave
+/// per triangle of their blocks, neighbours not counted. Reads only vertices of their blocks.
 double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance);
 
-/// Triangles in all blocks of some pairs.
+/// Number of triangles in all blocks that occur in the pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
 /// All pairs of triangles whose boxes overlap, sorted, for what is drawn afterwards. Null if a tree

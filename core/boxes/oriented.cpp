@@ -94,7 +94,7 @@ HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const Oriented
   return out;
 }
 
-// The boxes of a block's triangles along another block's frame.
+// Computes the boxes of a block's triangles along another block's frame.
 HWY_INLINE void turn(const OrientedLanes& block, const Frame& frame, WideBoxes<float>& out) {
   for (std::size_t from = 0; from < kWide; from += kLanes) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -109,7 +109,7 @@ HWY_INLINE void turn(const OrientedLanes& block, const Frame& frame, WideBoxes<f
   }
 }
 
-// Boxes of a block that overlap the box by more than touching, as bits.
+// Boxes of a block that overlap the box and do not only touch it, as bits.
 HWY_INLINE std::uint32_t inside_bits(const WideBoxes<float>& block, const OneBox& box) {
   std::uint32_t out = 0;
   for (std::size_t from = 0; from < kWide; from += kLanes) {
@@ -195,7 +195,7 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
 
 namespace {
 
-// Margins in units of the distance of the farthest corner from the origin: bounds of the rounding
+// Margins relative to the distance of the farthest corner from the origin. They bound the rounding
 // when two oriented boxes, or two triangles, are compared (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
@@ -217,8 +217,8 @@ struct Moments {
   }
 };
 
-// The principal directions. Any frame whose directions have length 1 and are perpendicular, up to
-// the rounding to floats, is right.
+// The principal directions of the points. Any frame gives right answers if its directions have
+// length 1 and are perpendicular, up to the rounding to floats.
 Frame frame_of(const Moments& moments) {
   const Vec3 mean = moments.sum / moments.count;
   const Eigen::Matrix3d covariance = moments.products / moments.count - mean * mean.transpose();
@@ -244,7 +244,7 @@ float along(const std::array<float, 3>& d, float x, float y, float z) {
   return d[0] * x + d[1] * y + d[2] * z;
 }
 
-// The box along a frame of the corners of some blocks.
+// The box, along a frame, of the corners of some blocks.
 OrientedBox box_along(const Frame& frame, std::span<const OrientedLanes> blocks) {
   OrientedBox out{.frame = frame, .middle = {}, .half = {}};
   std::array<float, 3> middle;
@@ -283,7 +283,7 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
                       const Vec3& origin, float margin, OrientedLanes& out) {
   Moments moments;
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // The last triangle fills the lanes that have none; their boxes along the axes meet nothing.
+    // Lanes without a triangle repeat the last one; their boxes along the axes meet nothing.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 corner = scene.vertices[scene.triangles[t][c]] - origin;
@@ -311,11 +311,11 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
   return moments;
 }
 
-// How many triangles ahead corners are prefetched.
+// Corners are prefetched this many triangles ahead.
 constexpr std::uint32_t kAhead = 16;
 
-// Puts the triangles of an object that meet its region in order; returns how many there are, and in
-// `all` the box of these.
+// Puts the triangles of an object that meet its region in order, and the others behind them.
+// Returns how many meet it, and adds their boxes to `all`.
 std::uint32_t order_in(const Scene& scene, const Object& object, double clearance,
                        const Box& region, std::span<std::uint32_t> order, Box& all) {
   std::vector<Box> boxes;
@@ -399,12 +399,12 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   for (const Box& box : blocks.objects) {
     if (!box.is_empty()) all.add(box);
   }
-  // The middle, rounded. In a scene as small as the distance of doubles, it may be a corner.
+  // The middle, rounded. In a scene as small as the gap between two doubles, it may be a corner.
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
-  // The corners are at most `reach` from the origin. Below the least of these numbers floats lose
-  // more than the margins allow; above the largest they overflow.
+  // The corners are at most `reach` from the origin. Below 2^-60 floats lose more than the margins
+  // allow; above 2^60 they overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;
   if (!(reach >= 0x1p-60 && reach + gap <= 0x1p60)) return nullptr;
   out->margin = static_cast<float>(kBoxMargin * reach + gap);
@@ -458,8 +458,8 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
     for (std::uint32_t k = 0; k < gathered.count; ++k)
       place[blocks.blocks.first[o] + k] = gathered.first + k;
   }
-  // Erases neighbours from a place on: those before it may be triangles of different objects, which
-  // count though they share a vertex index.
+  // Erases neighbours from index `from` on. Earlier pairs may be of different objects; these count
+  // even if they share a vertex index.
   const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {
     const auto shared = [&](const TrianglePair& pair) {
       return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);

@@ -23,7 +23,7 @@ namespace farcull {
 /// Three directions: those of an oriented box, of length 1 and perpendicular up to rounding.
 using Frame = std::array<std::array<float, 3>, 3>;
 
-/// A box along three directions: its middle, and half of its sides.
+/// A box along three directions: its middle, and half of each side.
 struct OrientedBox {
   Frame frame;
   std::array<float, 3> middle, half;
@@ -37,43 +37,43 @@ struct alignas(64) WideOriented {
 
 /// The triangles of a block, in the lanes of its BlockLanes.
 struct alignas(64) OrientedLanes {
-  std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate
+  std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   Frame frame;
   WideBoxes<float> boxes;  // along the frame, grown by the margin of triangles
-  FloatBox bound;          // of all of them
+  FloatBox bound;          // of all boxes
 };
 
 /// The blocks of objects that meet others, in the order of spatial_order().
 struct OrientedBlocks {
   TriangleBlocks blocks;                     // all objects with a region are gathered
-  UninitializedVector<OrientedLanes> lanes;  // as blocks.lanes
-  std::vector<OrientedBox> boxes;            // as blocks.lanes
+  UninitializedVector<OrientedLanes> lanes;  // one for each of blocks.lanes
+  std::vector<OrientedBox> boxes;            // one for each of blocks.lanes
   std::vector<BoxTree<float>> trees;         // per object, over its blocks; without boxes
   std::vector<WideOriented> nodes;
-  float margin = 0;  // of oriented boxes: they are apart if a direction leaves more than that
+  float margin = 0;  // two oriented boxes are apart if a direction shows a larger gap
 };
 
-/// regions: per object, as gather_scattered() takes them. Null if the coordinates are too large for
-/// floats. threads: 0 for as many as there are cores.
+/// regions: per object, as gather_scattered() takes them. Null if the coordinates are too large or
+/// too small for floats. threads: 0 for as many as there are cores.
 std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double clearance,
                                                     std::span<const Box> regions, unsigned threads);
 
-/// As pair_blocks(), of oriented boxes that may have a common point.
+/// As pair_blocks(), but appends pairs whose oriented boxes may have a common point.
 void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t b,
                    std::uint32_t from, std::uint32_t to, std::size_t most,
                    std::vector<BlockPair>& out);
 
-/// As give_pairs_of_some(), of triangles whose boxes overlap also along the frames of both blocks.
+/// As give_pairs_of_some(), but boxes have to overlap along the frames of both blocks too.
 std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take);
 
-/// The pairs of triangles of some pairs of blocks of the meetings: by oriented boxes if the
-/// meetings have these, else as give_pairs_of_some().
+/// Gives the pairs of triangles in some pairs of blocks of the meetings: by
+/// give_pairs_of_oriented() if the meetings have oriented boxes, else by give_pairs_of_some().
 std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                    const BlockPairs& some, double clearance, bool neighbours,
                                    unsigned threads, const TakePairs& take);
-/// The pairs of triangles in all their pairs of blocks, and the pairs that were kept; sorted.
+/// The pairs of triangles in all pairs of blocks of the meetings, and meetings.kept; sorted.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads);
 

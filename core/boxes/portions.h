@@ -1,4 +1,4 @@
-// Pairs that are found in portions by all threads, and given on as they are found.
+// Finds pairs in portions, by all threads, and passes them on as they are found.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace farcull {
 
 /// Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
-/// a Memory, and find appends to its `pairs`; flush() gives them to `take` if there are many. The
-/// rest is given at the end. Returns the number of pairs.
+/// one Memory, and `find` appends to memory.pairs. flush() gives these to `take` if there are many;
+/// the rest is given at the end. Returns the number of pairs.
 template <class Memory, class Take, class Find>
 std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
                             const Take& take, const Find& find) {

@@ -1,6 +1,6 @@
 // Walks the trees of all objects that meet down to the blocks, one height of nodes after the other.
-// Only nodes of a pair are moved. The children of two nodes are compared as the triangles of two
-// blocks are (core/boxes/join.h), in floats.
+// Only nodes that are in a pair are moved. The children of two nodes are compared in floats, as the
+// triangles of two blocks are (core/boxes/join.h).
 #include "core/boxes/rigid.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool keeps_finite(const RigidMotion& motion, const Box& box) {
 
 namespace {
 
-// Sets the lists of the vertices of blocks.
+// Lists the vertices of each block.
 void list_vertices(const Scene& scene, RigidBlocks& out) {
   out.first_vertex.assign(1, 0);
   for (const TriangleBlock& range : out.of->ranges) {
@@ -96,9 +96,9 @@ RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
 
 namespace {
 
-// The nodes of one height, by numbers that ascend with their objects: node k of object o has the
-// number first[o] + k, where first[o] is the first block of o. So leaves have those of their
-// blocks.
+// Walks down the trees. All nodes of one height are numbered: node k of object o has the number
+// first[o] + k, where first[o] is the first block of o. So numbers ascend with the objects, and a
+// leaf has the number of its block.
 class Walk {
  public:
   Walk(const RigidBlocks& rigid, std::span<const RigidMotion> motions, double half,
@@ -130,8 +130,8 @@ class Walk {
   }
 
  private:
-  // Sets the lanes of each node to its children, of height `below`. A root that is no higher than
-  // its child would be is its own only child.
+  // Sets the lanes of each node to its children, which have the height `below`. A root of at most
+  // this height is its own only child.
   void move_children(std::span<const std::uint32_t> nodes, int below) {
     lanes_.resize(nodes.size());
     for_chunks(nodes.size(), chunks_for(nodes.size(), 64, threads_),
@@ -162,8 +162,8 @@ class Walk {
     for (std::uint32_t k = 0; k < kWide; ++k) set(k, children.get(k), kWide * number + k);
   }
 
-  // If there are more than `most`: some of them, more than `most`. The order of the others does not
-  // depend on threads.
+  // The pairs of children that overlap. If there are more than `most`, returns only some, but more
+  // than `most`. Else their order does not depend on threads.
   std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs,
                                               std::size_t most) const {
     constexpr std::size_t kAtOnce = 256;
@@ -196,11 +196,11 @@ class Walk {
   std::span<const RigidMotion> motions_;
   double half_;
   unsigned threads_;
-  std::vector<std::uint32_t> place_;       // per node in a pair: its place in lanes_
-  UninitializedVector<BlockLanes> lanes_;  // its children
+  std::vector<std::uint32_t> place_;       // per node in a pair: its index in lanes_
+  UninitializedVector<BlockLanes> lanes_;  // per such node: its children
 };
 
-// A point in the middle of where objects meet, so that floats relative to it are fine there.
+// The middle of the places where objects meet, so that floats relative to it are fine there.
 Vec3 middle_of_meetings(const TriangleBlocks& blocks, std::span<const ObjectOverlap> meetings) {
   Box all = Box::empty();
   for (const auto& [a, b] : meetings) all.add(intersection(blocks.objects[a], blocks.objects[b]));
@@ -237,7 +237,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   out.blocks.overlaps = out.blocks.pairs.size();
   out.blocks.meetings = meetings.all.size();
   out.blocks.triangles = triangles_in(out.blocks.pairs, blocks);
-  // Triangles that overlap so often are compared by oriented boxes or a tree, if at all.
+  // Triangles that overlap so often are left to oriented boxes or a tree.
   if (kWide * out.blocks.overlaps > kPairsPerBlock * (out.blocks.triangles + kWide * kWide))
     return std::nullopt;
   return out;
@@ -259,7 +259,7 @@ void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> m
           }
           for (const std::uint32_t v : blocks.vertices_of(some[k])) {
             const Vec3 to = moved(motion, resting[v]);
-            // Another block may have the vertex too, and its thread the same numbers.
+            // Another thread may write the vertex for another block, but the same numbers.
             for (Eigen::Index axis = 0; axis < 3; ++axis)
               std::atomic_ref(scene.vertices[v][axis]).store(to[axis], std::memory_order_relaxed);
           }

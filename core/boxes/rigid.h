@@ -1,9 +1,9 @@
-// Objects that move as a whole. In a frame of its own the triangles of an object rest, so their
-// blocks and a tree of boxes over them are made once. A motion then moves boxes, and after that
-// only the vertices of blocks whose moved boxes overlap.
+// Objects that move as a whole. The triangles of an object rest in a frame of its own, so their
+// blocks and a tree of boxes over them are made once. A motion first moves boxes, and then only the
+// vertices of blocks whose moved boxes overlap.
 //
-// No margin is needed. A corner of a moved box comes from the operations that move a vertex, and
-// each of these rounds monotonically: so the moved box contains every moved vertex
+// No margin is needed. A corner of a moved box comes from the same operations that move a vertex.
+// Each of these rounds monotonically, so the moved box contains every moved vertex
 // (docs/reliability.md, "Objects that move as a whole").
 #pragma once
 
@@ -27,7 +27,7 @@ struct RigidMotion {
   std::array<double, 3> t = {0, 0, 0};
 };
 
-/// A coordinate of a moved point: each product and each sum is rounded, in this order. row: of r.
+/// A coordinate of a moved point. Each product and sum is rounded, in this order. row: one of r.
 inline double moved_coordinate(const double* row, double x, double y, double z, double t) {
   return ((row[0] * x + row[1] * y) + row[2] * z) + t;
 }
@@ -40,8 +40,8 @@ inline Vec3 moved(const RigidMotion& motion, const Vec3& p) {
 /// A closed box that contains moved(motion, p) for each point p of the box. Preconditions: the box
 /// is not empty, and the motion keeps it finite.
 Box moved(const RigidMotion& motion, const Box& box);
-/// Whether no number that occurs while a point of the box is moved is above a quarter of the
-/// largest double. An empty box is kept finite.
+/// True if no number that occurs while a point of the box is moved is above a quarter of the
+/// largest double, and for an empty box.
 bool keeps_finite(const RigidMotion& motion, const Box& box);
 
 /// The blocks of the objects of a scene, and trees over them, each object in its own frame.
@@ -50,7 +50,7 @@ struct RigidBlocks {
   /// the last motions.
   std::shared_ptr<TriangleBlocks> of;
   std::vector<std::uint32_t> object_of;     // per block
-  std::vector<std::uint32_t> first_vertex;  // per block, and one behind the last: into `vertices`
+  std::vector<std::uint32_t> first_vertex;  // per block and one past the last: index in `vertices`
   std::vector<std::uint32_t> vertices;      // of each block, each once
   std::vector<BoxTree<double>> trees;       // per object, over its blocks; not grown
   std::vector<WideBoxes<double>> nodes;
@@ -64,10 +64,10 @@ struct RigidBlocks {
 /// threads: 0 for as many as there are cores.
 RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads);
 
-/// As decide_by_blocks() for the scene after each object was moved, but without its vertices, which
-/// are not read. Null: these boxes do not decide, so decide_by_blocks() has to. That is so if an
-/// object is tested against itself, a motion does not keep it finite, or too many boxes overlap.
-/// motions: one for each object. ignored: as find_meetings().
+/// As decide_by_blocks() for the scene after each object was moved, but reads no vertices. Null if
+/// decide_by_blocks() has to decide, because an object is tested against itself, a motion does not
+/// keep it finite, or too many boxes overlap. motions: one for each object. ignored: as
+/// find_meetings().
 std::optional<BlockDecision> decide_by_motions(const Scene& scene,
                                                std::span<const RigidMotion> motions,
                                                double clearance,

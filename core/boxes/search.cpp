@@ -1,4 +1,4 @@
-// Blocks give the pairs of triangles whose boxes overlap, or a tree of all boxes does.
+// Finds the pairs of triangles whose boxes overlap, by blocks or by a tree of all boxes.
 #include "core/boxes/search.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 // ready to keep this one.
 bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   const std::optional<std::uint64_t> last =
-      std::exchange(memory.frame, {});  // until this frame is found
+      std::exchange(memory.frame, {});  // stays empty until this frame is found
   if (last && !settings.full && memory.moved.follows(*last) &&
       memory.clearance == settings.clearance && memory.neighbours == settings.neighbours &&
       memory.ignored == settings.ignored && (!memory.oriented || !memory.moved.any()) &&
@@ -31,7 +31,7 @@ bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   return false;
 }
 
-// The number of pairs of objects that a stage of boxes leaves out.
+// The number of pairs of objects that a stage of boxes ignores.
 std::optional<std::uint64_t> ignored_pairs(const BoxesSettings& settings) {
   if (settings.ignored.empty()) return std::nullopt;
   return settings.ignored.size();

@@ -1,5 +1,5 @@
-// Blocks are judged by the length of their boxes; the triangles of scattered objects are sorted
-// along a Morton curve, those of stretched objects by spatial_order().
+// Judges an object's blocks by the length of their boxes. Sorts the triangles of scattered objects
+// along a Morton curve, and those of stretched objects by spatial_order().
 #include "core/boxes/triangle_blocks.h"
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 namespace farcull {
 namespace {
 
-// How many triangles ahead corners are prefetched.
+// Corners are prefetched this many triangles ahead.
 constexpr std::size_t kAhead = 16;
 
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
-// Whether the boxes of an object's blocks are much longer than boxes of compact parts of a surface
-// would be. mean: the mean of their lengths.
+// True if the boxes of an object's blocks are much longer than boxes of compact parts of a surface
+// would be. mean: their mean length.
 bool are_scattered(double mean, std::uint32_t blocks, const Box& object) {
   return mean * std::sqrt(blocks) > kScattered * length(object);
 }
@@ -33,20 +33,20 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
   return count > 0 && are_scattered(sum / count, count, blocks.objects[object]);
 }
 
-// Objects of fewer triangles are not judged by a sample.
+// Objects with fewer triangles are not sampled.
 constexpr std::uint32_t kLeastSampled = 4096;
-// The place of item k of a sample, in [0, 1): multiples of the golden ratio are as even as a grid,
-// but without a period, which surfaces often have.
+// The position of item k of a sample, in [0, 1). Multiples of the golden ratio are as even as a
+// grid, but have no period; surfaces often have one.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
 }
-// How many times longer the box of an object, which is grown by `half`, is than the box around most
-// of its triangles.
+// How many times longer the box of an object (grown by `half`) is than the box around most of its
+// triangles; 0 for an object that is not sampled.
 float stretch_of(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
   if (object.triangle_count < kLeastSampled) return 0;
-  double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
+  double side = 0, whole = 0;  // sums of half sides, since sides may be infinite
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSample; ++k) {
@@ -71,8 +71,8 @@ void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
   }
 }
 
-// Calls work(k, threads) for k in 0 .. count - 1: one after the other with all threads if there are
-// few, else side by side with one thread each.
+// Calls work(k, threads) for k in 0 .. count - 1. If there are few, one after the other, each with
+// all threads; else in parallel, each with one thread.
 template <class Work>
 void for_each_of(std::size_t count, unsigned threads, const Work& work) {
   const std::size_t cores = chunks_for(SIZE_MAX, 1, threads);
@@ -140,7 +140,7 @@ namespace {
 // Four numbers at once, which the compiler computes on lanes.
 using Four = std::array<std::uint32_t, 4>;
 
-// The lower 10 bits of each, two zeros before each bit.
+// The lower 10 bits of each number, with two zeros before each bit.
 Four spread(Four x) {
   for (std::uint32_t& own : x) own = (own | own << 16) & 0x030000ff;
   for (std::uint32_t& own : x) own = (own | own << 8) & 0x0300f00f;
@@ -153,7 +153,7 @@ struct Coded {
   std::uint32_t code, triangle;
 };
 
-// Sorts by the codes' lower `bits` bits; equal codes stay in their order.
+// Sorts by the lower `bits` bits of the codes; equal codes stay in their order.
 void sort_by_code(UninitializedVector<Coded>& all, int bits) {
   constexpr int kDigit = 12;
   UninitializedVector<Coded> other(all.size());
@@ -205,8 +205,8 @@ float longest_side(const FloatBox& box) {
   return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
-// The longest side of the boxes of most triangles: the median of a sample. Infinite for an object
-// of few blocks.
+// The length of the boxes of most triangles: the median of the longest sides of a sample. Infinite
+// for an object that is not sampled.
 float usual_side(const Scene& scene, const Object& object, double half, const Vec3& origin) {
   constexpr std::size_t kSample = 64;
   if (object.triangle_count < kLeastSampled) return kInfinite;
@@ -222,10 +222,10 @@ float usual_side(const Scene& scene, const Object& object, double half, const Ve
   return sides[kSample / 2];
 }
 
-// Puts the triangles of an object that meet the region in order, then the others; returns how many
-// meet it. Triangles of one size class follow one another, those of a class in Morton order: so a
-// large triangle does not enlarge a block of small ones. Class c holds those whose boxes are more
-// than 8^c times as long as usual.
+// Puts the triangles of an object that meet the region in order, then the others. Returns how many
+// meet it. The order is by size class, and in a class by Morton code, so that a large triangle does
+// not enlarge a block of small ones. Class c holds triangles whose boxes are more than 8^c times as
+// long as usual.
 std::uint32_t order_object(const Scene& scene, const Object& object, double half,
                            const Vec3& origin, const FloatBox& region, unsigned threads,
                            std::span<std::uint32_t> order) {
@@ -274,7 +274,7 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
   return static_cast<std::uint32_t>(inside[0].size());
 }
 
-// Puts all triangles of a stretched object in the order of spatial_order(); returns their number.
+// Puts all triangles of a stretched object in the order of spatial_order(). Returns their number.
 std::uint32_t order_stretched(const Scene& scene, const Object& object,
                               std::span<std::uint32_t> order) {
   std::vector<Box> boxes(object.triangle_count);
@@ -296,7 +296,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
                       unsigned threads, TriangleBlocks& blocks) {
   const double half = half_of(clearance);
   Box all = Box::empty();
-  std::vector<std::uint32_t> scattered;  // objects
+  std::vector<std::uint32_t> scattered;  // scattered or stretched objects
   for (std::uint32_t o = 0; o < regions.size(); ++o) {
     if (regions[o].is_empty()) continue;
     all.add(blocks.objects[o]);
@@ -333,7 +333,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
         n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t block = begin; block < end; ++block) {
             const std::size_t from = block * kWide;
-            // The indices of a block come into the cache before its corners are prefetched by them.
+            // Prefetches indices three blocks ahead and, by their indices, corners one block ahead.
             for (std::size_t k = from; k < from + kWide; ++k) {
               const std::size_t last = order.size() - 1;
               __builtin_prefetch(&scene.triangles[order[std::min(k + 3 * kWide, last)]]);

@@ -22,16 +22,16 @@ struct TriangleBlock {
 /// The blocks of all objects of a scene, and their boxes, grown by half the clearance.
 struct TriangleBlocks {
   std::vector<TriangleBlock> ranges;
-  std::vector<Box> boxes;            // per block; of a gathered object not of its own order
-  std::vector<std::uint32_t> first;  // per object, and one behind the last: its first block
+  std::vector<Box> boxes;            // per block; of gathered objects only after update_boxes()
+  std::vector<std::uint32_t> first;  // per object and one past the last: its first block
   std::vector<Box> objects;          // empty if an object has no triangle
   std::vector<std::uint32_t> order;  // triangles in the order of the blocks; empty: as in the file
-  Vec3 origin = Vec3::Zero();        // of boxes as floats; finite
+  Vec3 origin = Vec3::Zero();        // boxes in floats are relative to it; finite
 
   /// A gathered object: its triangles were put in an order of their own.
   struct Gathered {
-    std::uint32_t first = 0;  // into lanes: its first block
-    std::uint32_t count = 0;  // blocks with lanes; triangles of other blocks meet nothing
+    std::uint32_t first = 0;  // index of its first block in `lanes`
+    std::uint32_t count = 0;  // its blocks with lanes; triangles of its other blocks meet nothing
     bool any = false;
   };
   std::vector<Gathered> gathered;  // per object; empty: no object was gathered
@@ -42,7 +42,7 @@ struct TriangleBlocks {
   /// How many times longer the box of an object is than the box around most of its triangles; 0 if
   /// it is not stretched.
   float stretch(std::uint32_t object) const { return stretched.empty() ? 0 : stretched[object]; }
-  /// Blocks of an object that can meet anything.
+  /// Number of blocks of an object that can meet anything.
   std::uint32_t count(std::uint32_t object) const {
     return is_gathered(object) ? gathered[object].count : first[object + 1] - first[object];
   }
@@ -57,25 +57,25 @@ struct TriangleBlocks {
   }
 };
 
-/// An object's blocks are scattered if they are more than kScattered times as long as those of a
-/// smooth surface.
+/// An object's blocks are scattered if their boxes are more than kScattered times as long as those
+/// of a smooth surface.
 constexpr double kScattered = 3;
 /// An object is stretched if its box is more than kStretched times as long as the box around most
 /// of its triangles (judged by a sample). Grids over such a box are of no use. Objects of a few
 /// blocks are not judged.
 constexpr float kStretched = 8;
-/// Beyond this, boxes of blocks as floats are of no use either: a block of a surface with a million
-/// triangles has 1/256 of the length of the whole. 64 steps of a float, which is 2^-24 of the
-/// object's box, should fit into it.
+/// Beyond this, boxes of blocks in floats are of no use either. A block of a surface with a million
+/// triangles is 1/256 as long as the surface. At least 64 float steps should fit into it; a step is
+/// 2^-24 of the object's box.
 constexpr float kUneven = 0x1p24f / (256 * 64);
 
 /// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
 /// are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Chooses the origin. Orders the triangles of scattered objects that meet the object's region by
-/// size class and Morton code, as blocks with lanes. Orders all triangles of stretched objects by
-/// spatial_order(). regions: per object a box that contains the grown boxes of all its triangles
-/// that can meet anything; empty if no triangle can.
+/// Chooses the origin. In each scattered object, orders the triangles that meet the object's region
+/// by size class and Morton code, as blocks with lanes. In each stretched object, orders all
+/// triangles by spatial_order(). regions: per object a box that contains the grown boxes of all its
+/// triangles that can meet anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, TriangleBlocks& blocks);
 

@@ -19,13 +19,13 @@ namespace farcull {
 
 /// Counts since the canvas was made. All are 0 for a canvas on the cores of the CPU.
 struct CanvasWork {
-  std::uint64_t passes = 0;            // Canvas::run() of at least one step
+  std::uint64_t passes = 0;            // calls of Canvas::run() with at least one step
   std::uint64_t draws = 0;             // draw calls
-  std::uint64_t dispatches = 0;        // of programs that sum what was sent and pack flags
-  std::uint64_t state_changes = 0;     // of program, target or depth test: between steps
-  std::uint64_t queries = 0;           // occlusion queries, and one a pass that counts primitives
-  std::uint64_t readbacks = 0;         // answers that are read: reports, then each query
-  std::uint64_t waits = 0;             // for the device to finish its commands
+  std::uint64_t dispatches = 0;        // runs of programs that sum what was sent and pack flags
+  std::uint64_t state_changes = 0;     // changes of program, target or depth test between steps
+  std::uint64_t queries = 0;           // occlusion queries, and one per pass that counts primitives
+  std::uint64_t readbacks = 0;         // answers that were read: reports, then each query
+  std::uint64_t waits = 0;             // waits for the device to finish its commands
   std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
   std::uint64_t downloaded_bytes = 0;  // of reports and queries
   std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
@@ -68,8 +68,8 @@ struct CanvasWork {
 /// depth interpolated by the rasterizer.
 enum class DepthMode { fragment, fixed };
 
-/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are
-/// for elements of the canvas at a fixed depth; a solid leaves them 0.
+/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are 0;
+/// only elements that the canvas itself draws at a fixed depth use them.
 using Solid = std::array<std::array<float, 4>, 5>;
 
 /// A convex quadrilateral (px, in order around) and the solid seen through it.
@@ -90,8 +90,8 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false if some
-  /// rounding misses, else the latest entry and the earliest exit.
+  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false if any
+  /// permitted rounding gives a miss, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
   /// solid_interval on the lanes of this processor (core/native/canvas.h), for proxies and for
@@ -100,7 +100,7 @@ struct SolidProgram {
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
 
-/// A proxy lies in |x| <= x, |y| <= y px, strictly inside the viewport.
+/// All corners of a proxy have |x| <= x and |y| <= y (px), strictly inside the viewport.
 struct ProxyBounds {
   double x;
   double y;
@@ -112,13 +112,13 @@ struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };
 
-/// What tells of most proxies that they change nothing, or that they are seen, before they are
-/// fitted to their triangle.
+/// Bounds of a proxy, known before it is fitted to its triangle. They show of most proxies that
+/// they change nothing, or that they are seen.
 struct ProxyOutline {
-  PixelRange range;         // of the rectangle's corners
-  float nearest, farthest;  // px; no entry comes before, no exit behind
-  /// A pixel of the window whose centre the proxy covers, and a depth (px) that its exit there is
-  /// at or behind (docs/budget.md, "The canvas on the CPU"). kNoPixel: none is known.
+  PixelRange range;         // pixels that the rectangle may cover, by its corners
+  float nearest, farthest;  // px; no entry is before nearest, no exit behind farthest
+  /// A pixel of the window whose centre the proxy covers, and a depth (px); the exit there is at or
+  /// behind it (docs/budget.md, "The canvas on the CPU"). x = kNoPixel: none is known.
   std::uint16_t x, y;
   float depth;
 };
@@ -135,7 +135,7 @@ struct FattenBatch {
   ProxyBounds bounds{};
   std::uint8_t* done = nullptr;  // per item: 1: the item's one proxy is there; 0: the item is not
                                  // drawable or has to be clipped to the region
-  // Per item; without meaning if it is not done. One of them is null.
+  // Per item, and only valid if the item is done. One of the two is null.
   Proxy* out = nullptr;
   ProxyOutline* outlines = nullptr;
 };
@@ -149,9 +149,9 @@ struct Drawables {
   std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
   std::vector<std::uint32_t> undrawable;  // items beyond the budget: they own no elements, see Pass
 
-  /// For a canvas that fits proxies as it draws them (Canvas::fits_proxies): element e is
-  /// proxies[sources[e] - kFitted], or the proxy of triangle sources[e], by fit(batch) with these
-  /// items, count, out and done. Null: no element waits, and there are no sources and outlines.
+  /// For a canvas that fits proxies as it draws (Canvas::fits_proxies). Element e is
+  /// proxies[sources[e] - kFitted], or, if sources[e] < kFitted, what fit(batch) makes of triangle
+  /// sources[e]; the caller sets items, count, out and done. Null: sources and outlines are empty.
   void (*fit)(const FattenBatch& batch) = nullptr;
   FattenBatch batch;
   UninitializedVector<std::uint32_t> sources;
@@ -165,8 +165,8 @@ struct Drawables {
 };
 constexpr std::uint32_t kFitted = 0x80000000;
 
-/// One element drawn on behalf of a slot. kEverywhere: a full-window quad at the nearest depth; it
-/// is only stored, and hides all.
+/// One element, drawn on behalf of a slot (the index of an answer of the pass). kEverywhere: a quad
+/// over the whole window at the nearest depth; it is only stored, and hides all.
 struct Draw {
   std::uint32_t element;
   std::uint32_t slot;
@@ -185,9 +185,9 @@ struct Step {
 /// Steps in order, on a depth buffer that starts empty. Draws of one slot in a step are
 /// consecutive. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is
 /// seen if one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
-/// where nothing is stored, nothing is seen. touching = false: only fragments behind it (GREATER),
-/// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
-/// contacts at equal depth are then not seen, so no guarantee holds.
+/// where nothing is stored, nothing is seen. touching = false: only a fragment behind it counts
+/// (GREATER), as S-CULLIDE's visibility test passes a fragment at or in front of the stored depth.
+/// Contacts at equal depth are then not seen, so no guarantee holds.
 struct Pass {
   bool touching = true;
   std::uint32_t slots = 0;
@@ -201,23 +201,22 @@ class Canvas {
   virtual const RasterLimits& limits() const = 0;
   /// Whether this canvas takes drawables whose proxies are not fitted yet (Drawables::fit).
   virtual bool fits_proxies() const { return false; }
-  /// Makes `drawables` (kept by the canvas until the next begin) the material of the passes that
-  /// follow.
+  /// The passes that follow draw elements of `drawables`, which the canvas refers to until the next
+  /// begin().
   virtual void begin(const Window& window, const Drawables& drawables) = 0;
   /// Per slot: 1 seen, 0 not. Throws Error unless every command of the pass is known to have run
   /// (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
-  /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
-  /// give each pixel of the window, NaN if it has no fragment; height rows of width values. Among
-  /// fragments whose mapped depths are equal, any may be given. Proxies only. For the tests of the
-  /// lemmas and for pictures.
+  /// For each pixel of the window the depth in px that `draws` give it: the nearest entry (store)
+  /// or the farthest exit (ask); NaN if it has no fragment. height rows of width values. Of
+  /// fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas' tests
+  /// and for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }
-  /// The depths, as the depth buffer holds them, that storing (entry, nearest kept) or asking
-  /// (exit, farthest kept) leaves in each pixel of the window for `draws`; height rows of width
-  /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
-  /// pictures.
+  /// For each pixel of the window the depth, as the depth buffer holds it, after storing (nearest
+  /// entry) or asking (farthest exit) `draws`. height rows of width values in [0, 1]; an empty
+  /// pixel has 1 for store and 0 for ask. For the lemmas' tests and for pictures.
   virtual std::vector<float> depths(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no depths");
   }
@@ -239,21 +238,21 @@ inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) 
   // fixed point.
   return 0x1p-24 / depth_scale(window);
 }
-/// How far a depth that a buffer gives back may be from 0.5 + z * scale of an exact z of the
-/// window, in steps of 2^-24, whatever the rounding of its operations: the product, of at most 1/4,
-/// rounds by 2^-25, and the sum, below 1, by 2^-24. A buffer of 24 bits rounds by 1 / (2^24 - 1)
-/// more when it stores, and by 2^-24 when it is read back as a float.
+/// Bounds, in steps of 2^-24, how far a depth read from a buffer may be from 0.5 + z * scale of an
+/// exact z of the window, in any rounding mode. The product, of at most 1/4, rounds by 2^-25; the
+/// sum, below 1, by 2^-24. A buffer of 24 bits rounds by 1 / (2^24 - 1) more when it stores, and by
+/// 2^-24 when it is read back as a float.
 inline double depth_rounding(int depth_bits) {
   return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
 /// A GL canvas asks a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
 /// docs/budget.md, "Two programs", derives it; farcull_proofs (depth.behind) proves it. The program
-/// that stores and the one that asks may round the depth map in different directions, and convert a
-/// depth to 24 bits to different neighbours; with the slack entry <= exit is seen all the same. 3/4
-/// plus the slack stays below 1, the value of an empty pixel. The canvas's own items have given
-/// depths and need no slack. The native canvas needs no slack: the same function rounds both depths
-/// to nearest.
+/// that stores and the one that asks may round the depth map in different directions, and may
+/// convert a depth to 24 bits to different neighbours. With this slack a proxy with entry <= exit
+/// is still seen. 3/4 plus the slack stays below 1, the value of an empty pixel. The canvas's own
+/// items have fixed depths and need no slack. Nor does the native canvas: one function rounds both
+/// depths to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 
 // ---- questions to a kernel and its answers, wherever it runs: on a device or on the CPU.

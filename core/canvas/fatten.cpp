@@ -1,5 +1,4 @@
-// Triangles are clipped to the window and fattened in parallel; their drawables are joined in
-// order.
+// Clips triangles to the window and fattens them, in parallel. Then joins their drawables in order.
 #include "core/canvas/fatten.h"
 
 #include <algorithm>
@@ -92,10 +91,10 @@ class Part {
 
   const Fattener& fattener_;
   const FattenBatch& batch_;
-  std::size_t fitted_ = 0;  // proxies that are elements
+  std::size_t fitted_ = 0;  // proxies that are already elements
 };
 
-// Writes the drawables of all parts to `out`, in order; uses the memory of `out` again.
+// Writes the drawables of all parts to `out`, in order, and reuses the memory of `out`.
 void join(const std::vector<Part>& parts, std::size_t items, Drawables& out) {
   const std::size_t count = parts.size();
   std::vector<std::size_t> element(count + 1), item(count + 1), fitted(count + 1);

@@ -14,11 +14,11 @@ namespace farcull {
 
 ProxyBounds proxy_bounds(const Window& window);
 
-/// The pixels of the window whose centres are in the box of `points`, `margin` px larger on each
-/// side. points: x and y (px) of a point, at every `step` floats.
+/// The pixels of the window whose centres are in the box of `points`, grown by `margin` px on each
+/// side. points: every `step` floats begin with x and y (px) of a point.
 PixelRange pixel_range(std::span<const float> points, std::size_t step, double margin,
                        const Window& window);
-/// The outline of a fitted proxy, of which only the pixels are known.
+/// The outline of a fitted proxy. Only its pixels are known.
 ProxyOutline outline_of(const Proxy& proxy, const Window& window);
 
 /// The largest radius (px) that offsets and their kernels are derived for (docs/budget.md, "The
@@ -33,8 +33,8 @@ struct Fattener {
   /// px (>= 0).
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
-  /// Fattens many triangles at once, those that need no clipping, to the same bits as `fatten`, or
-  /// finds the outlines of their proxies; null: triangles are fattened one by one.
+  /// Fattens many triangles at once, except those that need clipping, to the same bits as `fatten`;
+  /// or finds the outlines of their proxies. Null: triangles are fattened one by one.
   void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
@@ -49,9 +49,9 @@ struct FattenCounts {
 };
 
 /// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
-/// does not depend on them. `used`: drawables no longer needed, whose memory is used again.
-/// `reach`: if it is given, proxies wait to be fitted (Drawables::fit) where the fattener has
-/// fatten_inside; as FattenBatch::reach. The result then refers to `scene` and `window`.
+/// does not depend on them. used: drawables no longer needed; their memory is reused. reach: as
+/// FattenBatch::reach. If it is given and the fattener has fatten_inside, proxies wait to be fitted
+/// (Drawables::fit), and the result refers to `scene` and `window`.
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
                  const Fattener& fattener, double radius, FattenCounts& counts, Drawables used = {},
                  std::optional<double> reach = {});

@@ -1,4 +1,4 @@
-// Triangles are sorted along a Morton curve and cut into clusters of equal size.
+// Sorts triangles along a Morton curve and cuts them into clusters of equal size.
 #include "core/cull/clusters.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr std::size_t kClusterLeast = 32768;
 
 constexpr int kCellBits = 20;  // of each coordinate: 3 * 20 bits fill one 64-bit code
 
-// The number of a coordinate's cell in [lo, hi]; halves, since a box may span more than a double.
+// The index of the cell of x in [lo, hi]. Halves, since hi - lo may be more than a double holds.
 std::uint64_t cell(double x, double lo, double hi) {
   const double span = 0.5 * hi - 0.5 * lo;
   const double at = (0.5 * x - 0.5 * lo) / span;

@@ -1,5 +1,5 @@
-// The schedule: rounds of views, visits of levels, passes. Culling holds the state of one run;
-// cull_by() puts its steps in order.
+// The schedule: a round visits views, a visit runs levels, a level runs two passes. Culling holds
+// the state of one run; cull_by() puts its steps in order.
 #include "core/cull/cull.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
-  // Beyond it floats overflow in the kernels, and a fragment would be lost instead of seen.
+  // Beyond kMaxRadius floats overflow in the kernels, and a fragment would be lost, not seen.
   if (!(radius >= 0 && radius <= kMaxRadius)) {
     throw Error("{radius}", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
                 "choose a smaller factor");
@@ -44,8 +44,8 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
 // A view of the run, and the state that its last visit left.
 struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // For the first and second pass at triangle level: the number of changes of the stored set when
-  // the pass last ran, so that an unchanged set is recognized.
+  // stored_version() when the first and the second pass at triangle level last ran. If it is still
+  // the same, the stored set is unchanged.
   std::uint64_t stored[2] = {0, 0};
   PassCost plain;  // of plain CULLIDE's two passes at triangle level on the live triangles
 };
@@ -55,7 +55,7 @@ bool has_own_owners(const Scene& scene, const CullSettings& settings) {
                                       [](const Object& object) { return object.self; });
 }
 
-// Whether objects are the owners, so that an object can be one question.
+// True if objects are the owners, so that one query can ask for a whole object.
 bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
@@ -84,7 +84,7 @@ std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings
   return places;
 }
 
-// Stages that no pixel decides: views that cannot be drawn, and whether there are clusters.
+// Stages that do not depend on pixels: views that cannot be drawn, too few objects, and clusters.
 std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings,
                                   const std::vector<ViewState>& places, std::size_t live) {
@@ -180,7 +180,7 @@ class Culling {
     agreed_.assign(state_.bits.size(), kCulled);
   }
 
-  // Sets what all visits of the round agree on.
+  // Sets the bits that all visits of the round have set.
   void end_round() {
     if (settings_.clear == ClearRule::any || state_.live.empty()) return;
     if (places_.empty()) return;  // without a view, no view has cleared anything
@@ -199,8 +199,8 @@ class Culling {
     end_at_few();
   }
 
-  // True if the round that ends changed something, so that another one may too. If no triangle is
-  // left, the next round is left out.
+  // True if another round follows, because this one changed something. If it did and none follows,
+  // a stage says why.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
@@ -260,9 +260,9 @@ class Culling {
     items_ = VisitItems(state_);
     FattenCounts counts;
     const ViewReport& report = result_.views[view];
-    // Proxies wait if many are drawn in a step: then those that are not decided are fitted
-    // together. A proxy covers the centres that are deeper inside it than its corners are rounded
-    // (lemma 21).
+    // If a step draws many proxies, they wait to be fitted: those that are still undecided are then
+    // fitted together. A proxy covers each centre that lies deeper inside it than the rounding
+    // error of its corners (lemma 21).
     constexpr std::size_t kLeastOfOwner = 16;
     std::optional<double> reach;
     if (canvas_.fits_proxies() &&
@@ -284,7 +284,7 @@ class Culling {
   bool asks_clusters() const { return round_ == 1 && !settings_.objects_alone; }
   bool asks_triangles() const { return !settings_.objects_alone; }
 
-  // Both passes over the open triangles at one level.
+  // Runs both passes over the live triangles at one level.
   void run_level(const Level& level) {
     Stage stage = of_visit(StageKind::cull, Reason::nothing_left);
     stage.level = level.size;
@@ -346,7 +346,7 @@ class Culling {
     return report;
   }
 
-  // The clusters of a run are fixed, so later clusters never have more open triangles.
+  // The clusters of a run are fixed, so a cluster never gains triangles to ask for.
   void arrange_clusters() {
     if (own_owners_ || settings_.clusters.sizes.empty()) return;
     state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);
@@ -361,9 +361,9 @@ class Culling {
     return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
   }
 
-  // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
+  // Version of the set that the pass for `bit` stores. The other bit decides what is in the set.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // Versions are compared if bits join from view to view and triangles are asked one by one.
+  // True if the pass has to run: unless bits join across views and its stored set is unchanged.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -443,7 +443,7 @@ class Culling {
   CullResult result_;
   CullState state_;
   bool own_owners_ = false;                         // some triangle is an owner by itself
-  std::vector<std::vector<std::uint32_t>> groups_;  // per size of clusters, per triangle
+  std::vector<std::vector<std::uint32_t>> groups_;  // cluster numbers, per size and triangle
   Level objects_{kObjectLevel, &state_.owner};
   std::vector<Level> clusters_;
   Level triangles_{kTriangleLevel};
@@ -451,7 +451,7 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  CullState start_;                   // if all views have to clear: as the round began,
+  CullState start_;                   // for ClearRule::all: the state as the round began,
   std::vector<std::uint8_t> agreed_;  // and the bits that every visit since has set
   bool done_ = false;                 // few enough triangles are left
   bool visited_ = false;              // a view was visited

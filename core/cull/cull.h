@@ -12,23 +12,23 @@
 //   NFV neither; FFV F only (fully visible in the first pass); SFV L only (in the second); BFV
 //   both.
 //
-// Plain CULLIDE begins every level of a visit without bits: a triangle is culled where one view
-// finds it fully visible in both its passes. It asks every live triangle and stores every live
-// triangle, in both passes. Quick-CULLIDE keeps the bits across levels, views and rounds; FFV is
-// asked only in the second pass and stored only in the first, SFV the other way round; and it
-// leaves out a pass whose stored set is what it was when the pass last ran in that view.
+// Plain CULLIDE begins every level of a visit without bits: a triangle is culled if one view finds
+// it fully visible in both passes. It asks and stores every live triangle in both passes.
+// Quick-CULLIDE keeps the bits across levels, views and rounds. It asks FFV only in the second pass
+// and stores FFV only in the first; SFV the other way round. It leaves out a pass whose stored set
+// has not changed since the pass last ran in that view.
 //
 // Proved (docs/reliability.md) and tested: after every step of the schedule that both share,
-// Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
-// where plain CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has
-// used no more queries and draws. It may go on from there, as bits of different views join: then it
-// may cull more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has
-// such a scene; docs/model.md has the smallest, where it goes on and culls no more).
+// Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So when plain
+// CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has used no more
+// queries and draws. It may go on from there, because bits of different views join. Then it may
+// cull more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has such
+// a scene; docs/model.md has the smallest one, in which it goes on and culls no more).
 //
-// Bits are facts about the triangles: with a fattener that promises, F(t) means that t meets no
-// triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution or
-// fattener found it. So a run may start from the bits of another, as long as scene, plan and owners
-// are the same. With raw triangles bits are as good as the run that set them.
+// Bits are facts about the triangles. With a fattener that guarantees this, F(t) means that t meets
+// no triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution
+// or fattener found it. So a run may start from the bits of another with the same scene, plan and
+// owners. With raw triangles, bits are only as good as the run that set them.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +48,8 @@
 
 namespace farcull {
 
-/// The radius of the ball: each view's budget times a factor (guaranteed if 1 or more), or the
-/// published radius.
+/// The radius of the ball: the budget radius of each view times a factor (at least 1: guaranteed),
+/// or the published radius.
 struct RadiusRule {
   bool published = false;
   double factor = 1;
@@ -88,18 +88,18 @@ struct CullSettings {
   Clusters clusters = {};
   ClearRule clear = ClearRule::any;
   int rounds = 0;  // the most rounds; 0: until a round changes nothing
-  /// Objects are asked as a whole, in every round, and their triangles never. Objects have to be
-  /// the owners then.
+  /// Objects are asked as a whole in every round, and their triangles are never asked. The owners
+  /// must be objects then.
   bool objects_alone = false;
   bool full = false;         // nothing is left out
-  std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
-  /// Objects that have to take part before they are asked as a whole; 0: they always are.
+  std::uint32_t enough = 0;  // no further view if at most this many triangles are live; 0: no limit
+  /// Objects are asked as a whole only if at least this many take part; 0: always.
   std::uint32_t least_objects = 0;
-  /// A further round follows if the last one culled at least one live triangle in this many; 0: if
-  /// it changed anything.
+  /// A further round follows only if the last round culled at least one live triangle in this many;
+  /// 0: if the last round changed anything.
   std::uint32_t worth_a_round = 0;
-  /// The bits at the start, per triangle of the scene as CullResult::bits; empty: none. Plain
-  /// CULLIDE uses only which triangles they cull.
+  /// Bits at the start, per triangle of the scene, as CullResult::bits; empty: none. Plain CULLIDE
+  /// uses them only to tell which triangles are culled.
   std::vector<std::uint8_t> bits = {};
   std::function<void(const CullStep&)> watch = {};
 };
@@ -118,35 +118,34 @@ struct ViewReport {
 
 struct CullResult {
   std::vector<std::uint32_t> live;  // ascending; the potentially colliding set at triangle level
-  /// Per triangle of the scene: 1 has F, 2 has L, 3 is culled or not in the regions.
+  /// Per triangle of the scene. 1: has F; 2: has L; 3: is culled or not in the regions.
   std::vector<std::uint8_t> bits;
   std::vector<ViewReport> views;
   std::vector<Stage> stages;
 };
 
-/// Culls the triangles of regions.triangles. A round visits every view; a visit runs the object
-/// level (round 1 only, if objects are owners), the cluster level (round 1 only) and the triangle
-/// level, on each the first pass, then the second; with `objects_alone` the object level only.
-/// Rounds follow until one changes nothing: sets no bit (quick), or culls nothing (plain); or
-/// until `rounds` of them have run. If all views have to clear a triangle, a bit is set if each
-/// visit of the round set it. Left out, unless `full`, each as a stage with its reason: passes
-/// and visits that are not due (quick), levels and visits if no triangle is left, everything
-/// after a view that leaves at most `enough` triangles, the object level of few objects
-/// (`least_objects`), and rounds after one that culled little (`worth_a_round`). The last two
-/// change which bits are set, never that a bit is true. Throws Error if the resolution is beyond
-/// the canvas's limit or the canvas cannot vouch for a pass; std::logic_error if settings.bits or
-/// settings.owners has another length than the scene, and for objects_alone if objects are not
-/// the owners.
+/// Culls the triangles of regions.triangles. A round visits every view. A visit runs the object
+/// level (round 1 only, if objects are owners), the cluster levels (round 1 only) and the triangle
+/// level; with `objects_alone` only the object level. A level runs the first pass, then the second.
+/// Rounds follow until one changes nothing: sets no bit (quick), or culls nothing (plain); or until
+/// `rounds` have run. With ClearRule::all, a bit is set if each visit of the round set it. Left
+/// out, unless `full`, each as a stage with its reason: passes and visits that are not due (quick),
+/// levels and visits if no triangle is left, everything after a view that leaves at most `enough`
+/// triangles, the object level of few objects (`least_objects`), and rounds after one that culled
+/// little (`worth_a_round`). The last two change which bits are set, but no bit becomes wrong.
+/// Throws Error if the resolution is beyond the canvas's limit or the canvas cannot vouch for a
+/// pass. Throws std::logic_error if settings.bits or settings.owners has another length than the
+/// scene, or for `objects_alone` if objects are not the owners.
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 
-/// cull() by a rule of the caller's: tests break the rule and must see it.
+/// cull() with a rule of the caller. Tests give it broken rules, and must notice.
 CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
                    const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
 
-/// The stages that cull() will go through, in order, before anything is drawn. Stages that run
-/// depending on pixels are marked so, with the rule that will decide; rounds after the first are
-/// one stage. settings.bits are ignored.
+/// The stages that cull() will go through, in order, before anything is drawn. A stage that depends
+/// on pixels is marked so, with the rule that will decide. Rounds after the first are one stage.
+/// settings.bits are ignored.
 std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings);
 

@@ -1,4 +1,4 @@
-// A pass is built from the state of the run, run on the canvas, and its answers become bits.
+// Builds a pass from the state of the run, runs it on the canvas, and turns its answers into bits.
 #include "core/cull/pass.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct PassQuestion {
   }
 };
 
-// One pass in the making.
+// Builds one pass.
 class PassBuilder {
  public:
   explicit PassBuilder(const PassQuestion& of) : of_(of) {
@@ -49,7 +49,7 @@ class PassBuilder {
     for_owners(of.visit, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
       const bool last = of.ask == kF ? to == of.visit.items.size() : from == 0;
-      if (!last) store_owner(from, to);  // no query would read it
+      if (!last) store_owner(from, to);  // no query would read the last store
     });
     while (!pass_.steps.empty() && pass_.steps.back().verb == Verb::store) {
       pass_.draws.resize(pass_.steps.back().first);
@@ -123,7 +123,7 @@ class PassBuilder {
   const PassQuestion& of_;
   std::vector<std::uint32_t> undrawn_;   // items that get the bit without being drawn
   std::vector<std::uint32_t> asked_;     // items, slot after slot
-  std::vector<std::size_t> slot_begin_;  // into asked_
+  std::vector<std::size_t> slot_begin_;  // per slot: its first index in asked_
   bool anything_stored_ = false;
   Pass pass_;
 };
@@ -175,11 +175,11 @@ PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& dr
 PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
                     Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};
-  PassCost cost;            // up to the last question
-  std::uint64_t drawn = 0;  // so far
+  PassCost cost;            // up to the last query
+  std::uint64_t drawn = 0;  // elements so far
   bool anything_stored = false;
   for_owners(items, ask, [&](std::size_t from, std::size_t to) {
-    // No branch for a single item: a visit counts all its items often.
+    // No branch for a single item, because a visit counts all its items often.
     std::uint64_t elements = 0, everywhere = 0, groups = 0, group = UINT64_MAX;
     for (std::size_t i = from; i < to; ++i) {
       const std::uint32_t open = of.bits(i) != kCulled;

@@ -13,8 +13,8 @@ namespace farcull {
 
 enum Bit : std::uint8_t { kF = 1, kL = 2, kCulled = kF | kL };
 
-/// Which live triangles a pass asks and stores: by [first, second pass][visibility set, as bits:
-/// NFV, FFV, SFV, BFV].
+/// Which live triangles a pass asks and stores. Indices: 0 for the first pass, 1 for the second;
+/// then the bits of the triangle (NFV, FFV, SFV, BFV).
 struct PassRule {
   bool asks[2][4];
   bool stores[2][4];
@@ -31,7 +31,7 @@ constexpr PassRule kQuickRule = {
     .clears = false,
 };
 
-/// One query asks for all open triangles of a group. The groups of an owner are consecutive.
+/// Each group of triangles is asked by one query. The groups of an owner are consecutive.
 struct Level {
   std::uint32_t size;                                 // as Stage::level
   const std::vector<std::uint32_t>* group = nullptr;  // per triangle of the scene; null: each alone
@@ -39,9 +39,9 @@ struct Level {
 
 struct CullState {
   std::vector<std::uint8_t> bits;     // per triangle of the scene
-  std::vector<std::uint32_t> live;    // an owner's are consecutive, owners ascend
+  std::vector<std::uint32_t> live;    // grouped by owner, owners ascending
   std::vector<std::uint32_t> owner;   // per triangle of the scene
-  std::uint64_t changes[2] = {1, 1};  // how often an F, an L bit was set
+  std::uint64_t changes[2] = {1, 1};  // 1 + how often an F bit was set; likewise L
   std::uint64_t culled = 0;           // triangles that have both bits
 
   /// Sets a bit of a live triangle.
@@ -55,13 +55,13 @@ struct CullState {
 /// The triangles that one visit of a view asks and stores.
 struct VisitItems {
   VisitItems() = default;
-  /// Those that are live.
+  /// Takes the live triangles.
   explicit VisitItems(const CullState& state);
-  /// Call it when they are drawables.
+  /// Marks the items that cannot be drawn. Call it when their drawables are made.
   void mark_undrawable(const Drawables& drawables);
 
-  std::vector<std::uint32_t> items;        // those of the view's drawables
-  std::vector<std::uint32_t> owner_begin;  // into items, per owner that has some; then their number
+  std::vector<std::uint32_t> items;        // triangles, in the order of the drawables
+  std::vector<std::uint32_t> owner_begin;  // index in items per owner with items; then items.size()
   std::vector<std::uint8_t> undrawable;    // per item; empty: none is
 };
 
@@ -77,13 +77,13 @@ struct PassCost {
 
 /// Runs one pass on the canvas, owner by owner (ascending if F is asked, descending if L is): asks
 /// by the rule, then stores by the rule. Triangles not seen get the bit after the pass. Two kinds
-/// get it undrawn: triangles without elements in this view, and those asked before anything is
-/// stored. Undrawable ones get no bit and are stored everywhere. Stores that no later query reads
-/// are left out.
+/// get it without being drawn: triangles without elements in this view, and those asked before
+/// anything is stored. Undrawable ones get no bit and are stored everywhere. Stores that no later
+/// query reads are left out.
 PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& drawables, Bit ask,
                   const PassRule& rule, const Level& level, bool touching, Canvas& canvas);
 
-/// Elements and slots that the pass of plain CULLIDE would draw and ask on the same live triangles.
+/// The cost of plain CULLIDE's pass on the same live triangles: elements drawn and slots asked.
 PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
                     Bit ask, const Level& level);
 

@@ -1,4 +1,4 @@
-// Patches are stretches of triangles along a Morton curve; each is joined with itself by boxes.
+// Cuts objects into patches along a Morton curve, and joins each patch with itself by boxes.
 #include "core/cull/patches.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 // Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
 // which drawing keeps; larger ones leave more pairs to boxes. Where boxes are bad, a sixteenth of
-// the object leaves the fewest candidates. The bounds keep the passes short: below, nearly all
-// triangles are at borders; above, a patch may have all its pairs to test.
+// the object leaves the fewest candidates. The bounds keep the passes short: in smaller patches
+// nearly all triangles are at borders; of a larger patch, all pairs may be left to test.
 constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;
 
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> triangles_of_marked(const Scene& scene) {
 
 namespace {
 
-// Per object, how many triangles of an ascending list it has.
+// For each object, how many triangles of an ascending list it has.
 std::vector<std::uint32_t> counts_in(const Scene& scene, std::span<const std::uint32_t> list) {
   std::vector<std::uint32_t> counts;
   auto at = list.begin();

@@ -24,7 +24,7 @@ struct Patches {
 /// The triangles of objects that are marked `self`, ascending.
 std::vector<std::uint32_t> triangles_of_marked(const Scene& scene);
 
-/// The fixed rule: a sixteenth of the triangles that the largest object has among `marked`, but at
+/// The fixed rule: a sixteenth of the largest number of `marked` triangles in one object, but at
 /// least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
 std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t> marked);
 
@@ -34,12 +34,12 @@ std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t
 Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
                     std::span<const std::uint32_t> marked, std::uint32_t size);
 
-/// The pairs that are left to test: all a < b with overlapping boxes that are both in `live` and of
-/// different owners, or inside one patch of a marked object, live or not. A pair of different
-/// owners is left out if its bits prove that it does not meet (theorem 2): L of the earlier owner's
-/// triangle, or F of the later one's. Sorted, each once.
+/// The pairs a < b that are left to test, sorted, each once. Their boxes overlap, and both
+/// triangles are in `live` and of different owners, or in one patch of a marked object, live or
+/// not. A pair of different owners is left out if its bits prove that it does not meet (theorem 2):
+/// L of the earlier owner's triangle, or F of the later one's.
 /// boxes: per triangle of the scene. live, bits: as in CullResult, of culling by patches.owner;
-/// bits empty: no bit is set. neighbours: false leaves out pairs of one object that share a vertex
+/// empty bits: no bit is set. neighbours: false leaves out pairs of one object that share a vertex
 /// index.
 std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> boxes,
                                        const Patches& patches, std::span<const std::uint32_t> live,
@@ -55,8 +55,8 @@ struct PairsToDraw {
 PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,
                         std::span<const std::uint32_t> owner);
 
-/// Takes away the pairs of different owners of which a bit proves that they do not meet (theorem
-/// 2): L of the earlier owner's triangle, or F of the later one's. bits: as CullResult::bits.
+/// Removes each pair of different owners if its bits prove that it does not meet (theorem 2): L of
+/// the earlier owner's triangle, or F of the later one's. bits: as CullResult::bits.
 void remove_cleared(std::span<const std::uint8_t> bits, std::span<const std::uint32_t> owner,
                     std::vector<TrianglePair>& pairs);
 

@@ -1,5 +1,5 @@
-// The pixels of each element are found once. The rows of the window are divided so that each thread
-// draws about as many elements.
+// begin() finds the pixels of each element. A pass divides the rows of the window so that each
+// thread draws about the same number of elements.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ NativeCanvas::NativeCanvas(DepthMode mode, const SolidProgram& solid,
 }
 
 void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
-  drawables_ = nullptr;  // until all is there
+  drawables_ = nullptr;  // until everything is ready
   if (drawables.mode != mode_) throw std::logic_error("NativeCanvas: drawables of the other mode");
   for (const int side : {window.width, window.height}) {
     if (side < 1 || side > kMostPixels)
@@ -105,7 +105,7 @@ void NativeCanvas::draw(const NativeJob& job, const Pass& pass) {
   const std::size_t bands =
       std::min<std::size_t>(chunks_for(pass.draws.size(), kLeast, options_.threads),
                             static_cast<std::size_t>(job.height));
-  // Rows at which the next thread begins: each has an equal share of all elements.
+  // Thread b begins at row border[b]. All threads have about equal shares of the elements.
   std::vector<int> border(bands + 1, job.height);
   border[0] = 0;
   for (std::size_t b = 1; b < bands; ++b) {

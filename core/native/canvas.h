@@ -1,13 +1,13 @@
 // The canvas on the cores of the CPU: no device and no driver. Every thread draws all steps of a
-// pass, in order, on its rows of the window, so any number of threads gives the same bits. Every
-// instruction set (lane_targets()) does too, since each operation is rounded once on all.
+// pass, in order, on its rows of the window, so any number of threads gives the same bits. So does
+// every instruction set (lane_targets()), since all round each operation once.
 //
 // For proxies it guarantees more than OpenGL does (docs/budget.md, "The canvas on the CPU"):
 // samples lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles
 // follow OpenGL's rules (draw_triangles_native) and give no guarantee.
 //
-// First the job of one thread: plain data, so that a function compiled for any instruction set can
-// take it.
+// The job of one thread comes first. It is plain data, so that functions compiled for any
+// instruction set can take it.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@
 
 namespace farcull {
 
-/// Columns and rows of the buffer beyond the window's last: a block begins inside the window, and
-/// reads and writes back all its pixels. Without the columns it would write to the next row, which
-/// may be another thread's.
+/// Extra columns and rows of the buffer, behind the window's last: a block begins inside the
+/// window, but reads and writes back all its pixels. Without the extra columns it would write to
+/// the next row, which may be another thread's.
 inline constexpr int kNativeOverhang = 8;
 
-/// run: a pass. values: the depths in px that store (nearest) or ask (farthest) leaves. depths: the
-/// same as the depth buffer holds them.
+/// run: a pass. values: the depths in px that a store leaves (the nearest) or an ask (the
+/// farthest). depths: these values as the depth buffer holds them.
 enum class NativeOutput : std::uint8_t { run, values, depths };
 
 /// The rows [y0, y1) of a window, and the steps of a pass that a thread draws there, in order.
@@ -34,7 +34,7 @@ struct NativeJob {
   int stride;         // floats from row to row of the buffer; width + kNativeOverhang or more
   int y0, y1;
   float scale;        // of the depth map (depth_scale())
-  bool fixed24;       // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
+  bool fixed24;       // depths are held as whole multiples of 1 / (2^24 - 1), rounded
   bool conservative;  // triangles have a fragment in each pixel that they touch
   // The elements.
   const Drawables* drawables;
@@ -63,7 +63,7 @@ struct NativeLines {
 };
 
 /// Draws raw triangles by the fixed rules of OpenGL: corners snapped to 8 subpixel bits, pixel
-/// centres inside by the top-left rule, depth interpolated from the corners'. CULLIDE draws them.
+/// centres inside by the top-left rule, depth interpolated from the corners. CULLIDE draws them.
 /// They give no guarantee.
 ///
 /// With `conservative`, as GL_NV_conservative_raster: a fragment in every pixel whose closed square
@@ -88,8 +88,8 @@ RasterLimits native_limits(int depth_bits = 32);
 
 class NativeCanvas final : public Canvas {
  public:
-  /// `mode` and `solid` as in the fattener whose drawables will come. Throws std::logic_error if
-  /// proxies come without their function on lanes, Error for depth bits other than 24 and 32.
+  /// `mode` and `solid`: those of the fattener that makes the drawables. Throws std::logic_error if
+  /// a solid for proxies has no function on lanes, Error for depth bits other than 24 and 32.
   NativeCanvas(DepthMode mode, const SolidProgram& solid, const NativeCanvasOptions& options = {});
 
   const RasterLimits& limits() const override { return limits_; }

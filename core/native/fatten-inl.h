@@ -1,4 +1,4 @@
-// Fattens the triangles that lie inside the region, one a lane. A fit is a type with
+// Fattens the triangles that lie inside the region, one on each lane. A fit is a type with
 //   rectangle(p, radius, bound_x, bound_y, corners), solid(p, radius, numbers) and
 //   depths(p, radius, nearest and farthest)
 // on lanes (offsets/lanes.cpp).
@@ -56,7 +56,7 @@ struct WidePixels {
   }
 };
 
-/// The outlines of kWide proxies; a number on each lane.
+/// The outlines of kWide proxies, one on each lane.
 struct WideOutlines {
   WideLane x0, x1, y0, y1, nearest, farthest, x, y, depth;
 
@@ -87,7 +87,7 @@ struct WideOutlines {
                              out.x >= 0.0 && out.y >= 0.0 && out.x < half_x + half_x &&
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
-    // A float before it: a double errs by 2^-53, a float by 2^-24.
+    // A float that is surely before the corner: a double errs by 2^-53, a float by 2^-24.
     out.depth = farcull::HWY_NAMESPACE::nearest(
         corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
     return out;
@@ -112,8 +112,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
                                       &of.farthest, &of.x,  &of.y,  &of.depth};
   for (int i = 0; i < 9; ++i) hn::Store(lane_of[i]->v, tag, numbers[i]);
   for (int lane = 0; lane < lanes; ++lane) {
-    // Numbers of a triangle that is not inside may be anything: they are converted as bits that
-    // fit.
+    // If a triangle is not inside, its numbers may be anything. Those that do not fit become 0.
     const auto pixel = [&](int i) HWY_ATTR {
       const double a = numbers[i][lane];
       return static_cast<std::uint16_t>(a >= 0 && a <= 65535 ? a : 0);
@@ -129,7 +128,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   }
 }
 
-/// Fattener::fatten_inside (core/canvas/fatten.h) by this Fit.
+/// Does Fattener::fatten_inside (core/canvas/fatten.h) with this Fit.
 template <class Fit>
 HWY_INLINE void fatten_batch(const FattenBatch& batch) {
   const WideTag tag;

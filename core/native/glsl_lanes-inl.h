@@ -50,8 +50,8 @@ struct LaneOf {
   friend HWY_INLINE BoolOf<D> operator>(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Gt(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator<=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Le(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator>=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Ge(a.v, b.v)); }
-  // b < a ? b : a and a < b ? b : a, zeros and NaNs included: on x86 that is one instruction with
-  // the operands exchanged.
+  // min is b < a ? b : a, and max is a < b ? b : a, also for zeros and NaNs. On x86 each is one
+  // instruction with the operands exchanged.
   friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     return LaneOf(hn::Min(b.v, a.v));
@@ -70,7 +70,7 @@ struct LaneOf {
   friend HWY_INLINE LaneOf sqrt(LaneOf a) { return LaneOf(hn::Sqrt(a.v)); }
 };
 
-using Plain = float;  // where `float` stands for Lane
+using Plain = float;  // the type float where `float` stands for Lane
 using LaneTag = hn::CappedTag<float, 16>;
 using LaneVector = hn::Vec<LaneTag>;
 using Lane = LaneOf<LaneTag>;
@@ -88,7 +88,7 @@ struct vec4 {
 
 // Lanes of doubles, for source files that compute in double (offsets/fit.inl): there `double`
 // stands for WideLane, and each lane holds one triangle.
-using PlainDouble = double;  // where `double` stands for WideLane
+using PlainDouble = double;  // the type double where `double` stands for WideLane
 using WideTag = hn::CappedTag<double, 8>;
 using NarrowTag = hn::Rebind<float, WideTag>;
 using Wide = hn::Vec<WideTag>;

@@ -2,7 +2,7 @@
 // or answer an ask. A block is 4 pixels wide if there are 4 lanes or more, since the proxies
 // of culling are small. Proxies are drawn with a solid's kernel: a type with
 //   interval(c, s0, .., s4, entry, exit): its solid_interval on lanes;
-//   nearest(solid), farthest(solid): depths (px) that no entry comes before and no exit behind.
+//   nearest(solid), farthest(solid): depths (px); no entry is before and no exit behind.
 #if defined(FARCULL_NATIVE_PROXIES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_PROXIES_INL_H_
 #undef FARCULL_NATIVE_PROXIES_INL_H_
@@ -30,8 +30,8 @@ constexpr int kBlockHeight = kLanes / kBlockWidth;
 static_assert(kLanes == 1 || kLanes % 4 == 0);
 static_assert(kBlockWidth <= kNativeOverhang && kBlockHeight <= kNativeOverhang);
 
-/// kBlockHeight rows of kBlockWidth floats, of which the first `rows` are this thread's: the others
-/// belong to another thread and are not touched. In their place the first row is loaded again.
+/// kBlockHeight rows of kBlockWidth floats. Only the first `rows` belong to this thread. The others
+/// are not touched: rows of this thread are loaded again in their place.
 #if HWY_TARGET == HWY_SCALAR
 template <int kCount>
 HWY_INLINE LaneVector load_rows(const float* at, int, int) {
@@ -84,7 +84,7 @@ HWY_INLINE Lane lane_numbers() {
                                                    8, 9, 10, 11, 12, 13, 14, 15};
   return Lane(hn::Load(LaneTag(), kNumbers));
 }
-/// Lane i as bit i.
+/// Bit i is the truth value of lane i.
 HWY_INLINE std::uint32_t bits_of(Bool c) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(LaneTag(), c.mask, bytes);
@@ -161,8 +161,8 @@ HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   }
 }
 
-/// The edges of a proxy, each with its inner side: a centre c is covered if it is outside no edge.
-/// The floats round; docs/budget.md, "The canvas on the CPU", bounds by how much.
+/// The edges of a proxy, each directed so that its inner side is known. A pixel centre is covered
+/// if it is outside no edge. docs/budget.md, "The canvas on the CPU", bounds the rounding errors.
 struct ProxyEdges {
   Plain x[4], y[4], dx[4], dy[4];
 
@@ -178,9 +178,9 @@ struct ProxyEdges {
       dy[i] = turn * (y[(i + 1) % 4] - y[i]);
     }
   }
-  /// Which of kLanes blocks in a row, the first with its lower left pixel centre at cx, cy, may
-  /// have a covered pixel. The blocks are taken a pixel larger on each side, far more than the
-  /// floats round, so none is lost.
+  /// Which of kLanes blocks in a row may have a covered pixel. cx, cy: the lower left pixel centre
+  /// of the first block. The test enlarges each block by a pixel on each side. Rounding errors are
+  /// far smaller, so no such block is lost.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();
     const Lane right = left + Lane(static_cast<Plain>(kBlockWidth + 1));
@@ -211,8 +211,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
-  // If not even the nearest or farthest depth of the solid changes a block, its lines need not be
-  // followed: the depth map is monotone, so no depth along them would either.
+  // If not even the solid's nearest (store) or farthest (ask) depth changes a block, its lines need
+  // not be followed: the depth map is monotone, so no depth along them changes it either.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const vec4 s0 = uniform(s[0]), s1 = uniform(s[1]), s2 = uniform(s[2]), s3 = uniform(s[3]),
@@ -259,7 +259,7 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
 
 // Most proxies are decided by their outlines; the others wait, and are fitted and drawn together.
 
-/// True: the proxy is asked in a pixel that it covers for sure, and seen there.
+/// True: the proxy is seen in a pixel that it certainly covers.
 HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
   if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
   Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
@@ -269,8 +269,8 @@ HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline)
 }
 
 /// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows until it
-/// returns true, and returns whether it did. at: the depth of the block's first pixel; rows,
-/// columns: how many of them are in the range.
+/// returns true, and returns whether it did. at: index of the block's first pixel in job.depth.
+/// rows, columns: how many are left from there to the end of the range.
 template <class Visit>
 HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
@@ -292,7 +292,7 @@ HWY_INLINE bool is_small(const PixelRange& range) {
          range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
 }
 
-/// False: not even the nearest (store) or farthest (ask) depth of the proxy changes a pixel of its
+/// False: not even the proxy's nearest (store) or farthest (ask) depth changes a pixel of its
 /// range.
 HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
   if (!is_small(outline.range)) return true;
@@ -358,13 +358,13 @@ class WaitingProxies {
   int count_ = 0;
 };
 
-/// Some draws that follow one another, mostly neighbours on a mesh.
+/// A few consecutive draws, mostly neighbours on a mesh.
 struct DrawRun {
   std::uint32_t first, count;
 };
-/// The draws of a stored step in runs, the nearest first: in any order they leave the same depths,
-/// and in this one most of those behind change nothing. Runs that do not reach the job's rows are
-/// left out.
+/// Cuts the draws of a store step into runs and sorts these, the nearest first. Any order leaves
+/// the same depths; in this one, most draws that lie behind others change nothing. Leaves out runs
+/// that do not reach the job's rows.
 inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
   constexpr std::uint32_t kRun = 16, kBuckets = 512;
   const std::uint32_t runs = (step.count + kRun - 1) / kRun;

@@ -1,7 +1,7 @@
-// Snapped corners are whole numbers, and so are the edge functions, which doubles hold exactly: a
-// pixel centre is inside, outside or on an edge without doubt, and so is whether a pixel's square
-// meets a triangle (by the axes of the pixel and the normals of the edges, which separate them if
-// anything does).
+// Snapped corners and edge functions are whole numbers, which doubles hold exactly. So it is
+// certain whether a pixel centre is inside, outside or on an edge. It is also certain whether a
+// pixel's square meets a triangle: if not, an axis of the pixel or the normal of an edge separates
+// the two.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ HWY_INLINE Wide columns() {
 /// Corners in subpixels from the window's lower left corner, counterclockwise, and their depths.
 struct SnappedTriangle {
   double x[3], y[3], place[3];
-  double area = 0;  // twice, in square subpixels; 0 draws nothing
+  double area = 0;  // doubled, in square subpixels; if 0, only `conservative` draws it
 
   HWY_INLINE SnappedTriangle(const NativeJob& job, const std::array<float, 12>& t) {
     for (int i = 0; i < 3; ++i) {
@@ -74,7 +74,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
   if (y0 >= y1) return false;
   const SnappedTriangle t(job, job.drawables->triangles[element]);
   if (!kTouched && t.area == 0) return false;
-  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // of a pixel's side
+  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // half a pixel's side; 0: its centre
   const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
   const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
@@ -97,7 +97,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
                                   hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        // The most by which a corner of the pixel is farther inside than the centre.
+        // A corner of the pixel is farther inside than its centre by at most this.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
         const Wide least = hn::Set(wide, -reach);
         const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge owns its points

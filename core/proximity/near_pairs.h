@@ -2,11 +2,11 @@
 //
 // The potential neighbour set (PNS) of Sud, Govindaraju, Gayle, Kabul and Manocha (Fast Proximity
 // Computation Among Deformable Models using Discrete Voronoi Diagrams, SIGGRAPH 2006) rests on a
-// grid, whose error can lose the nearest pair. Here it is every pair whose lower bound is at most a
-// certified upper bound, so no error of a grid enters: what is culled is provably farther apart.
+// grid, whose error can lose the nearest pair. Here it has every pair whose lower bound is at most
+// a certified upper bound of the least distance, so a culled pair is provably farther apart.
 //
-// Bounds are of the doubles as given, any finite ones. Nothing is decided exactly here;
-// verify/closest.h does that.
+// Bounds hold for the coordinates as given, which may be any finite doubles. Nothing is decided
+// exactly here; verify/closest.h does that.
 #pragma once
 
 #include <cstdint>
@@ -29,36 +29,35 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// The first of the nearest of some pairs of triangles, decided exactly. It proves that other pairs
-/// are no nearer: a triangle s of the first object and a triangle t of the second one are at least
-/// as far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
+/// The nearest of some pairs of triangles, decided exactly; among several, the first. It proves
+/// that others are no nearer: triangles s of the first object and t of the second are at least as
+/// far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
 struct SettledPair {
   TrianglePair pair;
   double distance = 0;  // world units, not below the exact one; 0 only if the triangles meet
   std::function<double(std::uint32_t)> reach, start;  // of a triangle; empty if the distance is 0
 };
-/// Exact arithmetic for a search in which bounds in doubles cannot tell which of many pairs is
-/// nearest. Called by several threads at once, with sorted pairs.
+/// Exact arithmetic for a search in which bounds in doubles cannot decide which of many pairs is
+/// the nearest. Several threads call it at once, with sorted pairs.
 using Settle = std::function<SettledPair(std::span<const TrianglePair>)>;
 
-/// The pairs of triangles of two objects that can be nearest. If the two are the same object, these
-/// are its own pairs, without neighbours.
+/// The pairs of triangles of two objects that can be nearest. If both are the same object: its own
+/// pairs, except neighbours (triangles that share a vertex position).
 struct NearPairs {
   ObjectPair objects;
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite if
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
-  /// All pairs of their triangles at the least distance are among these, if that distance is at
-  /// most the limit. If triangles meet, or if the trees settle ties, the first of these pairs is
-  /// enough. Sorted, each once.
+  /// If the least distance is at most the limit, all pairs at that distance are here. (If triangles
+  /// meet, or if the trees settle ties: at least the first of these pairs.) Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 
 /// The number of boxes and pairs that were examined; it shows how well culling works.
 struct ProximityCounts {
-  std::uint64_t box_pairs = 0;       // bounds of boxes that were compared with the upper bound
+  std::uint64_t box_pairs = 0;       // pairs of boxes whose gap was compared with a bound
   std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded
-  std::uint64_t kept = 0;            // of these, left to exact arithmetic
+  std::uint64_t kept = 0;            // pairs of triangles left to exact arithmetic
 
   void add_work(const ProximityCounts& other) {
     box_pairs += other.box_pairs;
@@ -71,7 +70,7 @@ struct ProximityCounts {
 /// the thread rounds to nearest and keeps subnormals.
 class ProximityTrees {
  public:
-  /// threads: 0 for as many as there are cores; changes no answer. settle: if it is not empty,
+  /// threads: 0 for as many as there are cores; changes no answer. settle: may be empty; else
   /// searches call it when many pairs may be nearest, and replace these by the settled pair.
   explicit ProximityTrees(const Scene& scene, unsigned threads = 0, Settle settle = {});
   ~ProximityTrees();
@@ -90,10 +89,10 @@ class ProximityTrees {
                                     std::span<const std::optional<TrianglePair>> hints,
                                     const Progress& progress = {}) const;
 
-  /// Finds for each object with triangles its k nearest others: those at its k least distances, and
-  /// all others as far as the kth of them. Returns these pairs of objects, sorted, each once, and
-  /// perhaps more, each with the pairs of triangles that can be nearest. Objects farther away than
-  /// `within` need not be found. Throws as near_pairs().
+  /// Finds for each object with triangles its k nearest others, and all others as near as the k-th.
+  /// Returns these pairs of objects and perhaps more, sorted, each once, with the pairs of
+  /// triangles that can be nearest. Objects farther away than `within` need not be found. Throws as
+  /// near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
   /// As above, but of others at the same distance only those with the lowest numbers need be found.
@@ -103,7 +102,7 @@ class ProximityTrees {
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
-  /// All pairs of objects at most `within` apart, each object marked `self` with itself, and
+  /// All pairs of objects at most `within` apart, also each object marked `self` with itself, and
   /// perhaps more. Sorted, each once. Throws std::logic_error for an invalid limit, and Error if
   /// there are more than `most` pairs.
   std::vector<ObjectPair> objects_within(double within, std::size_t most) const;
@@ -116,7 +115,7 @@ class ProximityTrees {
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 
-  /// Counts of all calls so far together.
+  /// The sums over all calls so far.
   ProximityCounts counts() const;
 
  private:

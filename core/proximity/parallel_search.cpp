@@ -1,5 +1,5 @@
-// Divides long searches into a fixed number of parts. These begin with the same bound and take
-// nothing from each other; after a while they are joined, and the rest is divided again.
+// Divides long searches into a fixed number of parts. The parts begin with the same bound and share
+// no results. After a while they are joined, and the rest is divided again.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -61,7 +61,7 @@ namespace {
 
 constexpr std::size_t kParts = 32;
 
-// Deals the open pairs to searches of their own, which begin with the bound of this one.
+// Deals the open pairs out to new searches, which begin with the bound of this one.
 std::vector<Search> divide(Search& search) {
   std::vector<Search> out(std::min(kParts, search.open.size()));
   for (Search& part : out) {
@@ -76,7 +76,7 @@ std::vector<Search> divide(Search& search) {
     const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
     if (settled != search.kept.end()) part.kept.push_back(*settled);
   }
-  // The last one is examined first, in each part as well.
+  // The last open pair is examined first, also in each part: the order is kept.
   const std::size_t n = search.open.size();
   for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
   search.open.clear();
@@ -140,7 +140,7 @@ NearPairs answer(const SceneTrees& trees, Search& search) {
     upper = std::min(upper, k.upper);
   }
   std::ranges::sort(out.pairs);
-  // A quotient that is subnormal is rounded.
+  // A subnormal quotient is rounded, but the next larger number is at least the exact quotient.
   out.upper = std::nextafter(upper / trees.scale(), std::numeric_limits<double>::infinity());
   return out;
 }

@@ -1,10 +1,10 @@
 // ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
-// Searches run in parallel; one that takes long is divided. For the nearest objects, each object is
-// searched with the others in the order of the gaps of their parts, and stops at a gap above the
-// k-th least upper bound so far. If many parts overlap, each small object is first searched with
-// all triangles at once, and then with the few others that this search leaves. For all pairs within
-// a distance, each object is searched with those that follow it. The bound of these searches stays
-// the limit, and they pause often so that the pairs of all of them can be counted.
+// Searches run in parallel; a long one is divided. For the nearest objects, each object is searched
+// with the others in the order of the gaps of their parts, until a gap is above the k-th least
+// upper bound so far. If many parts overlap, each small object is first searched with all triangles
+// at once, and then with the few others that this search leaves. For all pairs within a distance,
+// each object is searched with those that follow it. The bound of these searches stays the limit,
+// and they pause often so that the pairs of all of them can be counted.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ class Approach {
     double square;
     int height;
     std::uint32_t k;                           // of height 0: the object
-    std::uint32_t part;                        // of this object
+    std::uint32_t part;                        // which part of this object
     bool operator<(const Node& other) const {  // the nearest one is the top
       if (square != other.square) return square > other.square;
       return height != other.height ? height < other.height : k > other.k;
@@ -79,10 +79,10 @@ class Approach {
   const SceneTrees& trees_;
   std::span<const Box> parts_;
   std::priority_queue<Node> queue_;
-  std::unordered_set<std::uint32_t> given_;  // objects that have several pairs of parts
+  std::unordered_set<std::uint32_t> given_;  // objects given so far, if of several pairs of parts
 };
 
-// Bounds of the distance of one other object.
+// What a search found about one other object.
 struct Found {
   double lower = 0;  // scaled, of the distance
   double upper = 0;
@@ -107,7 +107,7 @@ void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
   }
 }
 
-// The k-th least bound: k other objects are at most that far.
+// The k-th least upper bound: k other objects are at most that far.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
   std::vector<double> upper;
@@ -117,11 +117,10 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// All triangles of a scene as one object. Objects of one leaf are searched with it if so many parts
-// of objects overlap that a search with one object after the other would take time quadratic in
-// their number.
+// All triangles of a scene as one object. Small objects (one leaf) are searched with it if very
+// many parts overlap: searches with one object after the other would take quadratic time.
 struct Crowd {
-  static constexpr std::size_t kOverlaps = 16;  // parts that overlap, for each object
+  static constexpr std::size_t kOverlaps = 16;  // pairs of parts that overlap, per object
 
   static bool is_small(const SceneTrees& trees, std::uint32_t object) {
     return trees.tree(object).leaves == 1;
@@ -159,11 +158,11 @@ struct Crowd {
 // Memory of a thread that looks for nearest objects.
 struct NearestMemory {
   SearchMemory of_two;
-  std::optional<SearchMemory> of_all;  // once an object has asked about all triangles
+  std::optional<SearchMemory> of_all;  // made at the first search with all triangles
 };
 
-// The others of an object that may be among its k nearest, ascending. Lowers the limit to a bound
-// of the k-th distance. ties: as in Others.
+// The others that may be among an object's k nearest, ascending. Lowers the limit to a bound of the
+// k-th distance. ties: as in Others.
 std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& crowd,
                                        std::uint32_t object, std::size_t k, bool ties,
                                        double& limit, SearchMemory& memory,
@@ -243,8 +242,8 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
       std::ranges::pop_heap(least);
       least.pop_back();
     }
-    // Overlapping others come in ascending order. Once k of them meet this object, the rest are no
-    // nearer, and have higher numbers.
+    // Others with a gap of 0 come in ascending order. Once k of them meet this object, the rest are
+    // no nearer, and have higher numbers.
     meeting += found.upper == 0;
     out.push_back(std::move(found));
     if (!all && meeting == k) break;
@@ -280,8 +279,9 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
     counts.add_work(parts[o]);
     std::ranges::move(found[o], std::back_inserter(founds));
   }
-  // Two objects may both have found each other; the answer with the larger limit is kept. An answer
-  // holds all nearest pairs if they are within its limit, as they are for one of the two at least.
+  // Two objects may each have found the other; then the answer with the larger limit is kept. An
+  // answer has all nearest pairs if their distance is within its limit. That is so for at least one
+  // of the two answers, hence for the one with the larger limit.
   std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;
@@ -295,7 +295,7 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   return out;
 }
 
-// Pairs of leaves between two counts: at most 16,384 pairs of triangles.
+// Pairs of leaves examined between two counts: at most 16,384 pairs of triangles.
 constexpr std::size_t kBetweenCounts = 64;
 
 // Counts the pairs of all threads. Throws if they are too many.

@@ -1,5 +1,5 @@
-// Blocks come from core/boxes/triangle_blocks.h; those of an object are put in an order of their
-// own, so that sixteen that follow one another lie together as well.
+// Blocks come from core/boxes/triangle_blocks.h. The blocks of each object are sorted so that
+// sixteen consecutive ones lie together, too.
 #include "core/proximity/scene_trees.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ namespace {
 // The most parts of an object.
 constexpr std::size_t kMostParts = 64;
 
-// A node of an object's tree; or, with height -1, one triangle of leaf k / kWide.
+// A node of an object's tree; or, with height -1, triangle k of a leaf.
 struct Part {
   Box box;
   double square;  // of the box's diagonal

@@ -1,4 +1,4 @@
-// Trees over the triangles of each object and one over the objects; and the search for the nearest
+// A tree over the triangles of each object, a tree over the objects, and the search for the nearest
 // triangles of two objects: branch and bound over pairs of nodes of their trees.
 //
 // A search pauses when it has examined as many pairs of leaves as it may. It can then continue, or
@@ -25,38 +25,39 @@ namespace farcull::near {
 
 // Errors of the arithmetic that finds near pairs: derivations, and the constants that follow.
 //
-// u = 2^-53. All points are scaled (SceneTrees): |x| < 4, each off by at most
-// 2^-1075 from the point as given times the scale. "Exact" is of the points as given, times the
-// scale. Bounds of a distance are in the same units.
+// u = 2^-53. All coordinates are scaled (SceneTrees): |x| < 4, and x is off by at most 2^-1075 from
+// the given coordinate times the scale. "Exact" refers to the given coordinates times the scale.
+// Bounds of a distance are in these units.
 //
-// Gaps of boxes. Along an axis, a gap is g = fl(lo - hi) where that is positive: a difference has
-// no error of underflow, so g <= (G + 2^-1074) (1 + u) with the exact gap G < 8. The sum of the
-// squares has three more roundings at most, and products below 2^-1022 are off by 2^-1075: it is at
-// most (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. So where it is above P^2 (1 + 16 u) + 2^-900, as
-// computed, with three roundings (so at least P^2 (1 + 12 u) + 2^-901), the exact distance is above
-// P.
+// Gaps of boxes. Along an axis, the gap is g = fl(lo - hi) if that is positive. A difference has no
+// error of underflow, so g <= (G + 2^-1074) (1 + u) with the exact gap G < 8. The sum of the
+// squares has at most three more roundings, and products below 2^-1022 are off by 2^-1075. So the
+// sum is at most (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. square_limit() computes P^2 (1 + 16 u)
+// + 2^-900 with three roundings, so it is at least P^2 (1 + 12 u) + 2^-901. If the sum is above it,
+// the exact distance is above P.
 //
 // Gaps along a direction d, any vector with components in [-16, 16]. Points are taken relative to
 // an origin: x = fl(point - origin) is off by u |x|. A dot product d.x has three products and two
 // sums: with the error of x, it is off by less than 5 u |d|.|x| (absolute values per axis). The
-// difference of two has one rounding more, of 2 u |d|.|x|: 12 u |d|.X in all, X the largest |x| per
-// axis. kGap is 16 u, which covers the roundings of the doubt itself. The distance is at least the
-// gap over the length of d.
+// difference of two has one rounding more, of 2 u |d|.|x|: 12 u |d|.X in all, with X the largest
+// |x| per axis. kGap is 16 u, which also covers the roundings of kGap |d|.X. The distance is at
+// least the gap over the length of d.
 //
-// Points. Two points p, q are combined from the corners, taken relative to a corner of the first
-// triangle; R is the largest |coordinate| of these. Weights are computed, each in [0, 1], and sum
-// to 1 up to 4 u. p is within u R (1 + 4 u) (differences) + 3 u R (products and sums) + 4 u R
-// (weights, against those divided by their sum) < 9 u R per axis of a point of the triangle, and so
-// is q. Their difference has one rounding of 2 u R: below 20.1 u R per axis, 35 u R in length. The
-// computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
-// all 55 u R; kPoint is 64 u.
+// Points. p and q are weighted sums of the corners of a triangle each, relative to a corner of the
+// first triangle; R is the largest |coordinate| of these. The computed weights are in [0, 1] and
+// sum to 1 up to 4 u. Per axis, p is off a point of its triangle by at most u R (1 + 4 u)
+// (differences) + 3 u R (products and sums) + 4 u R (weights, compared with those divided by their
+// sum) < 9 u R; so is q. Their difference has one rounding of 2 u R: its error is below 20.1 u R
+// per axis, 35 u R in length. The computed length is below 4 R and off by less than 3 u of itself,
+// and two sums follow: 20 u R. In all 55 u R; kPoint is 64 u.
 //
-// Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on two
-// sides of its plane, and the edge passes all three of its sides in the same sense: the signs of
-// five determinants of differences of points. A difference is off by u of itself. Each of the six
-// products of three then is within (1 + u)^8 of the exact one, two sums included: a determinant is
-// off by less than 8.1 u of the sum of the products' magnitudes. kDeterminant is 16 u, which covers
-// the roundings of that sum. Then the triangles share a point, and 0 is an upper bound.
+// Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on
+// opposite sides of its plane, and the edge passes all three of its sides in the same sense. The
+// signs of five determinants of differences of points decide that. A difference is off by u of
+// itself. Then each of the six products of three is within (1 + u)^8 of the exact one, two sums
+// included, so a determinant is off by less than 8.1 u of the sum of the products' magnitudes.
+// kDeterminant is 16 u, which also covers the roundings of that sum. Then the triangles share a
+// point, and 0 is an upper bound.
 //
 // Underflow: a product is off by at most 2^-1075, so the square of a length loses nothing by it if
 // it is above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives
@@ -68,7 +69,7 @@ constexpr double kGap = 16 * kUnit;
 constexpr double kDeterminant = 16 * kUnit;
 constexpr double kLeastSquare = 0x1p-900;
 constexpr double kAbsolute = 0x1p-900;
-/// Larger than the square of any gap of boxes, and finite: a missing box is beyond it.
+/// Larger than the square of any gap of boxes, but finite, so that a missing box is beyond it.
 constexpr double kMostSquare = 1024;
 
 /// Boxes whose squared gap is above this are farther apart than `limit` (>= 0, may be infinite).
@@ -78,7 +79,7 @@ inline double square_limit(double limit) {
 }
 
 /// Points farther apart than this along a direction are farther apart than `limit`.
-/// squared: of the direction's length; doubt: kGap |d|.X.
+/// squared: the square of the direction's length; doubt: kGap |d|.X.
 inline double gap_limit(double limit, double squared, double doubt) {
   // The root is off by less than 3 u of itself.
   return limit * (std::sqrt(squared) * (1 + 8 * kUnit)) * (1 + 4 * kUnit) + doubt + kAbsolute;
@@ -88,12 +89,11 @@ inline double gap_limit(double limit, double squared, double doubt) {
 
 namespace farcull {
 
-/// The leaves are blocks of at most sixteen triangles that lie together.
-/// All coordinates are multiplied by `scale`, a power of two by which the largest magnitude of the
-/// scene lies in [1, 4), or below if it is less than 2^-1000 before. Products are exact, or off by
-/// at most 2^-1075 where they are subnormal: a multiplication by a power of two changes no other
-/// digit. So nothing that is computed from scaled coordinates overflows. Scaled triangles are those
-/// with scaled corners.
+/// The trees of a scene. Leaves are blocks of at most sixteen triangles that lie together. All
+/// coordinates are multiplied by `scale`, a power of two. It brings the largest magnitude of the
+/// scene into [1, 4), or below if it was less than 2^-1000, so nothing computed from scaled
+/// coordinates overflows. Products with `scale` are exact, or off by at most 2^-1075 if subnormal.
+/// Scaled triangles have scaled corners.
 class SceneTrees {
  public:
   SceneTrees(const Scene& scene, unsigned threads, Settle settle = {});
@@ -120,7 +120,7 @@ class SceneTrees {
     return std::span(parts_).subspan(first_part_[object],
                                      first_part_[object + 1] - first_part_[object]);
   }
-  /// The least triangle below a node of an object's tree.
+  /// The lowest number of a triangle below a node of an object's tree.
   std::uint32_t least(std::uint32_t object, std::size_t height, std::uint32_t k) const {
     const BoxTree<double>& tree = trees_[object];
     if (height == static_cast<std::size_t>(tree.levels))
@@ -128,7 +128,7 @@ class SceneTrees {
     return least_[tree.first[height] + k / kWide][k % kWide];
   }
 
-  /// The tree over the parts of all objects, and of which object each leaf is.
+  /// The tree over the parts of all objects. object(): the object whose part a leaf is.
   const BoxTree<double>& objects() const { return objects_; }
   std::uint32_t object(std::uint32_t leaf) const { return object_of_leaf_[leaf]; }
 
@@ -143,7 +143,7 @@ class SceneTrees {
   Settle settle_;
   double scale_ = 1;
   TriangleBlocks of_;
-  std::vector<std::uint32_t> place_;  // of each leaf, into of_.ranges
+  std::vector<std::uint32_t> place_;  // per leaf: its index in of_.ranges
   std::vector<BoxTree<double>> trees_;
   std::vector<Box> parts_;
   std::vector<std::size_t> first_part_;  // of each object, and one behind the last
@@ -153,7 +153,7 @@ class SceneTrees {
   std::vector<std::array<std::uint32_t, kWide>> least_;  // of each box of blocks_
 };
 
-/// The corners of sixteen scaled triangles as columns: 3 corner + axis.
+/// The corners of sixteen scaled triangles, in columns: column 3 * corner + axis.
 using CornerColumns = std::array<std::array<double, kWide>, 9>;
 
 /// Pairs of scaled triangles.
@@ -176,8 +176,8 @@ struct alignas(64) BlockCorners {
   CornerColumns corner;
   WideBoxes<double> boxes;  // of the triangles
   std::array<std::uint32_t, kWide> triangle;
-  alignas(64) std::array<double, kWide> extreme;  // along a direction: the largest coordinate of a
-                                                  // triangle of a, the smallest of one of b
+  alignas(64) std::array<double, kWide> extreme;  // per triangle, along a direction: its largest
+                                                  // coordinate in a, its smallest in b
   double most_extreme = 0;
   std::uint64_t direction = 0;  // the direction's number in SearchMemory
   std::uint32_t leaf = UINT32_MAX;
@@ -204,8 +204,7 @@ struct KeptPair {
   double lower, upper;
 };
 
-/// The reach of each triangle of an object, as SettledPair gives it, and the greatest below each
-/// node of its tree.
+/// The reach of each triangle of an object (SettledPair), and the greatest below each node.
 struct Reaches {
   Reaches(const SceneTrees& trees, std::uint32_t object,
           const std::function<double(std::uint32_t)>& reach);
@@ -215,26 +214,26 @@ struct Reaches {
 
 /// The planes of a settled pair: they prove that other pairs of triangles are no nearer.
 struct Planes {
-  TrianglePair pair;  // is settled
+  TrianglePair pair;  // the settled one
   Reaches a;          // of the triangles of objects.a
-  Reaches b;          // the starts of those of objects.b, negated
+  Reaches b;          // the starts of the triangles of objects.b, negated
 };
 
-/// A search for the nearest others of one object compares it with all triangles of the scene at
-/// once, as one object of other trees (SceneTrees::scale() is the same). A search of two objects
-/// takes as long as some hundred pairs of triangles, so that is faster where many small objects
-/// overlap.
+/// For a search for the nearest other objects of one object. It compares the object with all
+/// triangles of the scene at once: they are one object of other trees, which have the same scale. A
+/// search of two objects takes as long as some hundred pairs of triangles, so this is faster if
+/// many small objects overlap.
 struct Others {
   const SceneTrees* all;
   const Scene& scene;
   std::span<const std::uint32_t> owner;  // per triangle
   std::uint32_t object;                  // the one whose nearest others are searched for
   std::size_t k;                         // how many others are asked for
-  bool ties;  // whether to keep others as near as the k-th with higher numbers
+  bool ties;  // keep also others that are as near as the k-th but have higher numbers
   /// Triangles from here on need no search: k others with lower numbers certainly meet the
   /// object.
   std::uint32_t end = UINT32_MAX;
-  /// The k least upper bounds of different others, sorted; of equal ones those with low numbers.
+  /// The k least upper bounds, each of another object, sorted; among equal ones the lower numbers.
   std::vector<std::pair<double, std::uint32_t>> nearest = {};
 
   bool is_own(std::uint32_t triangle) const {
@@ -248,26 +247,26 @@ struct Others {
   double upper() const {
     return nearest.size() < k ? std::numeric_limits<double>::infinity() : nearest.back().first;
   }
-  /// A pair of the object and another one is at most `upper` apart.
+  /// Notes that a pair of the object and another one is at most `upper` apart.
   void add(const TrianglePair& pair, double upper);
 };
 
 /// A search that has begun.
 struct Search {
   ObjectPair objects;
-  Others* others = nullptr;  // of objects.a; then objects.b is the object of these trees
+  Others* others = nullptr;  // of objects.a; if set, objects.b is the object of Others::all
   double limit = 0;          // scaled: pairs farther apart are not searched for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
   /// The first pair so far that certainly meets. Pairs after it are not the answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
   /// The first of the nearest pairs when pairs were settled last; it is kept.
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
-  std::shared_ptr<const Planes> planes;  // of this pair, or of one that is as near or farther
+  std::shared_ptr<const Planes> planes;  // of this pair, or of an earlier, no nearer one
   bool is_part = false;                  // of a search that was divided; makes no planes
   Vec3 direction = Vec3::Zero();         // of a pair with about the bound `upper`; 0: none
   std::vector<NodePair> open;            // to be examined, the last one first
   std::vector<KeptPair> kept;
-  bool everything = false;       // all pairs within the limit are kept, near or not
+  bool everything = false;       // keeps all pairs within the limit
   std::size_t kept_most = 1024;  // if more are kept, those that cannot be nearest are dropped, and
                                  // then, if the trees have exact arithmetic, all but the nearest
   ProximityCounts counts;
@@ -305,14 +304,14 @@ void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemo
 /// is long, and is divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
-/// Keeps only the nearest of the kept pairs, if the trees have exact arithmetic. Pairs after it
-/// that are no nearer are not the answer. Precondition: some pair is kept.
+/// If the trees have exact arithmetic: drops all kept pairs but the first of the nearest ones. A
+/// later pair that is not nearer cannot be the answer. Precondition: some pair is kept.
 void settle(const SceneTrees& trees, Search& search);
 /// A limit in world units, scaled and rounded up.
 double scaled_limit(const SceneTrees& trees, double within);
 /// The answer of a search with nothing open. Sets counts.kept.
 NearPairs answer(const SceneTrees& trees, Search& search);
-/// Pairs that a search may keep: 2.4 GB.
+/// The most pairs that a search may keep; they take 2.4 GB.
 constexpr std::size_t kMostKept = 100'000'000;
 
 /// Throws Error if a search keeps more than `most` pairs.

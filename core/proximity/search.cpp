@@ -36,7 +36,7 @@ class Searcher {
     Box both = a_.tree().box;
     both.add(b_.tree().box);
     origin_ = 0.5 * both.lo + 0.5 * both.hi;
-    // A difference is off by u of itself; near::kGap has room for it.
+    // A difference is off by u of itself; near::kGap has room for that.
     extent_ = (both.hi - origin_).cwiseMax(origin_ - both.lo);
     new_bound();
     new_direction();
@@ -185,7 +185,7 @@ class Searcher {
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
     if (at.a_height != at.b_height) {
-      const bool a = at.a_height > at.b_height;  // the one to divide
+      const bool a = at.a_height > at.b_height;  // divides a, else b
       const WideBoxes<double>& own =
           a ? a_.children(at.a_height, at.a) : b_.children(at.b_height, at.b);
       const OneBox box = a ? b_.box_of(at.b_height, at.b) : a_.box_of(at.a_height, at.a);
@@ -223,7 +223,7 @@ class Searcher {
     BlockCorners& b = b_.load(memory_.b, at.b);
     const std::uint32_t asked = others_ ? asked_of(b) : 0xffff;
     if (asked == 0) return;
-    // The batch may change the direction while the rows are compared.
+    // Copies: add() below may change the direction.
     const bool directed = direction_ != 0;
     const double gap_limit = gap_limit_;
     if (directed) {
@@ -254,8 +254,7 @@ class Searcher {
     }
   }
 
-  // Bits of the triangles of a leaf of all triangles that are of another object than the one that
-  // asks, and of none behind those that meet it.
+  // In a search with Others: bits of the triangles of a leaf that it asks about.
   std::uint32_t asked_of(const BlockCorners& leaf) const {
     std::uint32_t out = 0;
     for (std::uint32_t k = 0; k < leaf.count; ++k)
@@ -265,8 +264,8 @@ class Searcher {
 
   // Drops pairs that are farther apart than the bound along the normal of one of their triangles,
   // or, in the plane of the triangle, across one of its edges. Boxes along the axes separate
-  // slivers and large triangles poorly. One direction is tried for all pairs of its triangle at
-  // once, which takes less time than to bound two of them.
+  // slivers and large triangles poorly. A direction is tried for all pairs of its triangle at once,
+  // which takes less time than bounding two pairs.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two
@@ -284,9 +283,9 @@ class Searcher {
     }
   }
 
-  // Those of some triangles of a leaf (bits) that are not shown to be farther from triangle i of
-  // another one than the bound. A computed normal is a direction like any other, however far it is
-  // off (core/proximity/scene_trees.h); all are scaled to at most 16.
+  // Of the triangles `bits` of a leaf, those not shown to be farther from triangle i of `own` than
+  // the bound. Any direction gives a valid bound, so errors of a computed normal do no harm
+  // (core/proximity/scene_trees.h). Components are scaled to at most 16.
   HWY_INLINE std::uint32_t near_triangle(const BlockCorners& own, std::size_t i,
                                          const BlockCorners& leaf, std::uint32_t bits) const {
     std::array<Vec3, 3> corners;
@@ -302,7 +301,7 @@ class Searcher {
     return bits;
   }
 
-  // Bits of the triangles of a leaf that are not farther from a triangle along d than the bound.
+  // Bits of the triangles of a leaf that along d are no farther from a triangle than the bound.
   HWY_INLINE std::uint32_t near_along(const Vec3& d, const std::array<Vec3, 3>& corners,
                                       const BlockCorners& leaf) const {
     const double squared = d.squaredNorm();
@@ -340,7 +339,7 @@ class Searcher {
     return out;
   }
 
-  // The extents of the triangles of a leaf along the direction.
+  // Sets the leaf's extremes along the direction: the largest coordinates (`most`) or the smallest.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
     const Numbers n;
     const Vec3& d = search_.direction;
@@ -426,8 +425,8 @@ class Searcher {
     if (!probing_) keep(bounds);
     batch.count = 0;
   }
-  // Triangles of two objects that have a corner in common meet. Then no edge need pierce a face, as
-  // in equal objects and in fans, so the bounds may not show it.
+  // Triangles of two objects that have a corner in common meet. The bounds may not show that, since
+  // no edge need pierce a face, as in equal objects and in fans.
   void find_common_corners(BatchBounds& bounds) const {
     if (self_) return;
     const PairBatch& batch = memory_.batch;
@@ -458,7 +457,7 @@ class Searcher {
   }
   void new_direction() {
     const Vec3& d = search_.direction;
-    // The triangles of one object are near in all directions.
+    // No direction separates the triangles of one object.
     const bool any = !self_ && d.squaredNorm() >= near::kLeastSquare;
     direction_ = any ? ++memory_.directions : 0;
     set_gap_limit();

@@ -1,7 +1,7 @@
 // A pair of triangles on each lane. Two closest points are guessed (Ericson, Real-Time Collision
 // Detection, 2005, sections 5.1.5 and 5.1.9; also edges that pierce a face). However wrong the
-// guess is, it proves two bounds: the points themselves an upper one, the direction between them a
-// lower one (core/proximity/scene_trees.h).
+// guess is, it proves two bounds: the distance of the points is an upper bound, and the direction
+// between them gives a lower bound (core/proximity/scene_trees.h).
 #if defined(FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
 #undef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
@@ -71,7 +71,7 @@ struct LaneTriangle {
   Point corner[3];
   Point edge[3];      // from each corner to the next
   Number squared[3];  // of the edges' lengths
-  // For coordinates in the plane, along edge 0 and from corner 0 to corner 2.
+  // For coordinates in the plane, dot products of e (edge 0) and f (from corner 0 to corner 2).
   Number ee, ef, ff, determinant;
 
   HWY_INLINE LaneTriangle(const CornerColumns& columns, std::size_t from, const Point& origin)
@@ -133,8 +133,8 @@ class Guess {
     own_best = chosen(better, own, own_best);
     other_best = chosen(better, other, other_best);
   }
-  // Offers nearest points of two edges: takes those of their lines, then on each edge the point
-  // nearest to the point chosen on the other.
+  // Offers nearest points of two edges: starts with those of their lines, then takes on each edge
+  // the point nearest to the one chosen on the other edge.
   HWY_INLINE void offer_edges(int i, int j) {
     const Point &u = a_.edge[i], &v = b_.edge[j];
     const Point w = a_.corner[i] - b_.corner[j];
@@ -214,7 +214,7 @@ class Proof {
         hn::Add(hn::Mul(number(near::kGap), dot({hn::Abs(d.x), hn::Abs(d.y), hn::Abs(d.z)}, most_)),
                 absolute);
     const Number gap = hn::Sub(hn::Sub(b_least, a_most), doubt);
-    // The quotient has the roundings of the gap, of the length (3 u) and its own.
+    // 8 u cover the roundings of the gap, of the length (3 u) and of the quotient.
     const Number quotient = hn::Mul(hn::Div(gap, length), number(1 - 8 * near::kUnit));
     lower = hn::IfThenElseZero(hn::Ge(squared, least_square), hn::Max(quotient, number(0)));
   }

@@ -1,4 +1,4 @@
-// Pairs are put into buckets by their first triangle; the partners of each are sorted or marked.
+// Puts pairs into buckets by their first triangle, and sorts or marks the partners in each bucket.
 #include "core/scene/pair_sort.h"
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// From this number on, the partners of one triangle may be marked instead of sorted.
+// If a triangle has at least this many partners, they may be marked as bits instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
-// Sorts the pairs of one first triangle and leaves each there once, at the begin; returns how many
-// these are. Many partners among few triangles are marked in `bits` instead, whose words are 0
-// before and after.
+// Sorts pairs of the same first triangle, moves the distinct ones to the front, and returns their
+// number. If there are many and their range of indices is small, marks them in `bits` instead of
+// sorting. All words of `bits` are 0 before and after.
 std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64_t>& bits) {
   if (pairs.size() >= kMarkFrom) {
     const auto [least, most] = std::ranges::minmax_element(pairs);
@@ -44,7 +44,7 @@ std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64
   return static_cast<std::size_t>(after - pairs.begin());
 }
 
-// The pairs with from <= a < to, and how many there are for each a, one place behind.
+// The pairs with from <= a < to. After count(), first[k] of them have a < from + k.
 struct Range {
   std::uint64_t from = 0, to = 0;
   std::vector<std::uint32_t> first = {};
@@ -60,10 +60,10 @@ struct Range {
   }
   std::size_t size() const { return first.back(); }
 
-  // Groups the pairs by their first triangle in `out`, which has room for all, and then sorts the
-  // few partners of each; returns how many pairs differ.
+  // Groups the pairs by their first triangle in `out`, which has room for size() pairs, and sorts
+  // each group. Returns the number of distinct pairs; they are at the front of `out`.
   std::size_t sort(Parts parts, std::span<TrianglePair> out) {
-    // From the back: first[a + 1], the end of the partners of a, becomes their start.
+    // Fills each group from its end: first[k + 1], the end of group k, becomes its start.
     for (const auto& part : parts) {
       for (const TrianglePair& pair : part) {
         if (pair.a >= from && pair.a < to) out[--first[pair.a - from + 1]] = pair;
@@ -82,7 +82,7 @@ struct Range {
   }
 };
 
-// All pairs of the parts, as sorted_unique(). Calls `release` when the parts are no longer read.
+// As sorted_unique(). Calls `release` when the parts are no longer read.
 template <class Release>
 std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release& release) {
   std::uint64_t least = UINT64_MAX, most = 0;
@@ -97,7 +97,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
   if (total == 0) return {};
   const std::uint64_t span = most - least + 1;
   std::vector<TrianglePair> out;
-  // Counting takes 32-bit places, and pays unless pairs are few compared with the range.
+  // Counting needs 32-bit positions. Sorting is faster if pairs are few for the range of a.
   if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());

@@ -1,4 +1,4 @@
-// Checks of a scene, its boxes and owners, its fingerprint, and members of lists.
+// Checks scenes; computes boxes, owners and fingerprints; drops ignored pairs; finds moved corners.
 #include "core/scene/scene.h"
 
 #include <algorithm>
@@ -218,7 +218,7 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   } else {
     last_.reset();
   }
-  // More triangles have more corners than 32 bits count.
+  // With more triangles, the number of corners does not fit into 32 bits.
   if (!change->same || scene.triangles.size() > UINT32_MAX / 3) {
     first_of_.clear();
     return;
@@ -228,7 +228,7 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
 }
 
 FrameChange MovedCorners::compare(const Scene& scene) {
-  constexpr std::size_t kAtOnce = 64;  // most vertices are among others that did not move either
+  constexpr std::size_t kAtOnce = 64;  // vertices; mostly, none in such a group moved
   // If an allocation below throws, the copy is partial and is lost.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;
@@ -244,7 +244,7 @@ FrameChange MovedCorners::compare(const Scene& scene) {
     last_ = {std::move(objects), scene.triangles, scene.vertices};
     return out;
   }
-  // By their bits: -0.0 and 0.0 count as different, which costs a comparison at most.
+  // Compares bits: -0.0 and 0.0 count as different, which costs a comparison at most.
   const auto equal = [&](std::size_t from, std::size_t count) {
     return std::memcmp(copy->vertices[from].data(), scene.vertices[from].data(),
                        count * sizeof(Vec3)) == 0;

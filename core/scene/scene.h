@@ -46,8 +46,7 @@ struct Object {
   bool self = false;                 // its own triangles are tested against each other as well
 };
 
-/// A polygon of a file that is folded: it is not simple, so that its triangles overlap or face both
-/// ways.
+/// A polygon of a file that is folded: not simple, so its triangles overlap or face both ways.
 struct FoldedFace {
   std::uint32_t object = 0;
   std::uint32_t face = 0;  // as in Scene::source_face
@@ -71,8 +70,8 @@ struct Scene {
   std::array<Vec3, 3> corners(std::uint32_t triangle) const;
 };
 
-/// Fetches the corners of a triangle into the cache, for a use that follows soon: they may lie
-/// anywhere in memory.
+/// Fetches the corners of a triangle into the cache before they are used. They may lie anywhere in
+/// memory.
 inline void prefetch([[maybe_unused]] const Scene& scene, [[maybe_unused]] std::uint32_t triangle) {
 #ifdef __GNUC__
   for (const std::uint32_t v : scene.triangles[triangle]) {
@@ -98,7 +97,7 @@ inline bool share_index(const std::array<std::uint32_t, 3>& a,
   return shared;
 }
 
-/// The range of vertices that an object with triangles uses. Objects seldom share a range.
+/// The range of vertices that an object with triangles uses. Ranges seldom overlap.
 struct VertexRange {
   std::uint32_t first = 0, last = 0;
 };
@@ -134,24 +133,24 @@ std::string scene_hash(const Scene& scene);
 /// the scene.
 std::vector<std::uint32_t> members_of(std::span<const TrianglePair> pairs, std::size_t triangles);
 
-/// Objects that have one of these triangles (ascending).
+/// Number of objects that have at least one of these triangles (ascending).
 std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> triangles);
 
 /// Whether an object of the scene is tested against itself.
 bool has_self(const Scene& scene);
 
-/// Pairs of two different objects, and more of them, with a < b in each, sorted, each once.
+/// Joins two lists of pairs of different objects: a < b in each pair, sorted, each pair once.
 std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs,
                                  std::span<const ObjectPair> more = {});
 
-/// Removes the pairs of triangles whose objects are an ignored pair (nobody asks about their
-/// triangles or their distance); the others stay in their order. Returns how many were removed.
-/// ignored: as in_order() gives them. Time O(pairs). Throws std::logic_error if it names an object
-/// that the scene does not have.
+/// Removes the pairs of triangles whose objects are an ignored pair (such objects are not tested,
+/// and their distance is not measured). The others stay in their order. Returns how many were
+/// removed. ignored: as in_order() gives them. Time O(pairs). Throws std::logic_error if `ignored`
+/// names an object that the scene does not have.
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if objects of the scene are ignored. who: name of the work that needs them all.
+/// Throws Error if the scene ignores pairs of objects. who: the work that needs all pairs.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Tells whether the objects of a pair of triangles are ignored.
@@ -174,34 +173,34 @@ class IgnoredObjects {
 
 /// What changed from the previous frame of a scene to this one.
 struct FrameChange {
-  bool same = false;  // as many vertices as in the frame before, the same triangles and objects
-  std::vector<std::uint32_t> vertices;  // if it is the same: those that moved, each once
+  bool same = false;  // number of vertices, triangles and objects are those of the frame before
+  std::vector<std::uint32_t> vertices;  // if `same`: the vertices that moved, each once
 };
 
 /// Which corners moved between two frames of the same triangles and objects. A class that keeps
-/// results of a frame also keeps its number, and uses the results only in the next frame.
+/// results of a frame also keeps its frame(), and uses the results only in the next frame.
 class MovedCorners {
  public:
-  /// Begins the next frame. change: what is new in it, if the caller knows; null: the scene is
-  /// compared with that of the last frame, and a copy is kept. In a frame that waits() nothing is
-  /// compared.
+  /// Begins the next frame. change: what changed, if the caller knows it; null: the scene is
+  /// compared with a copy of the last frame, which this object keeps. If waits() was true before
+  /// the call, `change` is ignored and nothing is compared.
   void update(const Scene& scene, const FrameChange* change = nullptr);
-  /// True for some frames after frames in which knowing what moved saved nothing.
+  /// True if the next update() compares nothing: knowing what moved has saved nothing lately.
   bool waits() const { return waits_ > 0; }
-  /// Says whether knowing what moved saved work in this frame, if it was known. At most once a
-  /// frame.
+  /// Call at most once a frame: tells whether knowing what moved saved work in this frame. Has no
+  /// effect if it was not known.
   void notify(bool worth_while);
-  /// Frames begun, the present one included.
+  /// The number of the present frame, counted from 1.
   std::uint64_t frame() const { return frame_; }
   /// True if this is the frame after the given one and has the same triangles and objects, so that
   /// the functions below say what moved since.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
-  /// Whether a triangle has a corner that moved.
+  /// Whether any triangle has a corner that moved; whether this one has.
   bool any() const { return !triangles_.empty(); }
   bool triangle(std::uint32_t t) const { return any() && triangle_moved_[t] != 0; }
   /// All triangles with a corner that moved, each once.
   const std::vector<std::uint32_t>& triangles() const { return triangles_; }
-  static constexpr int kMostWaits = 16;  // frames
+  static constexpr int kMostWaits = 16;  // frames in a row that may wait
 
  private:
   struct Part {
@@ -219,25 +218,26 @@ class MovedCorners {
 
   std::uint64_t frame_ = 0;
   bool known_ = false;
-  int waits_ = 0, next_waits_ = 1;  // frames
+  int waits_ = 0, next_waits_ = 1;  // frames still to wait; frames to wait the next time
   std::optional<Copy> last_;
   // Per vertex v the triangles that have it: of_vertex_[first_of_[v]] to of_vertex_[first_of_[v +
   // 1]]. Empty: not made yet.
   std::vector<std::uint32_t> first_of_, of_vertex_;
   std::vector<std::uint8_t> triangle_moved_;  // valid only if a corner moved
-  std::vector<std::uint32_t> triangles_;      // that moved
+  std::vector<std::uint32_t> triangles_;      // those that moved
 };
 
-/// Whether less than half of an even sample of the pairs have a triangle that moved. Without a
-/// pair: whether nothing moved.
+/// True if at least half of an even sample of the pairs have no triangle that moved. Without a
+/// pair: true if nothing moved.
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
 /// False if the matrix (finite, row by row) maps space to a plane, a line or a point, as far as
 /// doubles can show: its determinant is 0, or at most its own rounding errors.
 ///
 /// Each row is divided by its largest number, which changes neither answer nor signs. A term of the
-/// determinant then has at most 8 roundings: the three quotients, two products, a difference and
-/// two sums. So 9 u times the sum of the magnitudes covers them, as in verify/filter_scalars.h.
+/// determinant then has at most 8 roundings, each by at most u = 2^-53: three quotients, two
+/// products, a difference and two sums. So 9 u times the sum of the magnitudes covers them, as in
+/// verify/filter_scalars.h.
 bool is_invertible(std::array<double, 9> r);
 
 }  // namespace farcull

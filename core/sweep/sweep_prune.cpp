@@ -22,9 +22,9 @@ namespace {
 // cheaper.
 constexpr std::uint64_t kMoves = 8;
 
-// Sorts what is almost sorted. Calls exchanged(e, f) if e moves from behind f to before it: once
-// for each two elements in the wrong order, and for no others. Returns false, with the list in some
-// order, if it takes more than kMoves per element.
+// Sorts a list that is almost sorted. Calls exchanged(e, f) once for each two elements in the wrong
+// order, when e moves from behind f to before it. Returns false, with the list not sorted, if it
+// takes more than kMoves moves per element.
 template <class Element, class Less, class Exchanged>
 bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Less& less,
                     const Exchanged& exchanged) {
@@ -57,24 +57,24 @@ void sort_each_once(std::vector<TrianglePair>& pairs) {
 
 }  // namespace
 
-// By value; at equal values lower ends come first, since touching boxes overlap.
+// Orders by value; at equal values lower ends come first, since touching boxes overlap.
 bool BoxSweep::before(const End& e, const End& f) {
   return e.value < f.value || (e.value == f.value && (e.box_and_side & 1) < (f.box_and_side & 1));
 }
 
-// The state of the pairs is right after an update. Along one axis two boxes that are not empty
-// overlap iff each lower end stands before the upper end of the other one, equal coordinates
-// included, since there lower ends come first. Insertion sort exchanges two ends iff their order
-// changed. So a pair that came to overlap was apart along some axis, where a lower end of one
-// passed an upper end of the other; a pair that came apart did so along some axis, where an upper
-// end passed a lower one. The boxes themselves tell whether it overlapped before and does now.
+// Why the pairs are right after an update: along one axis, two boxes that are not empty overlap iff
+// each lower end stands before the upper end of the other. That includes equal coordinates, where
+// lower ends come first. Insertion sort exchanges two ends iff their order changed. If a pair came
+// to overlap, it was apart along some axis, and there a lower end of one passed an upper end of the
+// other. If it came apart, an upper end passed a lower one along some axis. The boxes themselves
+// show whether the pair overlapped before and does now.
 const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   swaps_ = 0;
   std::vector<std::uint32_t> present;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!boxes[i].is_empty()) present.push_back(i);
   }
-  // An update that threw has sorted the ends and not the pairs.
+  // If the last update threw, it may have sorted the ends and not the pairs.
   const bool is_whole = std::exchange(is_whole_, false);
   from_scratch_ = !is_whole || present != present_ || boxes.size() != boxes_.size();
   present_ = std::move(present);
@@ -144,12 +144,12 @@ namespace {
 /// The state of a triangle.
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
-/// Marks a group of one: each triangle of a `self` object is alone in its group.
+/// Marks a group of one: each triangle of a `self` object is a group of its own.
 constexpr std::uint32_t kAlone = 1u << 31;
 
 constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
 
-/// A lower end to sort by, and the index of what has it.
+/// A lower end to sort by, and the index of the item or triangle that it is of.
 struct Key {
   double lo;
   std::uint32_t index;
@@ -178,7 +178,7 @@ SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes
   fill_columns(boxes);
   const std::uint64_t swaps = counts.swaps;
   const std::vector<TrianglePair> found = sweep_columns(counts);
-  // Columns inherit the order of all triangles; many moves in them show that it has gone stale.
+  // Columns inherit the order of all triangles. Many moves in them show that it is out of date.
   if (counts.swaps - swaps > items_.size()) {
     sort_order();
     ++counts.sorts;
@@ -200,8 +200,8 @@ void SweepPrune::forget() {
 }
 
 /// Finds the triangles that may have candidates. The partners of a triangle are the objects whose
-/// box meets that of its object. It finds triangles whose box meets that of a partner, triangles
-/// with more than kTries partners to compare, and all triangles of `self` objects.
+/// boxes meet the box of its object. A triangle may have candidates if its box meets that of a
+/// partner, if more than kTries partners would have to be compared, or if its object is `self`.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
@@ -230,7 +230,7 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
     if (begin == end && !self) continue;
     ++objects;
     std::sort(begin, end, [axis](const Box& a, const Box& b) { return a.lo[axis] < b.lo[axis]; });
-    auto last = begin;  // met by the triangle before
+    auto last = begin;  // the partner that the triangle before met
     for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
       const std::uint32_t t = object.first_triangle + i;
       const Box& box = boxes[t];
@@ -251,7 +251,7 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep: the one along which boxes are shortest, relative to the extent of
+/// Chooses the axis of the sweep: that along which boxes are shortest, relative to the extent of
 /// all. It changes only if another axis is clearly better, since changing loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
@@ -287,7 +287,7 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   while (bits_[0] + bits_[1] > most) --bits_[bits_[0] < bits_[1] ? 1 : 0];
 }
 
-/// Puts the survivors in order_; those of the last call stay in its order.
+/// Puts the survivors into order_; those of the last call keep its order.
 void SweepPrune::renew_order(std::size_t triangles) {
   std::size_t kept = 0;
   for (const std::uint32_t t : order_) {
@@ -301,12 +301,12 @@ void SweepPrune::renew_order(std::size_t triangles) {
   }
 }
 
-/// The triangles of each column, in the order that was kept. Long boxes are in many, so columns
-/// are doubled in width until there are few entries for each triangle.
+/// Puts the triangles into their columns, in the order that was kept. Long boxes are in many
+/// columns, so columns are doubled in width until there are few entries per triangle.
 void SweepPrune::fill_columns(std::span<const Box> boxes) {
   constexpr std::uint64_t kEntries = 4;
   const auto [sweep, u, v] = axes_;
-  // Never decreases in x, so if two boxes overlap, the larger lower end is in a column of both.
+  // Monotone in x: if two boxes overlap, the column of the larger lower end holds both.
   const auto column = [this](double x, int k) {
     const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
     const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));

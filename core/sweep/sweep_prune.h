@@ -2,16 +2,16 @@
 // that culling by pixels is compared with.
 //
 // Source: Cohen, Lin, Manocha, Ponamgi, I-COLLIDE: An Interactive and Exact Collision Detection
-// System for Large-Scale Environments (I3D 1995), section 4: the ends of all boxes along each axis
-// stay in a sorted list between frames; where little moved, insertion sort takes linear time, and
-// where two ends of different boxes change places, the state of that pair changes. Below the
-// objects, where I-COLLIDE follows features of convex bodies, farcull takes triangles of any kind:
-// those of the objects that are left are swept along one axis, in columns across the other two, and
-// their order along it is kept as well.
+// System for Large-Scale Environments (I3D 1995), section 4. The ends of all boxes along each axis
+// stay in a sorted list between frames. If little moved, insertion sort takes linear time; if two
+// ends of different boxes change places, the state of that pair changes. Inside objects I-COLLIDE
+// follows features of convex bodies. farcull takes triangles of any kind instead: those of the
+// remaining objects are swept along one axis, in columns across the other two, and their order
+// along that axis is kept as well.
 //
-// Reliable: doubles are compared and nothing else, so no pair of closed boxes that overlap is lost.
-// The order that is kept between calls is a guess at the next one. No answer depends on it, only
-// the time taken (and the counts of swaps and sorts). Any two calls may be of any two scenes.
+// Reliable: only doubles are compared, so no pair of closed boxes that overlap is lost. The order
+// that is kept between calls is a guess at the next one. It changes no answer, only the time taken
+// (and the counts of swaps and sorts). Two calls may be about different scenes.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@
 
 namespace farcull {
 
-/// The pairs of overlapping boxes among those of a moving set, from frame to frame: the ends of all
-/// boxes along each axis stay in sorted lists.
+/// Finds the overlapping pairs of a set of moving boxes, from frame to frame. The ends of all boxes
+/// along each axis stay in sorted lists.
 class BoxSweep {
  public:
   /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,
@@ -33,11 +33,11 @@ class BoxSweep {
   /// call, takes the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
   const std::vector<TrianglePair>& update(std::span<const Box> boxes);
 
-  /// In the last call: how often two neighbours in a list changed places.
+  /// How often two neighbours in a list changed places in the last call.
   std::uint64_t swaps() const { return swaps_; }
-  /// In the last call: whether the lists were sorted from scratch.
+  /// True if the last call sorted the lists from scratch.
   bool sorted_from_scratch() const { return from_scratch_; }
-  /// The next call starts as the first one did.
+  /// Makes the next call start as the first one did.
   void forget();
 
  private:
@@ -51,21 +51,21 @@ class BoxSweep {
   bool sort_axis(int axis, std::span<const Box> boxes);
 
   std::vector<std::uint32_t> present_;  // indices of the boxes that are not empty, ascending
-  std::vector<End> ends_[3];            // of those, sorted by (value, side)
+  std::vector<End> ends_[3];            // their ends, sorted by (value, side)
   std::vector<Box> boxes_;              // of the last call
   std::vector<TrianglePair> pairs_;     // of the last call
-  std::vector<TrianglePair> appeared_;  // during a call: of the pairs, those that are new, and
-  std::vector<TrianglePair> vanished_;  // pairs that no longer overlap; possibly repeated
+  std::vector<TrianglePair> appeared_;  // during a call: pairs that are new, and
+  std::vector<TrianglePair> vanished_;  // pairs that no longer overlap; both may repeat
   std::uint64_t swaps_ = 0;
   bool from_scratch_ = false;
-  bool is_whole_ = false;  // all members are of the same boxes
+  bool is_whole_ = false;  // all members describe the same boxes
 };
 
-/// The survivors, in the units in which all methods are compared, and the work done.
+/// Counts of the survivors, in the units in which all methods are compared, and of the work done.
 struct SweepPruneCounts {
-  std::uint64_t objects = 0;         // of object_pairs, and `self` ones with two triangles or more
-  std::uint64_t object_pairs = 0;    // whose boxes overlap
-  std::uint64_t triangles = 0;       // live
+  std::uint64_t objects = 0;         // in object_pairs, or `self` with two triangles or more
+  std::uint64_t object_pairs = 0;    // pairs of objects whose boxes overlap
+  std::uint64_t triangles = 0;       // live: in a candidate pair
   std::uint64_t triangle_pairs = 0;  // candidates
   std::uint64_t swaps = 0;  // neighbours that changed places, in the lists of ends and of triangles
   std::uint64_t sorts = 0;  // lists sorted from scratch: 3 of objects, columns, all triangles
@@ -90,7 +90,7 @@ class SweepPrune {
   /// are then the pairs whose given boxes overlap. Throws std::logic_error if there are not as many
   /// boxes as triangles.
   SweepPruneResult find(const Scene& scene, std::span<const Box> boxes);
-  /// The next call starts as the first one did.
+  /// Makes the next call start as the first one did.
   void forget();
 
  private:
@@ -121,18 +121,18 @@ class SweepPrune {
 
   BoxSweep objects_;
   std::array<int, 3> axes_ = {0, 1, 2};  // the axis of the sweep of triangles, then the others
-  // The survivors, in the order along the first axis that was last sorted.
+  // The survivors of the last call, in the order along axes_[0] as it was last sorted.
   std::vector<std::uint32_t> order_;
 
-  // Values of the running call. Members so that no frame asks for the memory again.
+  // Values of the running call. They are members so that their memory is reused.
   std::vector<std::uint32_t> survivors_;  // triangles that may have candidates; ascending
   std::vector<std::uint32_t> groups_;     // of each triangle
   std::vector<std::uint8_t> marks_;       // per triangle: its Mark
-  std::array<double, 2> from_ = {0, 0};   // of the columns along their axes
-  std::array<double, 2> scale_ = {0, 0};  // 2^10 to the extent
+  std::array<double, 2> from_ = {0, 0};   // where columns begin along their axes
+  std::array<double, 2> scale_ = {0, 0};  // 2^10 / extent along these axes
   std::array<int, 2> bits_ = {0, 0};      // 2^bits_ columns along each of their axes
-  std::vector<Item> items_;               // of each in order_
-  std::vector<std::size_t> starts_;       // of each column in entries_
+  std::vector<Item> items_;               // one for each triangle in order_
+  std::vector<std::size_t> starts_;       // per column: its start in entries_
   std::vector<Item> entries_;             // of the columns, one after the other
 };
 

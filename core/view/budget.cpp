@@ -34,20 +34,20 @@ double Budget::radius() const {
 
 Budget budget_for(const RasterLimits& limits, int viewport) {
   const double half =
-      0.5 * viewport;  // M, the largest |coordinate| about the centre; W/2 of the viewport as well
+      0.5 * viewport;  // M: the largest |coordinate| about the centre, and half the viewport
   Budget b;
   b.sampling = kSqrt2 / 2;
-  // Corners rounded to the nearest float: kUnit / 2 of half, and less for the doubles before. On
-  // the CPU the edges of a proxy are compared with pixel centres in floats: 3.01 kUnit of half more
-  // (docs/budget.md, "The canvas on the CPU").
+  // Rounding a corner to the nearest float errs by kUnit / 2 of `half`, and the doubles before it
+  // by less. On the CPU the edges of a proxy are compared with pixel centres in floats: 3.01 kUnit
+  // of half more (docs/budget.md, "The canvas on the CPU").
   b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
-  // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to
-  // second order: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2
-  // (docs/budget.md, "double").
+  // A coordinate errs by e = kMaxDoubleError, the image plane by sqrt(2) e. The depth adds to the
+  // distance from the centre to second order only: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e +
+  // e^2 / (2 s) with s = sqrt(2)/2 (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
-  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with
-  // viewport/2 (1), each relative to M, and the sum with the viewport's centre (1), relative to M +
-  // viewport/2; 4 u for their products.
+  // docs/budget.md, "vertex". Errors in units of kUnit: product with 2/viewport (1), division by w
+  // (2.5) and product with viewport/2 (1), relative to M; sum with the viewport's centre (1),
+  // relative to M + viewport/2. The factor 1 + 4 kUnit covers the products of these errors.
   b.vertex =
       limits.exact_samples ? 0 : kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
   b.snap = limits.exact_samples ? 0 : kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);

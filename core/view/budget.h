@@ -1,5 +1,5 @@
-// The error budget: named terms, in pixels, whose sum the radius of a fattened primitive has to
-// exceed so that the reliability lemmas hold on a real rasterizer. Each term is derived in
+// The error budget: named terms in pixels. The radius of a fattened primitive has to exceed their
+// sum, so that the reliability lemmas hold on a real rasterizer. Each term is derived in
 // docs/budget.md, in the section of its name.
 #pragma once
 
@@ -11,20 +11,20 @@
 namespace farcull {
 
 struct BudgetTerm {
-  std::string name;  // also the section of docs/budget.md
+  std::string name;  // also that of its section in docs/budget.md
   double px;
 };
 
-/// All terms are bounds on a displacement in the plane or in space, square roots of the dimension
-/// included.
+/// Each term bounds the length of a displacement in the plane or in space, so the square root of
+/// the dimension is included.
 struct Budget {
-  double sampling = 0;  // a point of a pixel is this far from its centre, at most
-  double input = 0;     // proxy corners, double to float32
+  double sampling = 0;  // the largest distance of a point of a pixel from its centre
+  double input = 0;     // rounding of proxy corners from double to float32
   double double_ =
-      0;              // the affine map and the clipping, of a primitive at the limit of drawability
-  double vertex = 0;  // vertex stage, division by w = 1, viewport transform
+      0;              // the affine map and the clipping of a primitive that is just drawable
+  double vertex = 0;  // rounding of vertex stage, division by w = 1 and viewport transform
   double snap = 0;    // snapping of window coordinates
-  double offset = 0;  // the offset's own rounding: zero, since offsets round outward
+  double offset = 0;  // rounding of the offset: zero, since offsets round outward
 
   std::array<BudgetTerm, 6> terms() const;
   /// Strictly greater than the sum of the terms, rounded up.

@@ -1,5 +1,5 @@
-// Finds the places by a join of the objects' boxes; a triangle takes part if its box meets the box
-// of a partner of its object.
+// Finds the objects whose boxes overlap (partners) by a box join. A triangle takes part if its box
+// meets the box of a partner of its object.
 #include "core/view/regions.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Places in which a scene's objects can meet, by boxes alone, and the triangles that can take part.
+// Finds by boxes the places where a scene's objects can meet, and the triangles that can take part.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ struct Regions {
   std::vector<Box> triangle_boxes;       // per triangle of the scene
   std::vector<Box> object_boxes;         // per object
   std::vector<Box> places;               // where two objects' boxes overlap, one per pair
-  std::vector<std::uint32_t> triangles;  // ascending; those whose box meets the box of another
-                                         // object: all that can take part
+  std::vector<std::uint32_t> triangles;  // ascending: all that can take part, since their box meets
+                                         // the box of another object
 };
 
-/// Further views and finer offsets are left out if at most this many triangles are kept: the exact
-/// tests of these take less time than the upload and the readbacks of one view.
+/// Further views and finer offsets are left out if at most this many triangles are kept: to test
+/// these exactly takes less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// Below this many objects the level that asks each as a whole is left out: it draws everything
-/// twice, and of few objects that overlap one seldom hides all of another.
+/// Below this many objects none is asked as a whole: that level draws everything twice, and among
+/// few overlapping objects one seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
 /// A further round follows if the last one culled at least one triangle in this many. A round costs
 /// about as much as the exact tests of that many triangles, so it has to cull a good part of them
@@ -34,13 +34,13 @@ struct RegionRules {
 };
 
 /// With `self` the box of a marked object of two triangles or more is a region of its own, and all
-/// of its triangles take part. With `full` every triangle takes part; the regions, and so the
-/// views, are the same, except that the box of the scene is the region if there is no other.
+/// of its triangles take part. With `full` every triangle takes part. The regions, and so the
+/// views, stay the same, except that the box of the scene is the region if there is no other.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
-/// The regions that drawing needs to decide about these pairs: their triangles, and the places in
-/// which boxes of two overlap, one for each object that is the first one of a pair. Every common
-/// point of a pair is in one of the places.
+/// The regions that drawing needs to decide about these pairs. triangles: those of the pairs.
+/// places: one for each object that owns the first triangle of a pair; it contains the overlaps of
+/// the boxes of these pairs. So every common point of a pair is in one of the places.
 Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Windows are fitted around the images of boxes; triangles are clipped by Sutherland and Hodgman's
+// Fits windows around the images of boxes, and clips triangles by Sutherland and Hodgman's
 // algorithm against the six planes of a window's region.
 #include "core/view/view.h"
 
@@ -12,7 +12,7 @@
 namespace farcull {
 namespace {
 
-// Image axes for a depth direction: for a coordinate axis the two others, so that its map
+// Image axes for a depth direction. For a coordinate axis they are the other two, so that the map
 // multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
 Eigen::Matrix3d rows_for(const Vec3& depth) {
   Eigen::Matrix3d rows;
@@ -30,7 +30,7 @@ Eigen::Matrix3d rows_for(const Vec3& depth) {
   return rows;
 }
 
-// The bounds of a box under map * (x - origin), widened by the rounding error of that evaluation.
+// Bounds of the image of a box under map * (x - origin), widened by the error of that evaluation.
 Box image(const Eigen::Matrix3d& map, const Vec3& origin, const Box& box, double& error) {
   const Vec3 from = box.lo - origin;
   const Vec3 to = box.hi - origin;
@@ -115,7 +115,7 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // The subtraction is one correctly rounded operation, so its error is relative to |x - origin|
   // and not to |x|: scenes far from the world's origin lose nothing. Three products and two
   // additions follow; kMapRounding covers the roundings and the cross terms (docs/budget.md,
-  // "double"). Products that underflow err by at most 2^-1075 more, each.
+  // "double"). Each product that underflows errs by at most 2^-1075 more.
   const Vec3 d = x - window.origin;
   // The order of the sums is that of core/native/fatten-inl.h.
   PixelPoint out{{}, 0};
@@ -156,16 +156,16 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
                 .hi = {}};
   double error = 0;
 
-  // Centre the window on the image: for oblique views the centre of the box is not the centre of
-  // the union's image.
+  // Centre the window on the middle of the union's image. For oblique views the image of the box's
+  // centre lies elsewhere.
   const Box rough = image(view.rows, window.origin, regions, error);
   if (!std::isfinite(error)) return std::nullopt;
   const bool axis_aligned = (view.rows.array() == 0).count() == 6;
   if (!axis_aligned) window.origin += view.rows.transpose() * (0.5 * rough.lo + 0.5 * rough.hi);
 
-  // A region that is flat in the image still needs a pixel of positive size. Whatever the
-  // resolution, the pixel is one that the coordinates can resolve: the centre, a rounded double,
-  // then lies within 1/16 px of the middle, and the window within its size.
+  // A region that is flat in the image still needs a pixel of positive size. At any resolution, a
+  // pixel is large enough for the coordinates to resolve it. So the centre, a rounded double, lies
+  // within 1/16 px of the middle, and the window does not exceed its size.
   const Box unit = image(view.rows, window.origin, regions, error);
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
   const double extent = std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
@@ -177,7 +177,7 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   error = 0;
   const Box px = image(window.map, window.origin, regions, error);
   if (!(error <= kMaxDoubleError)) return std::nullopt;
-  // The margin's own rounding: relative to the bounds it is inside their error, else below 2^-40.
+  // These sums are rounded: relative to the bounds this is within their error, else below 2^-40.
   window.lo = px.lo.array() - (1 + 0x1p-40);
   window.hi = px.hi.array() + (1 + 0x1p-40);
   const auto side = [&](int i) {
@@ -192,8 +192,8 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
 namespace {
 
 // Keeps the part of `in` with sign * p[axis] <= sign * plane. False: `out` has no room for it. A
-// convex polygon gains at most one corner, but rounding leaves a needle's corners on either side of
-// a plane that it lies along, and every change of sides is a corner more.
+// convex polygon gains at most one corner. But rounding can put the corners of a needle along the
+// plane on either side of it, and every change of sides adds a corner.
 bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign) {
   const int room = static_cast<int>(out.corners.size());
   out.count = 0;
@@ -205,7 +205,7 @@ bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign
     if (out.count + a_inside + (a_inside != b_inside) > room) return false;
     if (a_inside) out.corners[out.count++] = a;
     if (a_inside != b_inside) {
-      // From the inner end, so that both neighbours of an edge would compute the same point.
+      // Computed from the inner end, so both neighbours of an edge would get the same point.
       const Vec3& from = a_inside ? a : b;
       const Vec3& to = a_inside ? b : a;
       const double t = (plane - from[axis]) / (to[axis] - from[axis]);
@@ -250,9 +250,9 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
     }
     if (patch.count == 0) break;
   }
-  // Each cut displaces its new corners by at most kCutRounding * largest in each axis: t carries
-  // three roundings, times |to - from| <= 2 * largest, then the difference, the product and the sum
-  // round once more (docs/budget.md, "Clipping and the fan").
+  // Each cut displaces its new corners by at most kCutRounding * largest in each axis. t carries
+  // three roundings, times |to - from| <= 2 * largest; then the difference, the product and the sum
+  // round once each (docs/budget.md, "Clipping and the fan").
   patch.error += patch.cuts * kCutRounding * largest;
   return patch;
 }

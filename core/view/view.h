@@ -22,23 +22,23 @@ struct RasterLimits {
       0;  // GL_SUBPIXEL_BITS: window coordinates snap by at most 2^-subpixel_bits px per axis (A2)
   int depth_bits = 0;      // 24 fixed point, 32 float
   int max_resolution = 0;  // largest Window::width and height
-  /// Samples lie at pixel centres, corners are not moved, and floats are those of IEEE 754
+  /// True if samples lie at pixel centres, corners are not moved, and floats are those of IEEE 754
   /// (core/native/canvas.h).
   bool exact_samples = false;
 };
 
-/// Pixels of the render target around the window on each side; its corner holds the control items
+/// Pixels of the render target around the window on each side. Its corner holds the control items
 /// (canvas.h).
 constexpr int kBorder = 2;
 
-/// The viewport side that serves a window side of `window` px: the window, its border, and the next
-/// power of two, so that the scale to normalized device coordinates is exact.
+/// Viewport side for a window side of `window` px: the window and its border, rounded up to a power
+/// of two, so that the scale to normalized device coordinates is exact.
 inline int viewport_side(int window) {
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(window + 2 * kBorder)));
 }
 
-/// A direction to look along. rows: image x, image y, depth; unit length, mutually orthogonal up to
-/// rounding.
+/// A direction to look along. rows: the axes image x, image y and depth, of unit length and
+/// mutually orthogonal up to rounding.
 struct View {
   std::string name;
   Eigen::Matrix3d rows;
@@ -63,7 +63,7 @@ struct Window {
   double pixel_size;    // world units
   int width;            // px, even
   int height;           // px, even
-  Vec3 lo;              // contains the region in pixel space, one pixel of margin included
+  Vec3 lo;              // lo, hi: contain the region in pixel space, with one pixel of margin
   Vec3 hi;
 };
 
@@ -74,14 +74,14 @@ struct PixelPoint {
   double error;  // px
 };
 PixelPoint to_pixel(const Window& window, const Vec3& x);
-/// The largest error (px) of a point of the box; infinite where one may overflow.
+/// The largest error (px) of a point of the box; infinite if a point may overflow.
 double pixel_error(const Window& window, const Box& box);
 
 /// Contains the image of the box in the window's pixel space.
 Box pixel_box(const Window& window, const Box& box);
 
-/// Errors of doubles on the way of a point from the world to the window. docs/budget.md, "double",
-/// derives the constants; tests/proofs proves them.
+/// Rounding errors of a point on its way from the world to the window, in double. docs/budget.md,
+/// "double", derives the constants; tests/proofs proves them.
 /// Error of a mapped coordinate, relative to the computed sum of the magnitudes of its three terms.
 constexpr double kMapRounding = 8 * 0x1p-53;
 /// Added for products that underflow (px).
@@ -91,18 +91,18 @@ constexpr double kCutRounding = 16 * 0x1p-53;
 /// The largest rounding error (px) that a drawable primitive may carry from double arithmetic.
 constexpr double kMaxDoubleError = 0x1p-10;
 
-/// The window of `resolution` pixels (>= 1) along the larger image side of the union of `regions`
-/// (non-empty), one more pixel around it: width, height <= resolution + 5. Square pixels; fewer of
-/// them where they would be smaller than the coordinates can resolve, or than 2^-20 of the depth in
-/// a window of this resolution. Empty where pixel space cannot resolve the region: the extent or a
-/// corner's image is not finite, or its error is beyond kMaxDoubleError; nothing may be culled in
-/// such a view.
+/// The window around the image of the union of `regions` (non-empty), with one more pixel on each
+/// side. The larger side of the image has `resolution` (>= 1) square pixels; fewer if they would be
+/// smaller than the coordinates can resolve, or than 2^-20 / resolution of the depth. width, height
+/// <= resolution + 5. Empty if pixel space cannot resolve the region: the extent or a corner's
+/// image is not finite, or its error is beyond kMaxDoubleError. Then nothing may be culled in this
+/// view.
 std::optional<Window> fit_window(const View& view, std::span<const Box> regions, int resolution);
 
-/// A polygon in pixel space, so that no large coordinate ever reaches the rasterizer (GL clips in
-/// float32, before snapping: edges would move by many pixels): a triangle clipped by up to six
-/// planes, convex and flat up to rounding. For every point of the exact triangle's image in the
-/// region without its margin of one pixel, a triangle of the fan about the first corner has a point
+/// A triangle in pixel space, clipped by up to six planes: a polygon, convex and flat up to
+/// rounding. It keeps large coordinates from the rasterizer. (GL clips in float32, before snapping:
+/// edges would move by many pixels.) It is drawn as a fan about the first corner. For each point of
+/// the exact triangle's image in the region without its margin of one pixel, the fan has a point
 /// within `error` px in each axis (docs/budget.md, "Clipping and the fan").
 struct Patch {
   std::array<Vec3, 9> corners;

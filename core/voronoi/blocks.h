@@ -23,7 +23,7 @@ namespace farcull::voronoi {
 inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Cells from .. to - 1 along each axis, and where its triangles lie in the list of its level.
+// The cells from .. to - 1 along each axis, and the place of its triangles in the level's list.
 struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
@@ -76,7 +76,7 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   }
 }
 
-// An object near a point: the least bounds of its triangles, and its least computed distance.
+// An object near a point: the least bounds and the least computed distance of its triangles.
 struct Near {
   std::uint32_t object;
   float computed, lower, upper;

@@ -50,7 +50,7 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
   if (!(most > 0)) return out;
   out.cell = up(most / resolution);
   for (std::size_t k = 0; k < 3; ++k) {
-    // The quotient is rounded twice, so the factor makes up for more than that.
+    // The factor makes up for more than the two roundings of the quotient.
     const double sides = extent[static_cast<int>(k)] / out.cell * (1 + 0x1p-50);
     out.cells[k] = std::min(resolution, static_cast<int>(sides) + 1);
   }

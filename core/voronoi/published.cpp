@@ -13,8 +13,8 @@ namespace {
 // both are far away, unlike a comparison of distances from the middle of the block.
 //
 // Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
-// square of the distance from v is less than that from T everywhere if one of two bounds of their
-// difference is below 0.
+// square of the distance from v is less than that from T everywhere if one of two upper bounds of
+// their difference is below 0.
 //
 // Box: if [lo, hi] is the box of T, the difference is at most a sum over the axes of
 // (c - v)^2 - |c - [lo, hi]|^2. Each term is convex in c: its slope is 2 (lo - v) up to lo, then
@@ -72,7 +72,7 @@ double by_corners(const Exactly& v, const Corners& t, const Exactly& half) {
 
 }  // namespace domination
 
-// The corner of the triangles `ids` that is nearest to the centre. Precondition: there are some.
+// The corner of the triangles `ids` that is nearest to the centre. Precondition: ids is not empty.
 Exactly nearest_corner(std::span<const std::uint32_t> ids,
                        const std::vector<GridTriangle>& triangles, const BlockBox& block) {
   Exactly out{};
@@ -91,8 +91,8 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
 
 // True only if at every point of the block the exact and the computed distance from `corner`
 // (nearest_corner() of an object) are less than those from all triangles `ids` of another object.
-// The squares then differ by at least the sum of two distances, each at most 1.74 N, times the
-// errors of both. The double arithmetic here errs by far less.
+// The margin for the squares is the sum of two distances, each at most 1.74 N, times the errors of
+// both. The double arithmetic here errs by far less.
 bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
                const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
   const double margin =
@@ -115,7 +115,7 @@ class Published {
 
   Found nothing() const { return {}; }
 
-  // Computes the distances of one cell of the block. The bounds for its other cells follow.
+  // Computes the distances from one cell of the block, which also bound those from its other cells.
   void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
             Found& found, Level& below) const {
     GridPoint centre;
@@ -176,8 +176,8 @@ class Published {
   };
 
   // The objects that may be among the nearest two of a cell of the block, ascending. Empty if every
-  // two that a cell may name have been named. slack: by how much more one distance may change than
-  // another, from the cell at the centre to any other.
+  // two objects that a cell may name together have already been named. slack: from the cell at the
+  // centre to any other, the difference of two distances changes by at most this.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();
@@ -190,7 +190,7 @@ class Published {
     for (std::size_t i = 0; i < candidates.size() && !adds; ++i) {
       for (std::size_t j = i + 1; j < candidates.size() && !adds; ++j) {
         const std::uint32_t a = candidates[i].near->object, b = candidates[j].near->object;
-        // They can be the nearest two only if both are as near as any third one may be.
+        // They can be the nearest two only if neither is certainly farther than a third one.
         const auto third = std::find_if(least.begin(), least.end(), [&](const auto& upper) {
           return upper.second != a && upper.second != b;
         });
@@ -241,7 +241,7 @@ class Published {
     }
   }
 
-  static constexpr std::size_t kMostCompared = 64;  // candidates of a block
+  static constexpr std::size_t kMostCompared = 64;  // with more candidates, none are compared
 
   const std::vector<GridTriangle>& triangles_;
   int longest_;

@@ -1,7 +1,7 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all others. An end is about
-// as near to the cell as the nearest triangle. And its distance is at most half the distance that
-// is searched for, of which every point of space gives an upper bound.
+// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all other triangles. An end
+// is about as near to the cell as the nearest triangle is. And it is at most half the searched
+// distance from the middle; every point of space gives an upper bound of that distance.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -54,7 +54,7 @@ class Reliable {
     cells_.append(found.cells);
   }
 
-  // The pairs of the cells that are left, now that all upper bounds are known.
+  // The pairs that remain in the cells, now that all upper bounds are known.
   std::vector<TrianglePair> pairs(const VoronoiOptions& options, VoronoiCounts& counts) const {
     const std::size_t lists = chunks_for(cells_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
@@ -99,7 +99,7 @@ class Reliable {
     return block.is_cell() ? half * widening_ : half;
   }
 
-  // The distance of two objects is at most the length of the way through the point.
+  // The distance of two objects is at most the sum of their distances from the point.
   static void note_upper(const Distances& distances, std::vector<float>& upper) {
     const auto least = distances.least_upper<2>();
     for (const Near& near : distances.objects()) {

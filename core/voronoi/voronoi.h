@@ -4,16 +4,16 @@
 // Deformable Models using Discrete Voronoi Diagrams, SIGGRAPH 2006), after Hoff, Keyser, Lin,
 // Manocha, Culver (Fast Computation of Generalized Voronoi Diagrams Using Graphics Hardware,
 // SIGGRAPH 1999). A grid of cubes covers the scene, and each cell knows the two objects that are
-// nearest to its centre, with distances in float. Two objects are potential neighbours where some
-// cell names both. A cell that lies between the nearest points of two objects may have its centre
-// nearer to a third one, so this loses neighbours.
+// nearest to its centre, with distances in float. Two objects are potential neighbours if some cell
+// names both. A cell that lies between the nearest points of two objects may have its centre nearer
+// to a third one, so this loses neighbours.
 //
-// The reliable form beside it keeps in each cell every triangle that may hold an end of a shortest
-// segment between two objects whose middle lies in the cell (theorem V9). It loses none.
-// docs/voronoi.md has definitions and proofs.
+// The reliable form loses none. Consider the shortest segments between two objects whose middle
+// lies in a cell: the cell keeps every triangle that may hold an end of such a segment (theorem
+// V9). docs/voronoi.md has definitions and proofs.
 //
-// Both walk down a tree of blocks of cells, where the published form fills slice after slice. A
-// block is left out if no cell in it can add to the answer.
+// Both forms walk down a tree of blocks of cells (the papers fill slice after slice). A block is
+// left out if no cell in it can add to the answer.
 #pragma once
 
 #include <algorithm>
@@ -28,10 +28,10 @@
 namespace farcull {
 
 // The grid of the discrete Voronoi diagram, triangles in its units, and the distance of a point
-// from a triangle in float, between two bounds of the exact one.
+// from a triangle: in float, with two bounds of the exact one.
 //
-// A coordinate x of the scene is x 2^exponent - lo, over `cell`, in units of the grid: the cells
-// are the unit cubes [i, i + 1]. The scaling by a power of two keeps all finite doubles in range.
+// In units of the grid, a coordinate x of the scene is (x 2^exponent - lo) / cell. The cells are
+// the unit cubes [i, i + 1]. The scaling by a power of two keeps all finite doubles in range.
 //
 // Let N be at least every coordinate of the point and of the triangle, none of which is negative,
 // and u = 2^-24. All roundings are to nearest.
@@ -47,10 +47,10 @@ namespace farcull {
 // computed one + 17.2 uN.
 //
 // For a lower bound, no point of the triangle is nearer to c along n than its corners are: the
-// distance is at least the least of n . (c - q_i) / |n|. With g the computed product, its relative
-// error is 4.1 u of |n| |c - q_i|: 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of
-// the quotient, which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN: 15.5 uN. Products below
-// the normal floats err by 2^-149 each, far less than uN |n| where |n| is at least kShortest.
+// distance is at least the least of n . (c - q_i) / |n|. The computed product is off by 4.1 u of
+// |n| |c - q_i|, which is 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of the
+// quotient, which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN: 15.5 uN. Products below the
+// normal floats err by 2^-149 each, far less than uN |n| where |n| is at least kShortest.
 //
 // So voronoi_error() = 32 uN bounds both, with room for the roundings of a few sums of distances
 // (docs/voronoi.md, lemma V6).
@@ -165,17 +165,17 @@ inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle
 
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
-  /// Half diagonals of a cell by which the reliable form widens it, 0 to 1. The proof asks for 1;
-  /// less only serves to show that it is needed.
+  /// The reliable form widens each cell by this many of its half diagonals, 0 to 1. The proof needs
+  /// 1; less only serves to show that it is needed.
   double widening = 1;
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
-  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // of triangles, that the reliable form keeps
+  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // the reliable form keeps at most these
 };
 constexpr int kVoronoiLargest = 1 << 14;
 
 struct VoronoiCounts {
   std::array<int, 3> cells{};   // of the grid
-  std::uint64_t blocks = 0;     // of cells, single cells among them, whose distances were computed
+  std::uint64_t blocks = 0;     // blocks (also of one cell) whose distances were computed
   std::uint64_t distances = 0;  // of a point and a triangle
 };
 
@@ -201,8 +201,8 @@ struct VoronoiNeighbours {
 VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
                                      const Progress& progress = {});
 
-/// The reliable form. Preconditions and errors as above. Throws Error where it would keep more
-/// pairs than most_pairs and some millions: a cell then contains too much of the scene.
+/// The reliable form. Preconditions and errors as above. Throws Error if it would keep more pairs
+/// than most_pairs plus some millions: then a cell contains too much of the scene.
 VoronoiNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
                                       const Progress& progress = {});
 

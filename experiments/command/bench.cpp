@@ -113,7 +113,7 @@ BenchOptions BenchCommand::parse() const {
   options.device = device_of(device_);
   options.self = self_;
   options.seed = seed_of(scene_.names);
-  if (!distances_ && !poses_) validate(options);  // these have other peers
+  if (!distances_ && !poses_) validate(options);  // both have peers of their own
   if (!is_cpu(options.device)) {
     RunOptions run;
     run.device = options.device;

@@ -141,7 +141,7 @@ class FrameChecks {
     if (table_) print(names);
   }
 
-  // row: of the table.
+  // row: the frame's row of the table.
   void add(long frame, const Scene& scene, const SceneCheck& check, std::string row) {
     const Verdict verdict = check.result.verdict;
     verdicts_.add(frame, verdict, check.result.meeting.size());

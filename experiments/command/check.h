@@ -23,14 +23,14 @@ std::string clean_lines(const std::string& text);
 /// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
 using TakeWord = std::function<void(std::uint64_t)>;
 
-/// Asks the proved checker as well. Throws Error unless it proves just what this one has proved.
-/// status: that of this checker. words: gives the words of the scene.
+/// Asks the proved checker as well. Throws Error unless both checkers agree whether this is proved.
+/// status: the result of this checker. words: gives the words of the scene.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
-/// Checks certificates of tiles one after the other, each with the triangles that meet its tile:
-/// the memory is that of the largest part of the scene and of one tile. whole: they have to be
-/// those of all tiles, in order. Prints the verdict and returns the exit status, as run_check().
+/// Checks certificates of tiles in turn, each with the triangles that meet its tile. So the memory
+/// is that of the largest part of the scene and of one tile. whole: these must be all tiles, in
+/// order. Prints the verdict and returns the exit status, as run_check().
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
 // ---- the checker that Coq has proved (verify/certificate/coq), a program of its own
@@ -41,10 +41,10 @@ void give_coordinates(const Scene& scene, const TakeWord& take);
 
 /// Gives the certificates and the scene to `farcull-check-verified`, which is in the folder of this
 /// program or in the PATH. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
-/// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order. It
-/// prints its verdict on standard output, after the SHA-256 of the files as this program has them:
-/// both checkers print the same. words: gives the words of the scene; they go to the checker
-/// through a file in memory. Throws Error if it cannot be run.
+/// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order.
+/// Prints on standard output the SHA-256 of the files as this program has them, then the output of
+/// the checker: the same SHA-256, and its verdict. words: gives the words of the scene; they go to
+/// the checker through a file in memory. Throws Error if it cannot be run.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words);
 

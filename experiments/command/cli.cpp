@@ -1,5 +1,5 @@
 // Declares the commands, parses the command line and dispatches, and prints help.
-// Each other command has a file of its own.
+// Each command but `help` has a file of its own.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -112,7 +112,7 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-// Whether the word is at most two letters off: one changed, added or left out counts once.
+// Whether the word is at most two letters off: each letter changed, added or left out counts.
 bool is_misspelt(const std::string& word, const std::string& name) {
   std::vector<std::size_t> row(name.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -196,8 +196,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   return Error(name, text, help);
 }
 
-// The error with a remedy that names the option by which the words sent something to standard
-// output.
+// If the error is about standard output, its remedy names the option that sent something there.
 Error with_option(const Error& error, int argc, char** argv) {
   constexpr std::array kOutputs = {"--json", "--csv", "--pairs", "--certificate", "-o", "--output"};
   if (error.where != "standard output") return error;

@@ -308,7 +308,7 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
   };
   if (arguments.empty()) add_packaged();
   for (const std::string& argument : arguments) {
-    if (argument == "-") continue;  // no file
+    if (argument == "-") continue;  // standard input
     if (is_builtin_scene(argument)) {
       if (needs_meshes(argument)) add_packaged();
     } else if (is_scene_file(argument)) {

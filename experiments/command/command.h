@@ -71,7 +71,7 @@ bool given(const CLI::App& command);
 /// An option as the help shows it, or an argument if `names` is empty.
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
-  std::string type;  // stands for the value; empty for a flag. The name of an argument
+  std::string type;  // the word for the value, or an argument's name; empty for a flag
   bool flag = false;
 };
 /// A declared command with all its subcommands; completion is made from it.
@@ -153,7 +153,7 @@ struct NamedFile {
   std::string path;  // "-": standard output
 };
 
-/// The files of a path: with a range, one per frame if the path has a number; else the path itself.
+/// The file of a path; with a range and a place for a number in the path, one file per frame.
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
@@ -176,8 +176,8 @@ void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> 
 /// Writes text for people to standard output, with its long lines wrapped (text_table.h).
 void print(const std::string& text);
 
-/// Prints a failure on standard error: one paragraph, without the control characters that a path
-/// may hold, whose further lines begin with nine blanks.
+/// Prints a failure on standard error: one paragraph, indented by nine blanks from its second line
+/// on. Replaces control characters, which paths may hold.
 void complain(const std::string& message);
 
 /// Prints what readers passed over (take_reading_notes()) on standard error, each line once.
@@ -186,14 +186,14 @@ void say_notes();
 /// load_scene() and say_notes().
 Scene read_scene(const SceneArguments& arguments);
 
-/// Prints that a guarantee is broken likewise, in red on a terminal.
+/// Likewise prints that a guarantee is broken, in red on a terminal.
 void complain_broken(const std::string& message);
 
-/// Throws Error if there is nothing to test: 0 pairs would be taken for a scene without collisions.
-/// command: the one that tests an object against itself.
+/// Throws Error if there is nothing to test, since 0 pairs would look like a scene without
+/// collisions. command: the one that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
 /// Throws Error if the scene has two objects or more, tests none against itself, and all pairs of
-/// objects are ignored, by these (as in_order() gives them) or by the scene.
+/// objects are ignored, by `ignored` (as in_order() gives it) or by the scene.
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// The command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const SceneArguments& scene);
@@ -300,7 +300,7 @@ inline constexpr const char* kSceneHelp =
     "so on), each an object;\n"
     "or one scene file (.json: farcull help scene-file); or\n"
     "one built-in scene (farcull scenes lists them)";
-/// The rows of the argument that names a scene, and of how its meshes are read.
+/// The argument that names a scene, and the options for reading its meshes.
 Rows scene_rows(SceneArguments& scene, const char* name = "SCENE",
                 const std::string& help = kSceneHelp, Need need = Need::must);
 inline constexpr const char* kNoRiskHelp =
@@ -326,9 +326,9 @@ struct CheckArguments {
 };
 
 /// Prints the verdict; with frames one verdict per frame and one for all, and likewise with tiles.
-/// Returns 0 if proved, and the given list is the proved one; 1 if refuted or not proved. Throws
-/// Error if the certificate, the scene or the list cannot be read, and if the list has frames but
-/// the arguments name none, or the reverse.
+/// Returns 0 if proved, and if a given list is the proved one; else 1. Throws Error if the
+/// certificate, the scene or the list cannot be read, and if the list has frames but the arguments
+/// name none, or the reverse.
 int run_check(const CheckArguments& arguments);
 
 // ---- `farcull picture` ----
@@ -357,15 +357,16 @@ class PictureCommand {
 // What the program tells its user besides an answer (hints.cpp). Each function looks at the meshes
 // anew.
 
-/// The objects of which two triangles collide with each other, ascending.
+/// The objects that collide with themselves (two of their triangles do), ascending.
 std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
 
-/// Lines about these objects that are not closed, and that --weld would close: at which tolerance,
-/// and where; at most three. Empty for objects of more than 4 million triangles together.
+/// A line for each of these objects that is not closed but would be with --weld: where, and at
+/// which tolerance. At most three lines; none if the objects have more than 4 million triangles in
+/// all.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
 
 /// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
-/// surfaces do not meet. Empty if there are none, or more than a million pairs of boxes to look at.
+/// surfaces do not meet. Empty if there are none, or if more than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record);
 
 }  // namespace farcull

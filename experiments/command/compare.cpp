@@ -85,7 +85,7 @@ void CompareCommand::require_meaning() const {
     require(option_word(name), run_option(name).serves);
 }
 
-// Becomes the Python program that draws the figure of this CSV, and ends with the status.
+// Replaces this process by the Python program that draws this CSV and exits with `status`.
 void draw(const std::string& csv, const std::string& path, int status) {
   std::FILE* const rows = std::tmpfile();
   if (rows == nullptr || std::fwrite(csv.data(), 1, csv.size(), rows) != csv.size() ||

@@ -230,7 +230,7 @@ int DistanceCommand::run() const {
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
-// The objects of answers that may have another object inside, but are not closed.
+// Objects that are not closed, so an answer could not say whether another object is inside.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {

@@ -50,7 +50,7 @@ std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& obj
 }
 
 std::string nested_line(const Scene& scene, const Record& record) {
-  // Pairs of objects, of which the box of the first lies in the box of the second.
+  // Pairs of objects whose boxes overlap. Below, one box has to lie in the other one.
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
   std::iota(all.begin(), all.end(), 0u);

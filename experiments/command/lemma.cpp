@@ -117,7 +117,7 @@ struct LemmaCanvas {
   const GlInfo* device() { return name == "gl" ? &session->context().info() : nullptr; }
 };
 
-// displaced: errors as large as those of doubles are added to what is drawn. For canvases that add
+// displaced: adds errors as large as those of doubles to what is drawn. Only for canvases that have
 // no errors of their own, which would hide these.
 Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
                bool displaced, const Fattener& fattener, const Progress& progress) {

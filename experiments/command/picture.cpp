@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Reads "900x760", rounded up to even numbers: a window has its middle between two pixels.
+// Reads "900x760". Rounds up to even numbers, since the middle of a window is between two pixels.
 void parse_size(const std::string& text, int& width, int& height) {
   std::string_view rest = text;
   const std::optional<int> wide = take_number<int>(rest);

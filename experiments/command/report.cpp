@@ -69,7 +69,7 @@ std::string store_of(const std::string& folder) {
   throw Error(folder, "holds no results.sqlite", remedy);
 }
 
-// The report replaces an earlier one with everything in its folder, so the store must be elsewhere.
+// The report replaces everything in its folder, so the store must be elsewhere.
 void check_store_outside(const std::string& folder) {
   std::error_code error;
   const auto place = [&](const std::string& path) {

@@ -70,8 +70,8 @@ std::string sha256_of_file(const std::string& path) {
   return hash.digest();
 }
 
-// Whether the output of the checker is about these files, and its verdict fits its exit status. So
-// another program in its place, or other files, prove nothing.
+// Throws Error unless the checker's output is about these files, and its verdict fits its exit
+// status. So another program in its place, or other files, prove nothing.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
                   const std::string& scene, bool proved) {
   std::istringstream lines(said);
@@ -134,7 +134,7 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   for (std::string& word : given) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  // Lists of the checker are as long as objects have triangles, and some of its functions recur.
+  // The checker has a list of each object's triangles, on which some of its functions recurse.
   rlimit stack{};
   const bool known = ::getrlimit(RLIMIT_STACK, &stack) == 0;
   const rlimit largest{stack.rlim_max, stack.rlim_max};

@@ -32,7 +32,7 @@ Vec3 arm(RandomDraws& draws, double bits) {
   return draws.whole_point(std::ldexp(1, static_cast<int>(bits) - 3));
 }
 
-/// Moves b by a unit one time in three, and scales the coordinates by 2^-bits, below 1.
+/// Moves b by a unit one time in three, and scales all coordinates by 2^-bits, so they are below 1.
 MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
     const Vec3 step = draws.whole_point(1);
@@ -138,8 +138,8 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Two triangles of one plane. b is then moved by that many of the shortest steps: out of the
-/// plane, or in the plane across the edge at which both touch.
+/// Two triangles of one plane. b is then moved by `steps` of the shortest steps: out of the plane,
+/// or in the plane across the edge at which both touch.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);

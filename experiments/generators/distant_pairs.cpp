@@ -9,7 +9,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// 2^-k and -2^-k for the k below, and 0: first, or before each k with zero_each.
+/// 2^-k and -2^-k for each k below. 0 comes first; with zero_each, before each k.
 std::vector<double> signed_powers(bool zero_each) {
   std::vector<double> out;
   for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
@@ -168,7 +168,7 @@ Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double ext
   return with_point(draws.below(3), at, u, v);
 }
 
-/// The step that moves b: up to one unit along each axis every third time, else none.
+/// The step by which b moves: one time in three up to a unit along each axis, else none.
 Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);

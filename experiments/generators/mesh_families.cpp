@@ -1,7 +1,7 @@
 // Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
 // small triangles at a ground. Others have one object that is tested against itself: cloth, ropes
-// and folds. Motions have a member for each frame, and loads have more contacts than fixed buffers
-// hold.
+// and folds. Motions have a member for each frame. Bars and hub have more contacts than fixed
+// buffers hold.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -34,7 +34,7 @@ double folded(int i, int width) {
   return layer % 2 == 0 ? within : width - within;
 }
 
-/// A cloth in four layers with the gap between them, and noise of half a gap.
+/// A cloth folded into four layers, `gap` apart, with noise of about half a gap.
 Objects cloth(RandomDraws& draws, double gap, int cells) {
   const int width = cells / 2;
   return {sheet(4 * width, cells, [&](int i, int j) {
@@ -279,9 +279,9 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-// Motions. All frames are made with the same draws; `now` is what moves. The scene leans, so that
-// no face is parallel to an axis of the coordinates. Coordinates keep few bits, so that contacts
-// stay exact.
+// Motions. All frames are made with the same draws; `now` is what moves. All but cogs lean, so that
+// no face is parallel to an axis of the coordinates, and have coordinates of few bits, so that
+// contacts stay exact.
 
 /// A box of 12 triangles, oriented outwards.
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
@@ -302,8 +302,8 @@ Objects leaning(RandomDraws& draws, Objects objects) {
   return objects;
 }
 
-/// A plate of 2^-10 at x = `now`, and a wall of 1/8 around x = 0. Inside the wall the plate meets
-/// no triangle of it.
+/// A wall 1/8 thick around x = 0, and a plate 2^-10 thick at x = `now`. Inside the wall the plate
+/// meets none of the wall's triangles.
 Objects tunnel(RandomDraws& draws, double now, int) {
   return leaning(draws, {box_object(Vec3(-0x1p-4, -4, -4), Vec3(0x1p-4, 4, 4)),
                          box_object(Vec3(now, -1, -1), Vec3(now + 0x1p-10, 1, 1))});
@@ -334,8 +334,8 @@ Objects thread(RandomDraws& draws, double now, int frame) {
   return leaning(draws, {{std::move(ring.vertices), std::move(ring.triangles)}, std::move(rod)});
 }
 
-/// Two cogs, mirror images of each other: both turn by `now` 32ths of a quarter turn, and their
-/// teeth meet at x = 1 tip to tip or not at all. Rounding decides by how much.
+/// Two cogs, mirror images of each other: both turn by `now` 32ths of a quarter turn. At x = 1
+/// their teeth meet tip to tip or not at all; how deep depends on rounding.
 Objects cogs(RandomDraws&, double now, int) {
   const Vec3 turn = on_circle(static_cast<int>(now), 32);
   SuiteObject cog;
@@ -390,7 +390,7 @@ Objects hub(RandomDraws& draws, double, int n) {
   return out;
 }
 
-/// A frame for each value of what moves.
+/// A motion with a frame for each of the values.
 MeshFamily motion(const char* name, decltype(MeshFamily::make) make,
                   const std::vector<double>& values) {
   MeshFamily out{.name = name, .make = make, .members = {}};

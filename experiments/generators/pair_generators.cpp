@@ -174,7 +174,7 @@ DrawnPair needles(RandomDraws& random) {
   return {needle(centre), needle(centre + random.below(3) * width * random.point())};
 }
 
-/// A point or segment, and a point, segment or triangle; half of the time both hold one common
+/// A point or segment, and a point, segment or triangle. Half of the time both contain the same
 /// point.
 DrawnPair degenerate(RandomDraws& random) {
   const auto shape = [&](int dimension, const Vec3& through) -> Corners {
@@ -220,8 +220,8 @@ DrawnPair denormals(RandomDraws& random) {
   return pair;
 }
 
-/// A pair moved away from the origin by about 1e9 of its diagonals: rounding leaves some 23 bits of
-/// the shape.
+/// A pair moved away from the origin by about 1e9 times its size, so that rounding leaves about 23
+/// bits of its shape.
 DrawnPair far_away(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;

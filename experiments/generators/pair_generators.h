@@ -80,7 +80,7 @@ struct Frame {
 
 /// The axes of the coordinates, in any order and direction.
 Frame straight_frame(RandomDraws& draws);
-/// The rotation of a quaternion with parts -1, 0 and 1, times 3: its entries are 1 or 2 in size. No
+/// The rotation of a quaternion with parts -1, 0 and 1, times 3: its entries are 1, 2, -1 or -2. No
 /// axis is along an axis of the coordinates.
 Frame leaning_frame(RandomDraws& draws);
 /// The rotation of a quaternion with whole parts from -9 to 9; its entries are rounded.
@@ -91,11 +91,11 @@ struct PairGenerator {
   DrawnPair (*make)(RandomDraws&);
 };
 
-/// Each generator makes pairs that meet and pairs that do not: at least one in fifty of either.
+/// Each generator makes pairs that meet and pairs that do not, at least one in fifty of each kind.
 const std::vector<PairGenerator>& pair_generators();
 
 // The families of a suite (docs/suite.md), of pairs and of meshes. Each makes pairs that meet and
-// pairs that do not. Most have a number, the parameter, that goes to an extreme.
+// pairs that do not. Most have a parameter: a number that goes to an extreme.
 
 struct MadePair : DrawnPair {
   bool neighbours = false;  // corners at equal positions are one vertex of a mesh
@@ -104,8 +104,8 @@ struct MadePair : DrawnPair {
 struct PairFamily {
   std::string name;
   std::string description;     // one line
-  std::string parameter;       // the meaning of its number; "" for none
-  std::vector<double> values;  // of the number; pair i has the i-th, counted cyclically
+  std::string parameter;       // what the parameter means; "" for none
+  std::vector<double> values;  // of the parameter; pair i has the i-th, cyclically
   MadePair (*make)(RandomDraws& draws, double parameter);
 };
 
@@ -135,8 +135,8 @@ struct MeshFamily {
     int detail = 0;
   };
   std::vector<Member> members;
-  std::size_t small = 0;  // the first members that a small suite also has
-  bool motion = false;    // the members are frames: equal triangles, whose vertices move
+  std::size_t small = 0;  // a small suite has this many of the first members
+  bool motion = false;    // the members are frames: the same triangles, but vertices move
 };
 
 /// In the order of the names.

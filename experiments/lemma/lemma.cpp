@@ -25,8 +25,8 @@ constexpr double kUsualDepth = 128;  // LemmaSettings::depth
 
 using Random = RandomNumbers;
 
-// A triangle in pixel space, with the centre of its cell as the origin, which is a pixel corner;
-// and the weights of the points of the triangle to test.
+// A triangle in pixel space, and the weights of its points to test. The origin is the centre of the
+// triangle's cell, which is a pixel corner.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<std::array<int, 3>> weights;
@@ -46,20 +46,20 @@ std::vector<std::array<int, 3>> random_weights(Random& random, int count) {
   return out;
 }
 
-// A short segment at 45 degrees in the image, with its middle at q. Its box has a face that is one
-// radius away from q towards the corner.
+// A short segment at 45 degrees in the image, with its middle at q. Its box has a face one radius
+// away from q, along the other diagonal.
 Trial diagonal_segment(Random& random, const Vec3& q) {
   const Vec3 half(0x1p-14, 0x1p-14 * random.sign(), 0);
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
 }
 
-// Tiny trials fit a cell of 6 px, large ones (reach 24 px) one of 128 px.
+// Makes trials. Tiny ones fit a cell of 6 px, `large` ones (reach 24 px) a cell of 128 px.
 struct Generator {
   const char* name;
   bool large;
-  int side;  // px, of the window; with the border a power of two, so that coordinates reach the
-             // viewport's rim
-  bool rim;  // cells only along the window's far corner
+  int side;  // px, of the window; a power of two together with the border, so that coordinates
+             // reach the viewport's rim
+  bool rim;  // cells only in the window's far corner
   Trial (*make)(Random&);
 };
 
@@ -186,8 +186,8 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// depth_rounding(), and the same for a buffer of 16 bits: it rounds by 1 / (2^16 - 1) more when it
-// stores, and by 2^-24 when it is read back as a float.
+// As depth_rounding(), but also for a buffer of 16 bits, which rounds by 1 / (2^16 - 1) more when
+// it stores, and by 2^-24 when it is read back as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }

@@ -1,5 +1,5 @@
-// Tests lemmas 1 and 2 (docs/reliability.md) by experiment: draws fattened triangles that are hard
-// cases on a canvas, and checks the samples of their points' pixels in exact arithmetic.
+// Tests lemmas 1 and 2 (docs/reliability.md) by experiment: draws hard cases of fattened triangles,
+// and checks in exact arithmetic whether the samples of a pixel bound the points in it.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct LemmaRow {
   std::uint64_t points = 0;
   std::uint64_t no_sample = 0;     // the pixel got no sample
   std::uint64_t not_bounding = 0;  // its samples do not bound the point's depth
-  std::uint64_t rounded = 0;       // not counted above: off by no more than depth_rounding(); only
-                                   // if samples are depths of the buffer
+  std::uint64_t rounded = 0;       // outside by at most depth_rounding(), so not counted above;
+                                   // only with LemmaSettings::stored
   double largest_px = 0;           // the most by which a depth is outside its samples; 0: none
   double largest_steps = 0;        // the same in steps of the depth buffer
   std::uint64_t violations() const { return no_sample + not_bounding; }
@@ -39,9 +39,9 @@ struct LemmaSettings {
   /// corner). Half of the triangles move as a whole, which is the budget's "double" term at its
   /// worst; in the others each corner moves by itself, which turns edges.
   bool displace = false;
-  /// The samples are the values in the depth buffer (Canvas::depths); fixed-function depth has no
-  /// others. A monotone rounding of both ends costs nothing (docs/reliability.md, lemma 4), so
-  /// errors up to depth_rounding() are counted apart (LemmaRow::rounded).
+  /// True: the samples are the values in the depth buffer (Canvas::depths), as needed for
+  /// fixed-function depth. A monotone rounding of both ends costs nothing (docs/reliability.md,
+  /// lemma 4), so errors up to depth_rounding() are counted apart (LemmaRow::rounded).
   bool stored = false;
   int side = 0;        // px of the window, even, at least 128; 0: the generator's own
   double depth = 128;  // px, half the window's depth, at least 128; if it is more, the triangles

@@ -17,7 +17,7 @@ namespace farcull {
 
 enum class DistanceKind {
   objects,  // the nearest triangles of every two objects, and within each object with `self`
-  nearest,  // those of each object and its k nearest other objects; of ties, the lower comes first
+  nearest,  // the same for each object and its k nearest others; of ties, the lower number first
   all,      // every pair of triangles within a distance
 };
 
@@ -29,11 +29,11 @@ struct DistanceFinderOptions {
   bool self = false;  // also triangles of one object, without neighbours; not with `nearest`
   std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
   bool inside = true;                   // find whether an object is inside another; not with `all`
-  /// true: DistanceAnswer::squared, and with `all` each number is rounded once from the exact one,
+  /// true: sets DistanceAnswer::squared; with `all`, each number is the exact one, rounded once,
   /// which takes about ten times as long. false, with `all`: a distance is off by at most 2^-32 of
-  /// itself (0 iff the triangles meet), a normal by 2^-15, and a point by 2^-45 of the pair's
-  /// extent from its triangle; of points that are nearly as near, these may be others than with
-  /// `exact`, on other features.
+  /// itself (0 iff the triangles meet), a normal by 2^-15, and a point is off its triangle by at
+  /// most 2^-45 of the pair's extent. If several points are nearly as near, others may be given
+  /// than with `exact`, on other features.
   bool exact = false;
   /// Pairs of different objects, by their numbers from 0, that are not answered; not with
   /// `nearest`.
@@ -50,8 +50,7 @@ enum class DistanceInside { unknown, none, a, b, not_closed };
 /// The distance of two objects, or with `all` of two triangles.
 struct DistanceAnswer {
   std::uint32_t object_a = 0, object_b = 0;      // a <= b
-  std::uint32_t triangle_a = 0, triangle_b = 0;  // numbered as in Pair; the first of the nearest
-                                                 // pairs
+  std::uint32_t triangle_a = 0, triangle_b = 0;  // the first nearest pair; numbered as in Pair
   double distance = 0;  // rounded to nearest; infinity beyond the largest double
   std::string squared;  // with `exact`: "numerator/denominator" in lowest terms, nothing rounded
   std::array<double, 3> point_a{}, point_b{};  // nearest points, each coordinate rounded

@@ -1,6 +1,6 @@
-// Matrices of Eigen as input of the library: vertices in the rows of V (n x 3), triangles in those
-// of F (m x 3), V of numbers that a double holds, F of whole numbers, in any storage order. Needs
-// Eigen 3; link Eigen3::Eigen.
+// Matrices of Eigen as input of the library: each row of V (n x 3) is a vertex, each row of F
+// (m x 3) a triangle. V has numbers that a double holds, F has whole numbers; any storage order.
+// Needs Eigen 3; link Eigen3::Eigen.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,8 +17,8 @@
 
 namespace farcull {
 
-/// Copies of the matrices, for each function that takes an Input. It has to live as long as the
-/// Input that it converts to.
+/// Copies of the matrices, for any function that takes an Input. Must live as long as the Input
+/// that it converts to.
 ///
 ///   collider.find(farcull::EigenInput(V, F, object_starts));
 class EigenInput {
@@ -62,7 +62,7 @@ Result collide(const Eigen::MatrixBase<Vertices>& V, const Eigen::MatrixBase<Tri
   return collide(EigenInput(V, F, std::move(object_starts)), options);
 }
 
-/// The pose that moves points as the transform does, if that is affine.
+/// The pose that moves points as the transform does. Precondition: the transform is affine.
 template <int Mode>
 Pose pose_of(const Eigen::Transform<double, 3, Mode>& transform) {
   Pose out;

@@ -7,16 +7,16 @@
 // sets, so touching counts, and a degenerate triangle is the segment or the point that it is. The
 // answer is the same for any number of threads.
 //
-// Each function throws an Error, which says where, why and what to do (error.h), or std::bad_alloc
-// if memory runs out; there is no answer then. Distances are in distance.h, and eigen.h takes
-// matrices of Eigen.
+// A function that fails throws an Error, which says where, why and what to do (error.h), or
+// std::bad_alloc if memory runs out. For distances see distance.h, for matrices of Eigen see
+// eigen.h.
 //
 // Link farcull::farcull (CMake: find_package(farcull)) or `pkg-config farcull`. C++20.
 #pragma once
 
 #if __cplusplus < 202002L
 #error "farcull needs C++20: compile with -std=c++20 (CMake: link farcull::farcull)"
-#include "farcull needs C++20"  // not there: ends the compilation, so that nothing else is said
+#include "farcull needs C++20"  // no such file: ends the compilation, so no other errors follow
 #endif
 
 #include <algorithm>
@@ -44,8 +44,8 @@ enum class Contacts {
 };
 
 /// Called with the name of the current step: at once, and then about every 50 ms, in the caller's
-/// thread. If it returns false, the call ends with the error Cancelled. If it throws, the call ends
-/// and throws the same exception. The work then runs in another thread.
+/// thread; the work runs in another thread. If it returns false, the call ends with the error
+/// Cancelled. If it throws, the call ends and throws the same exception.
 using MayGoOn = std::function<bool(const std::string& step)>;
 
 /// The error of a call that MayGoOn cancelled.
@@ -63,8 +63,8 @@ struct Options {
   Contacts contacts = Contacts::none;
   /// Pairs of different objects, by their numbers from 0, that are not tested against each other.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
-  std::uint64_t limit = 0;  // only the first so many pairs, neighbours included, in the order of
-                            // Pair; 0: all
+  std::uint64_t limit = 0;  // how many pairs to find, neighbours included: the first ones in the
+                            // order of Pair; 0: all
   MayGoOn may_go_on = {};
 };
 
@@ -85,13 +85,13 @@ struct Input {
   std::span<const double> vertices = {};
   /// Three indices of vertices for each triangle.
   std::span<const std::uint32_t> triangles = {};
-  /// The first triangle of each object, no label for each triangle: 0, then rising, so that each
-  /// object has a triangle; empty: all are one object.
+  /// The first triangle of each object (not a label for each triangle): 0, then rising, so that
+  /// each object has a triangle; empty: all triangles are one object.
   std::span<const std::uint32_t> object_starts = {};
   /// The indices as 64-bit numbers, in place of `triangles`, which is then empty.
   std::span<const std::int64_t> wide_triangles = {};
-  /// One for each object, which moves it; empty: none moves. With poses, a vertex is used by the
-  /// triangles of one object only. If all other arrays are empty, the poses move the arrays of an
+  /// One for each object, which moves it; empty: no object moves. With poses, each vertex may be
+  /// used by one object only. If all other arrays are empty, the poses move the arrays of an
   /// earlier call of the same Collider or DistanceFinder, if no call since then gave other arrays
   /// or had bad input.
   std::span<const Pose> poses = {};
@@ -170,9 +170,9 @@ struct Result {
   /// intersection is more than the shared positions and the edge between them. Sorted; empty
   /// without Options::neighbours.
   std::vector<Pair> neighbour_pairs;
-  std::vector<Contact> contacts;            // one for each of `pairs`, and one for each
-  std::vector<Contact> neighbour_contacts;  // of `neighbour_pairs`; empty without
-                                            // Options::contacts
+  std::vector<Contact> contacts;            // one for each of `pairs`
+  std::vector<Contact> neighbour_contacts;  // one for each of `neighbour_pairs`; both are empty
+                                            // without Options::contacts
   /// False: Options::limit ended the search, so more pairs may follow the last one. No pair before
   /// the last one is missing.
   bool complete = true;

@@ -18,7 +18,7 @@
 namespace farcull {
 namespace {
 
-constexpr std::size_t kBlock = 1536;  // numbers in a block, three each; fits the fastest cache
+constexpr std::size_t kBlock = 1536;  // numbers in a block, a multiple of 3; fits the fastest cache
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
@@ -41,8 +41,8 @@ bool convert(std::span<const std::uint32_t> from, std::uint32_t* to, std::size_t
   return most < vertices;
 }
 
-// The same for 64-bit indices. A number that 32 bits cannot hold has a bit set above them, and so
-// has a negative number.
+// The same for 64-bit indices. A number that is negative or too large for 32 bits has a bit set in
+// its upper half.
 bool convert(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -55,7 +55,7 @@ bool convert(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t 
   return bits >> 32 == 0 && most < vertices;
 }
 
-// Appends the vertices that differ between two blocks, counted from `first`, by their bits.
+// Appends the vertices whose bits differ between blocks a and b, which begin at vertex `first`.
 void append_moved(const double* a, const double* b, std::size_t size, std::size_t first,
                   std::vector<std::uint32_t>& out) {
   std::size_t next = out.size();
@@ -101,7 +101,7 @@ void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameCha
   }
 }
 
-// bad: the vertices that are not finite, ascending. vertices: number of all vertices.
+// Throws Error if a triangle uses a vertex of `bad`. vertices: the number of all vertices.
 void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
                     const Scene& scene) {
   if (bad.empty()) return;
@@ -116,7 +116,7 @@ void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
               "give finite coordinates to each vertex that a triangle uses");
 }
 
-// checked: what was in `to` has indices below `vertices`. Returns whether nothing changed.
+// checked: the old indices in `to` are known below `vertices`. Returns whether nothing changed.
 template <class Index>
 bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool checked,
                     std::vector<std::array<std::uint32_t, 3>>& to) {
@@ -178,7 +178,7 @@ void require_pairs(const Scene& scene) {
 }
 
 // Copies the arrays: vertices to `copies`, all else into the scene. Returns whether the scene has
-// as many vertices as before, the same triangles and objects.
+// as many vertices as before, and the same triangles and objects.
 bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
           std::vector<Vec3>& copies, FrameChange* change, bool asked) {
   Scene& scene = taken.scene;
@@ -230,7 +230,7 @@ bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, 
   return same;
 }
 
-// The object whose triangles use each vertex.
+// For each vertex, the object whose triangles use it.
 std::vector<std::uint32_t> objects_of_vertices(const Scene& scene, std::size_t vertices) {
   std::vector<std::uint32_t> out(vertices, kNoObject);
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
@@ -300,13 +300,12 @@ bool are_alone(const Input& input) {
          input.object_starts.empty();
 }
 
-// Whether to move vertices of blocks alone. triangles: in blocks that overlap, all of which are
-// tested then; of_moved: those of objects in another pose.
+// True if moving only the blocks that overlap costs less than load_input(). triangles: how many are
+// in these blocks; all are tested. of_moved: how many are in objects in another pose.
 //
-// If the results of the last call are kept, load_input() costs the triangles that moved. Else it
-// costs all triangles once, and from then on those that move. A loss is what is tested beyond
-// these; if all losses since then reach the cost of all triangles, the results of a call are kept
-// again.
+// If the results of the last call are kept, load_input() tests only `of_moved` triangles. Else it
+// tests all triangles once, and after that only those that moved. So a call loses the triangles
+// that it tests beyond `of_moved`. When these losses add up to all triangles, load_input() is used.
 bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, TakenInput& taken) {
   if (keeps_frames) return triangles < of_moved;
   const auto all = static_cast<double>(taken.scene.triangles.size());
@@ -355,7 +354,7 @@ void load_input(const Input& input, bool self, const std::vector<bool>& self_obj
     }
     if (change) change->same = same;
   } catch (...) {
-    taken = {};  // nothing that was not checked stays, and the next scene is not the same
+    taken = {};  // so that nothing unchecked stays, and the next scene counts as new
     throw;
   }
 }

@@ -92,7 +92,7 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
   });
 }
 
-/// The input of the last call, and what moves its objects.
+/// The input of the last call, and the poses of its objects.
 struct TakenInput {
   Scene scene;                    // with the poses applied, but see `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
@@ -100,22 +100,22 @@ struct TakenInput {
   std::vector<Vec3> unmoved;             // the vertices before the poses
   std::vector<std::uint32_t> object_of;  // of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
-  /// True: only the vertices of some blocks are moved by these poses; the others of the scene are
-  /// finite, but from earlier poses.
+  /// True: only vertices of some blocks are in these poses; the others are finite, in older poses.
   bool stale = false;
   std::optional<RigidBlocks> rigid;  // of the unmoved vertices; null: not made yet
-  double loss = 0;                   // as load_poses() counts it
-  // Calls that load_poses() leaves to load_input(), and how many it will after it gives up again.
+  double loss = 0;                   // triangles, see pays() in input.cpp
+  // skips: how many more calls load_poses() leaves to load_input() without trying. next_skips: how
+  // many after its next failure; doubles with each failure, and is 1 again after a success.
   int skips = 0, next_skips = 1;
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 inline constexpr int kMostSkips = 32;
 
-/// Copies the input into `taken`, which holds that of the last call, and reuses its memory. self:
-/// every object is tested against itself; self_objects: the same for each object, empty or one for
-/// each. change: receives what is new since the last call; may be null. asked: a scene without
-/// anything to test is an error. Throws Error for input that does not satisfy Input, and leaves
-/// `taken` empty then.
+/// Copies the input into `taken`, which holds the input of the last call, and reuses its memory.
+/// self: every object is tested against itself; self_objects: the same for each object, empty or
+/// one for each. change: receives what is new since the last call; may be null. asked: a scene
+/// without anything to test is an error. Throws Error for input that does not satisfy Input, and
+/// leaves `taken` empty then.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
@@ -124,15 +124,16 @@ struct PosesQuestion {
   double clearance = 0;
   std::span<const ObjectPair> ignored;  // as ignored_of()
   unsigned threads = 0;
-  /// The results of the last call are kept, so that objects in their last pose cost nothing if
-  /// load_input() takes these poses.
+  /// True: the results of the last call are kept, so that load_input() needs no time for objects
+  /// that stay in their last pose.
   bool keeps_frames = false;
 };
-/// Takes poses alone, and moves only the vertices of blocks that overlap, which it returns. Null:
-/// load_input() has to take this input. That is so if there is more than poses, or no earlier call
-/// that had poses or arrays, if the poses are bad or boxes do not decide, or if moving all vertices
-/// of objects in another pose costs less. Both give the same answer. After boxes moved in vain, it
-/// leaves some calls to load_input() at once, twice as many each time, up to kMostSkips.
+/// Takes input that is only poses: moves only the vertices of blocks that overlap, and returns
+/// these blocks. Null: load_input() has to take the input, with the same answer. That is so if the
+/// input is not only poses, if the last call had another number of poses, if poses are bad, if an
+/// object is tested against itself, if boxes do not decide, or if moving all vertices of objects in
+/// another pose costs less. After such a failure some calls return null at once
+/// (TakenInput::skips).
 std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
                                         TakenInput& taken);
 

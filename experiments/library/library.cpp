@@ -1,5 +1,5 @@
-// The collider and distances. Each copies its input into a scene and asks about the
-// scene (experiments/method/run.h, experiments/method/distances.h).
+// Collider and DistanceFinder. Each copies its input into a scene, for which it then calls run() or
+// distances() (experiments/method/run.h, experiments/method/distances.h).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -43,21 +43,21 @@ struct Collider::State {
   Session session;
   TakenInput taken;  // of the last call
   FrameChange change;
-  std::optional<BlockDecision> decided;  // by poses alone; null: all vertices are moved
+  std::optional<BlockDecision> decided;  // of load_poses(); null: load_input() took the input
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
   explicit State(const Options& given)
       : options(given), run(run_options(given)), session("native", given.threads, Say()) {}
 
-  // Takes the scene of a call; from the third call on, what is new in it as well.
+  // Loads the scene of a call; from the third call on, also finds what is new in it.
   void take_scene(const Input& input);
-  // Finds the collisions. start: when the call began; callers: the caller's environment.
+  // Finds the collisions. start: of the call. callers: the caller's floating-point environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
 
 void Collider::State::take_scene(const Input& input) {
-  // Remembering takes more memory, which is of no use to a single call.
+  // Remembering frames takes memory, and would not help a single call.
   if (++calls == 2) session.remember_frames();
   const FrameMemory* const memory = session.frame_memory();
   change = {};
@@ -73,7 +73,7 @@ void Collider::State::take_scene(const Input& input) {
                          taken);
     if (decided) return;
   }
-  // What is new is not known if vertices of the last call were left as they were.
+  // What is new is not known if the last call did not move all vertices (stale).
   const bool compares = memory && !memory->moved.waits() && !taken.stale;
   load_input(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }

@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
-/// The time of the stages of boxes, before candidates are looked for.
+/// The time for making boxes, before the search for candidates.
 double build_ms_of(const std::vector<Stage>& trace) {
   double ms = 0;
   for (const Stage& stage : trace) {
@@ -259,10 +259,10 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
         const Stopwatch watch;
         BenchAnswer answer = c.run(scene);
         const double ms = watch.ms();
-        // Other libraries know nothing of objects that are ignored.
+        // Other libraries do not know which pairs of objects are ignored.
         remove_ignored(scene, scene.ignored, answer.pairs);
         if (round < 0) result.rows.push_back(cold_row(c, answer));
-        // A cold run counts only if it is over the limit.
+        // A cold run counts only if it is over the limit: then no other run follows.
         if (round >= 0 || ms > rounds.limit_ms) parts[i].add(answer);
         if (i == 0 && round < 0) {
           agreed = std::move(answer.pairs);

@@ -35,7 +35,7 @@ struct BenchOptions {
   unsigned threads = 1;
   int repeat = 5;
   double limit_s = 60;                // a contestant whose cold run takes longer is not repeated
-  std::string device;                 // "": GL if there is one; "cpu": no GL; or as for farcull run
+  std::string device;                 // "": GL if hardware answers; "cpu": no GL; or as farcull run
   bool self = false;                  // every object is tested against itself as well
   std::optional<std::uint64_t> seed;  // of the scene
 };
@@ -132,8 +132,8 @@ struct DistanceErrors {
   std::uint64_t beyond = 0;        // distances that our answer leaves out: beyond `within`
   std::uint64_t exact = 0;         // answers that are the same double as ours
   std::uint64_t other_zero = 0;    // answers 0 for objects apart, or not 0 for objects that meet
-  std::uint64_t other_object = 0;  // with `nearest`: another object that is not as near
-  double largest_relative = 0;     // of distances that neither calls 0
+  std::uint64_t other_object = 0;  // with `nearest`: answers with a farther object
+  double largest_relative = 0;     // of distances that neither answer calls 0
   FARCULL_FIELDS(answers, exact, lacking, beyond, other_zero, other_object, largest_relative)
 };
 
@@ -145,7 +145,7 @@ struct DistanceBenchRow : TimedRow {
 struct DistanceBenchResult {
   std::vector<DistanceBenchRow> rows;                         // ours is the first
   std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
-  std::optional<std::size_t> fastest_peer;                    // into rows; a comparable one
+  std::optional<std::size_t> fastest_peer;                    // into rows; comparable peers only
 };
 
 /// Measures distances between different objects, also if the scene tests one against itself. Throws

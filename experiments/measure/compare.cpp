@@ -73,7 +73,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
 }
 
 // Refuses a resolution beyond the device before the first run, not after an hour of smaller ones.
-// Every OpenGL 4.3 takes 8192 px, half of its 16384, so the device is opened only beyond that.
+// Every OpenGL 4.3 has room for 8192 px (half of its least limit), so only more needs the device.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {

@@ -12,15 +12,15 @@
 namespace farcull {
 
 struct CompareArguments {
-  /// Names with commas. Empty: far, cullide, boxes and exact, without those that do not support
-  /// the clearance, or objects tested against themselves if the scene has such objects.
+  /// Names with commas. Empty: those of far, cullide, boxes and exact that support the clearance
+  /// and, if the scene has objects to be tested against themselves, also that.
   std::optional<std::string> methods;
   /// px, with commas, for methods that draw.
   std::optional<std::string> resolutions;
   std::string offsets = "obb";   // for far
   std::string radii = "budget";  // for far, with commas, as parse_radius() takes each
   bool self = false;             // every object was made to be tested against itself
-  /// Runs of each; empty: kUsualRepeats, and one of what takes longer than kLongMs.
+  /// Runs of each; empty: kUsualRepeats, but only one if that takes longer than kLongMs.
   std::optional<std::string> repeat;
   bool risk = true;  // count the pairs at risk of far
   /// Views, device, clearance and seed are for all methods; rounds, clear, level and conservative

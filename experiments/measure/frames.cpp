@@ -39,7 +39,7 @@ std::vector<std::string> keys_of_frame() {
 
 Json rate_json(double ms) { return json_of(per_second(ms)); }
 
-// head: the entries of the first frame. Entries in which this frame differs are repeated in it.
+// head: the record of the first frame. This frame repeats the entries in which it differs.
 Json frame_json(const Scene& scene, const Record& record, const Json& head, long frame,
                 double read_ms, const FrameSource& source) {
   const Json run = to_json(scene, record);

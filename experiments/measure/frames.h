@@ -47,7 +47,7 @@ FrameTimes summary_of(std::vector<double> ms);
 
 /// The results of a frame that is done.
 struct FrameReport {
-  const nlohmann::ordered_json& head;     // of all frames: the record without those below
+  const nlohmann::ordered_json& head;     // of all frames: the record without the two below
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
   std::string rows;                       // for people; those of the first frame have a heading

@@ -1,6 +1,5 @@
-// The measuring harness under bench, compare, family, savings and the studies: which contestant
-// runs when, how its times are summed up with which intervals, and how times are written. Medians
-// and their ratios are estimated by the bootstrap, slopes by Student's t.
+// The measuring harness of bench, compare and the studies: in which order contestants run, and how
+// their times are summarized. The bootstrap gives intervals of medians.
 //
 // MeasurementContext keeps the state that measurements of one process share: the device with its
 // shaders, the scene that was read last, and the pairs that truly collide in that scene.
@@ -37,11 +36,11 @@ struct Estimate {
 double middle(std::vector<double> values);
 
 /// The middle() with the percentile interval of the bootstrap (Efron and Tibshirani 1993,
-/// section 13.3): as many values are drawn with replacement 10,000 times, and the interval goes
-/// from the 2.5th to the 97.5th percentile of their medians. The generator has a fixed seed, so the
-/// same values in any order give the same interval. The interval contains the true median with a
-/// probability of 75 % for 3 independent runs, 94 % for 5 and 96 % for 9 (docs/experiments.md,
-/// "Statistics"). All 0 if there are no values.
+/// section 13.3): 10,000 times, n of the n values are drawn with replacement. The interval goes
+/// from the 2.5th to the 97.5th percentile of the medians of these draws. The generator has a fixed
+/// seed, so the same values in any order give the same interval. The interval contains the true
+/// median with a probability of 75 % for 3 independent runs, 94 % for 5 and 96 % for 9
+/// (docs/experiments.md, "Statistics"). All 0 if there are no values.
 Estimate median_estimate(std::vector<double> values);
 
 /// Statistics of several values. median: as middle(). low, high: the 95 % interval of the median

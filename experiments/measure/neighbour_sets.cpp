@@ -37,8 +37,8 @@ SquaredRange range_of(const Box& a, const Box& b) {
 
 // A box whose computed least squared distance is above this limit is farther than the largest
 // distance whose square was computed as `largest`. Let u = 2^-53. A difference, a square and two
-// sums round, and a square below 2^-1022 is off by 2^-1075: both squares are within the factors
-// (1 - u)^5 and (1 + u)^5 of the exact ones, and 2^-1072. The factor 1 + 16 u covers both, and the
+// sums round, and a square below 2^-1022 is off by 2^-1075: both squares are off the exact ones by
+// factors of (1 - u)^5 to (1 + u)^5, and by 2^-1072. The factor 1 + 16 u covers both, and the
 // rounding of this product; 2^-1000 covers the rest. A square that overflows is infinite on both
 // sides, so its box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
@@ -106,10 +106,10 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   }
 }
 
-// Adds to each object how many triangles of other objects its pairs name, each once. Pairs are
-// sorted, with a < b, and triangles ascend with their objects. So all pairs of a's object come
-// together, and so do all pairs of one a with b's object. It is enough to remember, for each b, the
-// object of its last a, and for each object of b, its last a.
+// For each object, adds how many triangles of other objects its pairs name, each counted once.
+// Pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So pairs
+// whose a is in one object come together, and so do pairs of one a with one object. It is enough to
+// remember the object of the last a for each triangle b, and the last a for each object of b.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);

@@ -34,7 +34,7 @@ std::string to_string(NeighbourMethod method);
 /// Whether the method has a resolution: true for the two diagrams.
 bool has_cells(NeighbourMethod method);
 
-/// Pairs of triangles that the reliable form may keep here: 268 MB.
+/// The most pairs of triangles that the reliable form may keep here; they take 268 MB.
 constexpr std::uint64_t kMostNeighbourPairs = std::uint64_t{1} << 25;
 
 struct NeighbourOptions {
@@ -51,7 +51,7 @@ struct NeighbourSets {
   /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
   bool has_pairs = false;
   std::vector<TrianglePair> pairs = {};
-  /// boxes, voronoi: of each pair of objects, how many triangles of a and of b are left.
+  /// boxes, voronoi: for each pair of objects, how many triangles of a and of b are left.
   std::vector<std::array<std::uint64_t, 2>> left = {};
   /// Why there are no sets: the diagram would keep too many pairs, or memory ran out. Else empty.
   std::string left_out = {};

@@ -1,5 +1,5 @@
-// Frames in which the first object turns a little, by new calls, by one Collider and by peers, all
-// in turn. The answers of each frame are compared with those of a new call.
+// Times frames in which the first object turns a little: new calls, one Collider and peers, all in
+// turn. The answers of each frame are compared with those of a new call.
 #include "experiments/measure/pose_bench.h"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ RigidMotion turned(const Box& box, int frame) {
   return out;
 }
 
-// A scene as arrays of the library, whose objects all have triangles.
+// A scene as arrays of the library, without objects that have no triangles.
 struct Arrays {
   std::vector<std::uint32_t> objects, starts;  // objects: their numbers in the scene
   Input input;
@@ -60,7 +60,7 @@ std::vector<TrianglePair> pairs_of(const Result& result) {
   return out;
 }
 
-// What runs in a row.
+// A row of the result, and what runs for it.
 struct Contestant {
   PoseBenchRow row;
   PoseRun run;

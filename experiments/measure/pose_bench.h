@@ -22,7 +22,7 @@ struct PoseBenchOptions {
 
 struct PoseBenchRow : TimedRow {
   double cpu_ms = 0;  // of the process, a median
-  // Of all frames together; lacking, beyond: against the answers of row 0.
+  // Sums over all frames. lacking: pairs that only row 0 has; beyond: pairs that row 0 lacks.
   std::uint64_t pairs = 0, lacking = 0, beyond = 0;
 };
 

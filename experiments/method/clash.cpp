@@ -1,5 +1,5 @@
-// Pairs of triangles that meet, grouped by their objects, decide which objects meet. Boxes of
-// objects find the others that may lie inside one another or be near.
+// Groups the pairs of triangles that meet by their objects: these objects meet. Then compares boxes
+// to find the other pairs of objects of which one may contain the other, or that may be near.
 #include "experiments/method/clash.h"
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@
 namespace farcull {
 namespace {
 
-/// Facts about objects that are found when they are first needed.
+/// Facts about objects. Each is computed when it is first needed.
 class Objects {
  public:
   explicit Objects(const Scene& scene)
@@ -59,10 +59,10 @@ class Objects {
     return facts.parts;
   }
 
-  /// Whether a part of `inner` is inside `outer`: ClashVerdict::contained or clear, or unknown if
-  /// `outer` is not closed. Precondition: their surfaces do not meet, so one point decides about
-  /// each part (experiments/method/distances.cpp). A part lies in the box of what it is inside, so
-  /// boxes settle most pairs. Sets a point inside.
+  /// Returns `contained` if a part of `inner` is inside `outer`, `clear` if none is, and `unknown`
+  /// if that is not decided, as when `outer` is not closed. Unless it is `clear`, sets `point` to a
+  /// corner of the part. Precondition: the surfaces do not meet, so one point decides about a part
+  /// (experiments/method/distances.cpp). Boxes settle most pairs: a part inside is in outer's box.
   ClashVerdict containment(std::uint32_t outer, std::uint32_t inner, Vec3& point) const {
     const Object& object = scene_.objects[inner];
     bool any = false;
@@ -104,11 +104,11 @@ class Objects {
   std::vector<Box> boxes_;
 };
 
-/// Pairs of triangles in the order of their objects, and one row for each pair of objects.
+/// Pairs of triangles, sorted by their objects, and one row for each pair of objects.
 struct Meetings {
   std::vector<TrianglePair> pairs;
   std::vector<ClashRow> rows;
-  std::vector<std::size_t> first;  // of each row, the first of its pairs; one more at the end
+  std::vector<std::size_t> first;  // index of each row's first pair; then the number of pairs
 };
 
 Meetings meetings_of(const Scene& scene, std::vector<TrianglePair> pairs) {
@@ -132,7 +132,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
               std::span<const ContactShape> contacts, ClashRow& row) {
   row.pairs = pairs.size();
   std::vector<std::array<std::array<double, 3>, 2>> ends;
-  std::size_t best = 0;  // of the witness: crossing rather than others
+  std::size_t best = 0;  // index of the pair that gives the witness: the first crossing, else 0
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const ContactShape& contact = contacts[k];
     ++row.kinds[static_cast<std::size_t>(contact.kind)];
@@ -151,7 +151,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
   row.witness = {common.points[0], common.points[0]};
   const std::uint64_t crossing = row.kinds[static_cast<std::size_t>(ContactKind::crossing)];
   if (crossing > 0) row.verdict = ClashVerdict::clash;
-  // Two triangles with a common edge give the part of the curve on that edge twice.
+  // A part of the curve that lies on a common edge of two triangles was found twice.
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const auto& [p, q] : ends) {
@@ -160,7 +160,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
   }
 }
 
-/// Decides whether objects of which no triangles cross overlap or touch.
+/// Decides whether two objects overlap or only touch. Precondition: none of their triangles cross.
 void decide_touch(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                   ClashRow& row) {
   const auto [a, b] = row.objects;
@@ -175,10 +175,10 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
   row.proved = overlap != Overlap::unknown;
 }
 
-/// Finds what may be wrong with the parts themselves: copies, and units that differ.
+/// Notes likely faults of the input: objects that are copies, and objects in different units.
 void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record) {
   constexpr std::size_t kMostCopies = 100;
-  constexpr double kRounding = 1e-6, kFar = 100;  // of floats; ratio of sizes
+  constexpr double kRounding = 1e-6, kFar = 100;  // relative, for floats; ratio of sizes
   const std::vector<Box>& boxes = objects.boxes();
   std::vector<std::uint32_t> order;
   for (std::uint32_t o = 0; o < boxes.size(); ++o) {
@@ -205,8 +205,8 @@ void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record)
   if (size(most) >= kFar * size(least)) record.sizes = {least, most};
 }
 
-/// Directions in which two objects that overlap a little may come apart: across one of the largest
-/// faces that meet, or between two or three of those.
+/// Directions in which a short move may separate two objects: the normals of the largest faces that
+/// meet, and sums and differences of two or three of these normals.
 std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> pairs) {
   constexpr std::size_t kMostFound = 64, kMost = 6;
   constexpr double kSame = 0.999;              // cosine of directions that count as one
@@ -226,7 +226,7 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   }
   std::ranges::stable_sort(faces, std::greater(), [](const auto& face) { return face.first; });
   faces.resize(std::min(faces.size(), kMost));
-  std::array<std::vector<Vec3>, 3> sums;  // of one, two and three of the normals
+  std::array<std::vector<Vec3>, 3> sums;  // sums[k]: of k + 1 normals
   for (const auto& [area, normal] : faces) {
     for (const std::size_t k : {2u, 1u}) {
       for (const Vec3& sum : std::vector<Vec3>(sums[k - 1]))
@@ -253,9 +253,9 @@ std::vector<Vec3> starts_of(const ClashRow& row) {
   return starts;
 }
 
-/// Bounds the depth, if asked for. An overlap becomes a touch if its depth is proved to be within
-/// the tolerance: the upper bound is. pairs: of triangles that meet; none for a containment.
-/// Precondition: the objects are closed.
+/// Bounds the depth, if asked for. An overlap becomes a touch if the upper bound of its depth is at
+/// most the tolerance. pairs: the triangles that meet; none for a containment. Precondition: both
+/// objects are closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
@@ -287,7 +287,7 @@ bool is_asked(const ClashOptions& options, const ObjectPair& pair) {
   return !options.only || std::ranges::binary_search(*options.only, pair);
 }
 
-/// Rows of objects that do not meet: those that may lie in one another, and those that are near.
+/// Rows for the objects that do not meet, but of which one may contain the other, or that are near.
 std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
                                  const ClashOptions& options, std::span<const ClashRow> meeting,
                                  const Progress& progress, ClashRecord& record) {

@@ -1,6 +1,6 @@
-// Which objects of a scene clash: one row for each pair of objects that meet, lie in one another or
-// are near, as one function from a scene to a record. One run of boxes over all objects finds
-// the pairs of triangles that meet; exact tests decide the rest.
+// Finds which objects of a scene clash. The record has one row for each pair of objects that meet,
+// contain each other or are near. One run of the method `boxes` over all objects finds the pairs of
+// triangles that meet; exact tests decide the rest.
 #pragma once
 
 #include <array>
@@ -23,12 +23,12 @@ namespace farcull {
 /// clash: their surfaces pass through each other, or their insides overlap; also if they touch and
 ///   it is not proved that they only touch (ClashRow::proved).
 /// contained: the surfaces do not meet, and all or a part of one object is inside the other.
-/// unknown: as `contained`, if the outer object were closed. It is not, so it has no inside.
+/// unknown: perhaps `contained`; the outer object is open, or its faces do not all face outward.
 /// touch: they meet, and it is proved that their insides do not.
 /// near: they do not meet, and are at most the clearance apart.
 /// clear: none of these.
-/// With a tolerance, `touch` is also said of objects whose depth (verify/penetration.h) is proved
-/// to be at most the tolerance, and of objects that are at most the tolerance apart.
+/// With a tolerance, two objects also `touch` if their depth (verify/penetration.h) is proved to be
+/// at most the tolerance, or if they are at most the tolerance apart.
 enum class ClashVerdict : std::uint8_t { clash, contained, unknown, touch, near, clear };
 inline constexpr std::array kClashVerdicts = {ClashVerdict::clash,   ClashVerdict::contained,
                                               ClashVerdict::unknown, ClashVerdict::touch,
@@ -37,12 +37,12 @@ std::string to_string(ClashVerdict verdict);
 
 struct ClashOptions {
   double clearance = 0;                  // world units, finite, >= 0
-  std::vector<ObjectPair> ignored = {};  // as in_order() gives them: they are examined, but are
+  std::vector<ObjectPair> ignored = {};  // sorted by in_order(); they are examined, but are
                                          // listed apart
-  std::optional<std::vector<ObjectPair>> only = {};  // as above: no other pairs are asked for
-  double tolerance = 0;  // world units, finite, >= 0: of an overlap or gap that counts as a touch
-  bool depth = false;    // bounds of the depth of clashes; they take longer than all
-                         // else for parts with many triangles
+  std::optional<std::vector<ObjectPair>> only = {};  // asks only for these pairs; sorted likewise
+  double tolerance = 0;  // world units, finite, >= 0: a depth or gap up to this is a touch
+  bool depth = false;    // bounds the depth of clashes; with many triangles this takes
+                         // longer than all the rest
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
@@ -55,19 +55,19 @@ struct ClashRow {
   std::uint64_t pairs = 0;  // of triangles that meet
   std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // how many of these, by kind
   std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
-  std::optional<SquaredDistance> squared = {};  // of the surfaces, if they are at most the
-                                                // clearance or the tolerance apart and do not meet
+  std::optional<SquaredDistance> squared = {};  // of the surfaces, if they do not meet and are at
+                                                // most the clearance or the tolerance apart
   double distance = 0;                          // root of `squared`, rounded once
-  Box box = Box::empty();  // of the common points; of the inner object; of two nearest points
-  std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};  // a common point, twice; a corner of
-                                                               // the inner object, twice; or two
-                                                               // nearest points. Rounded
+  Box box = Box::empty();  // box of the common points, the inner object or the two nearest points
+  std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};  // twice a common point, twice a
+                                                               // corner of the inner object, or
+                                                               // two nearest points; rounded
   double curve = 0;  // length of the curve in which the surfaces cross
   std::vector<std::array<Vec3, 2>> segments = {};  // of that curve, each once; ends rounded
-  std::optional<Penetration> depth = {};   // of a clash or a containment of two closed objects, if
-                                           // asked for; if it is within the tolerance
-  std::optional<std::uint32_t> open = {};  // why there is no depth, if one or a tolerance is asked
-                                           // for: this object is not closed
+  std::optional<Penetration> depth = {};   // of a clash or containment of two closed objects; set
+                                           // if asked for or if within the tolerance
+  std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth;
+                                           // set if a depth is asked for or a tolerance is given
   bool within_tolerance() const { return verdict != exact; }
 };
 
@@ -77,15 +77,15 @@ struct ClashRecord {
   std::uint64_t examined = 0;      // of these, pairs whose objects have triangles
   std::uint64_t ignored = 0;       // pairs that are ignored
   std::uint64_t ignored_meet = 0;  // of these, pairs that clash, touch or may contain each other
-  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // pairs that are not ignored
+  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // pairs not ignored, by verdict
   std::uint64_t within_tolerance = 0;  // of these, pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
-  std::vector<ObjectPair> copies;  // objects that may be one part twice: as many triangles, and the
-                                   // same box but for rounding to floats. The first 100
-  std::optional<ObjectPair> sizes;   // the smallest and the largest object, if the one is 100 times
-                                     // the size of the other, or more
-  std::vector<ClashRow> rows;        // all but those that are clear, the most serious first; those
-                                     // of ignored objects last. Without `near` of ignored ones
+  std::vector<ObjectPair> copies;      // at most 100 pairs that may be one part twice: equally many
+                                       // triangles, and the same box but for rounding to floats
+  std::optional<ObjectPair> sizes;     // the smallest and the largest object, if their sizes differ
+                                       // by a factor of 100 or more
+  std::vector<ClashRow> rows;        // without `clear`; the most serious first, ignored pairs last;
+                                     // ignored pairs without `near`
   std::uint64_t triangle_pairs = 0;  // that meet
   std::vector<Stage> trace;
   double ms = 0;
@@ -95,9 +95,9 @@ struct ClashRecord {
   }
 };
 
-/// Examines every two objects of the scene. Precondition: no object is tested against itself, and
-/// the scene ignores none. Throws Error if the scene has fewer than two objects, or if the
-/// clearance or the tolerance is no distance.
+/// Examines every two objects of the scene, or options.only. Precondition: no object is tested
+/// against itself, and Scene::ignored is empty. Throws Error if the scene has fewer than two
+/// objects, or if the clearance or the tolerance is no distance.
 ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progress& progress = {});
 
 /// The diagonal of an object's box.

@@ -1,4 +1,4 @@
-// Contacts: candidates in the order of the answer, in parts that threads decide.
+// Sorts the candidates into the order of the answer; then threads decide them in parts.
 #include "experiments/method/contacts_within.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, do
   const FloatingPointGuard guard;
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, threads);
-  // A quarter more: room for pairs that turn out to be a little too far apart.
+  // Allows a quarter more, since some pairs turn out to be a little too far apart.
   std::vector<TrianglePair> near = trees.pairs_within(within, most + most / 4, progress);
   remove_ignored(scene, scene.ignored, near);
   const std::vector<std::uint32_t> owner = owners(scene);

@@ -17,10 +17,10 @@ struct TriangleContact {
   NearContact contact;
 };
 
-/// The contacts that are at most `within` apart (finite, >= 0), of different objects, or of one
-/// marked `self` if they are no neighbours, without those of ignored objects: the same pairs as
-/// distances() with `all` gives. Sorted by objects, then by triangles, in parts that follow each
-/// other. threads: 0 for as many as there are cores. Throws Error if there are more than `most`.
+/// The pairs of triangles at most `within` apart (finite, >= 0) that distances() with `all` gives:
+/// of different objects that are not ignored, or of one object marked `self` if they are no
+/// neighbours. Sorted by objects, then by triangles; split into consecutive parts. threads: 0 for
+/// as many as there are cores. Throws Error if there are more than `most` contacts.
 std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,
                                                           unsigned threads, std::size_t most,
                                                           const Progress& progress = {});

@@ -29,7 +29,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset == "obb") return {obb_fattener()};
   // A new offset goes here.
-  // Without a guarantee, comparing boxes first would add one more way to miss pairs.
+  // Without a guarantee, culling by oriented boxes first would add one more way to miss pairs.
   if (!is_thrifty(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
 }
@@ -82,7 +82,7 @@ Stage join_stage(const DrawPlan& work) {
           .unit = Unit::pairs};
 }
 
-// Cuts the triangles of objects that are tested against themselves.
+// Cuts objects that are tested against themselves into patches.
 Stage cut(const Scene& scene, std::span<const Box> boxes, std::span<const std::uint32_t> marked,
           Patches& patches) {
   const Stopwatch watch;
@@ -95,7 +95,7 @@ Stage cut(const Scene& scene, std::span<const Box> boxes, std::span<const std::u
           .ms = watch.ms()};
 }
 
-// Culls with one offset after the other; fills the triangles that are left, views, trace, device.
+// Culls with one offset after the other. Sets the triangles that are left, views, trace and device.
 void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions& options,
                      Session& session, const Progress& progress, Candidates& out) {
   CullSettings settings = work.settings;
@@ -164,7 +164,7 @@ Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool fu
   return stage;
 }
 
-// Keeps triangles that drawing culled, if a pair inside their patch needs them.
+// Puts back triangles that drawing culled but that are in a pair inside their patch.
 void add_members(const Scene& scene, Candidates& out) {
   const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
   std::vector<std::uint32_t> all;
@@ -173,7 +173,7 @@ void add_members(const Scene& scene, Candidates& out) {
   out.triangles = std::move(all);
 }
 
-// Boxes of objects, as published: what takes part, and where.
+// Compares boxes of objects, as published, to find which triangles take part, and in which regions.
 void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   if (!work.self && has_self(scene)) {
@@ -187,7 +187,7 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   plan.trace.back().ms = watch.ms();
 }
 
-// Boxes of triangles: all pairs whose boxes overlap. False: they do not decide here.
+// Finds all pairs of triangles whose boxes overlap. False: this would cull too little here.
 bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   const Stopwatch watch;
@@ -205,8 +205,8 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.ran = true;
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
-  // Each object is one owner, until it is known what is drawn of those that collide with
-  // themselves.
+  // At first each object is one owner. Objects that are tested against themselves are cut into
+  // patches once it is known which of their triangles are drawn.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
   work.regions = regions_of(scene, work.pairs->drawn);
   stage.out = work.regions.triangles.size();

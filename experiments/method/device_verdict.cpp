@@ -35,8 +35,8 @@
 namespace farcull {
 
 // The probes of A4 (docs/reliability.md). For both offsets the canvas's fragment program computes
-// intervals of fattened triangles and of solids whose floats are drawn directly.
-// verify/kernel_check draws the cases and counts the losses.
+// intervals of fattened triangles and of solids with random floats. verify/kernel_check makes the
+// cases and counts the losses.
 
 namespace {
 
@@ -63,7 +63,7 @@ ProbeResult result(const std::string& name, const std::string& tried,
   return out;
 }
 
-// Checks fattened triangles of every kind, then solids whose floats are drawn directly.
+// Checks fattened triangles of every kind, then (`direct`) solids with random floats.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
   SolidProgram solid = kernel.program;
@@ -86,8 +86,8 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
     const std::vector<SolidAnswer> answers = device_solids(context, solid, cases);
     for (std::size_t i = 0; i < kSolidCases; ++i)
       kernel.check(cases[i], answers[i], ordinary[i], tally);
-    // A step of the depth buffer is 0.25 px, or 16 px for solids drawn directly. This is mostly
-    // about the distance from entry to exit.
+    // A step of the depth buffer is 0.25 px, or 16 px for `direct`. For most solids this is about
+    // the distance from entry to exit.
     std::vector<SolidCase> stored = cases;
     if (options.late_stores) std::rotate(stored.begin(), stored.begin() + 1, stored.end());
     const std::vector<std::uint8_t> seen =
@@ -162,7 +162,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Variables by which Mesa's drivers and compilers, and NVIDIA's, choose code.
+// Prefixes of environment variables that change the code Mesa's and NVIDIA's drivers generate.
 constexpr std::array kDriverVariables = {
     "LP_",    "GALLIVM_", "GALLIUM_", "MESA_",    "LIBGL_", "NIR_",  "ST_",   "DRAW_",
     "TGSI_",  "INTEL_",   "IRIS_",    "ANV_",     "AMD_",   "RADV_", "ACO_",  "R600_",
@@ -237,7 +237,7 @@ std::string file_of(const std::string& inputs) {
   return folder.empty() ? "" : folder + "/device-" + hash_of(inputs);
 }
 
-// A file is the hash of the rest, the inputs, a line of three values, and a line for each failure.
+// A file: the hash of the lines below it, the inputs, a line of three values, a line per failure.
 std::string file_text(const std::string& inputs, const DeviceVerdict& verdict) {
   std::ostringstream rest;
   rest << inputs << verdict.made << ' ' << verdict.probes << ' ' << verdict.ms << '\n';
@@ -245,7 +245,7 @@ std::string file_text(const std::string& inputs, const DeviceVerdict& verdict) {
   return hash_of(rest.str()) + "\n" + rest.str();
 }
 
-// Returns nothing if the file is not there, damaged, somebody else's, or about something else.
+// Returns nothing if the file is missing, damaged, of another user, or about other inputs.
 std::optional<DeviceVerdict> read(const std::string& file, const std::string& inputs) {
   struct stat status {};
   if (file.empty() || ::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
@@ -368,7 +368,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // Comes first, so that a later failure leaves no older verdict that these results refute.
+  // Removed first: if a later step fails, no older verdict is left that these results refute.
   if (!out.holds) forget(file);
   if (!out.holds && out.failed.empty()) return out;
   out.note = write(file, file_text(inputs, out));

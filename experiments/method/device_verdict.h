@@ -19,7 +19,7 @@ namespace farcull {
 // method runs it, and its answers are compared with rational bounds (verify/kernel_check.h).
 
 /// A kernel of an offset: its program, functions that make its test cases (fattened triangles, and
-/// solids whose floats are drawn directly), and the check of an answer.
+/// solids with random floats), and the check of an answer.
 struct SolidKernel {
   const char* name;
   SolidProgram program;
@@ -35,7 +35,7 @@ struct KernelProbeOptions {
   std::uint64_t seed = 1;
   bool brief = false;        // about a third of the samples
   bool bare = false;         // kernels that widen nothing
-  bool late_stores = false;  // another solid is stored than asked
+  bool late_stores = false;  // stores another solid than the one it asks about
 };
 
 /// Probes solid_interval of both offsets. All functions here make the context current while they
@@ -58,7 +58,7 @@ std::string utc_now();
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;              // the probe that failed to finish, and why; no guarantee then
+  std::string problem;              // which probe did not finish, and why; then no guarantee
   std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
   std::size_t probes = 0;           // how many ran
   double ms = 0;                    // time of the probes
@@ -87,8 +87,8 @@ using Probes = std::function<std::vector<ProbeResult>()>;
 using Say = std::function<void(const std::string& line)>;
 
 /// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by
-/// keep_verdict(). A file that is damaged, of somebody else, or about something else is ignored and
-/// written anew. Errors of the file system do not throw; what `probes` throws passes through.
+/// keep_verdict(). A file that is damaged, belongs to another user, or has other inputs is ignored
+/// and written anew. Errors of the file system do not throw; what `probes` throws passes through.
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say = {});
 
 /// Makes a verdict from the results of probes and keeps it in place of an older one. Keeps nothing

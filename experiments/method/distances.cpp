@@ -175,7 +175,7 @@ std::vector<NearHint> hints_of(const DistanceMemory* memory) {
   return out;
 }
 
-// The nearest pair of each question, unless it is farther apart than `within`.
+// The nearest triangles of each pair of objects, unless they are farther apart than `within`.
 std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> near,
                                  const DistanceOptions& options) {
   struct Part {
@@ -229,7 +229,7 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   distances.resize(kept);
 }
 
-// Decides ties for the search: one pair is left of many that are equally near.
+// Decides ties for the search: of many pairs that are equally near, it keeps one.
 SettledPair settled(const Scene& scene, std::span<const TrianglePair> pairs) {
   const NearestPair nearest = *nearest_pair(scene, pairs);
   SettledPair out;
@@ -446,7 +446,7 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     if (scene.objects[o].triangle_count == 0) continue;
     std::vector<std::size_t>& of = naming[o];
-    // A stable sort: at equal distance they stay in the order of the other object.
+    // A stable sort: at equal distance, the order of the other object is kept.
     std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
       return distances[x].closest.squared < distances[y].closest.squared;
     });
@@ -476,7 +476,7 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
-    DistanceMemory kept;  // stored whole or not at all, whatever is thrown
+    DistanceMemory kept;  // so that an exception leaves `memory` as it was
     if (options.pairs != DistancePairs::all) {
       for (const Distance& d : out.distances) {
         kept.objects.push_back(d.objects);

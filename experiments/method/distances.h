@@ -1,6 +1,6 @@
-// Proximity queries: distances between objects with the points that realise them, as one function
-// from a scene to a record. Potential neighbours (core/proximity) cull, exact arithmetic
-// (verify/closest.h) decides.
+// Proximity queries: distances between objects, with the points that realise them. One function
+// makes a record from a scene. Trees of boxes (core/proximity) find the pairs that may be nearest;
+// exact arithmetic (verify/closest.h) decides.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ namespace farcull {
 using DistancePairs = DistanceQuestion::Kind;
 
 /// Which of two objects that do not meet lies inside the other, with all of its points. unknown:
-/// not asked, or the objects collide. not_closed: the box of one lies in the box of the other,
-/// which has no inside (verify/inside.h).
+/// not asked, or the objects collide. not_closed: the box of one lies in the box of the other, and
+/// this other object is not closed, so it has no inside (verify/inside.h).
 using WhichInside = InsideClaim;
 
 /// Tells which object of a scene lies inside another. The scene must not change, since facts about
@@ -63,16 +63,16 @@ struct DistanceOptions {
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
   /// The most answers; more are an error, since each takes some hundreds of bytes. With `all` it
-  /// limits pairs of triangles, which are counted while they are listed. With `objects` it limits
-  /// pairs of objects, which are counted at the start; if `within` is finite, those whose boxes are
-  /// within it, of which there may be four times as many.
+  /// limits pairs of triangles, counted while they are listed. With `objects` it limits pairs of
+  /// objects, counted at the start. If `within` is finite, only pairs of objects whose boxes are at
+  /// most `within` apart are counted, and the limit is four times `most_pairs`.
   std::size_t most_pairs = std::size_t{1} << 22;
 };
 
 /// The distance of the surfaces of two objects, or with `all` of two triangles.
 struct Distance {
   ObjectPair objects;
-  TrianglePair triangles;  // the first of the nearest pairs, of objects.a and objects.b
+  TrianglePair triangles;  // the first nearest pair: a triangle of objects.a, and one of objects.b
   Closest closest;
   WhichInside inside = WhichInside::unknown;
 };
@@ -89,39 +89,39 @@ struct DistanceRecord {
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
   std::vector<Stage> trace;
-  std::vector<Distance> distances;  // sorted by objects, then by triangles; with `nearest`, the
-                                    // distances that name an object include its k nearest
+  std::vector<Distance> distances;  // sorted by objects, then by triangles; with `nearest`, each
+                                    // object's k nearest ones are among them
   ProximityCounts counts;
   std::optional<DistanceAccounting> verification;
   double ms = 0;  // time without the verification
 };
 
-/// The answer of `nearest` about one object: its nearest other objects, the nearest first, at equal
-/// distance the lower object first. At most k; fewer if fewer are within the distance asked for.
+/// The answer of `nearest` for one object: its nearest other objects, sorted by distance, then by
+/// index. At most k; fewer if fewer are within the distance asked for.
 struct NearestOfObject {
   std::uint32_t object = 0;
-  std::vector<std::size_t> distances;  // indices into those of the record
+  std::vector<std::size_t> distances;  // indices into DistanceRecord::distances
 };
 /// The nearest objects of each object with triangles, in order.
 std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
                                                 std::span<const Distance> distances, std::size_t k);
 
-/// The nearest triangles of each of these pairs of objects, unless they are farther apart than
-/// `within`. threads: 0 for as many as there are cores. Insides are left unknown.
+/// For each pair of objects its nearest triangles, unless these are farther apart than `within`.
+/// threads: 0 for as many as there are cores. Distance::inside is left unknown.
 std::vector<Distance> nearest_triangles(const Scene& scene, std::span<const ObjectPair> objects,
                                         double within, unsigned threads,
                                         const Progress& progress = {});
 
-/// Why the question is about no two triangles of the scene; empty if it is about some.
+/// If the options ask about no pair of triangles of the scene, says why; else empty.
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 
 /// The answers of the record as claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
-/// Answers the question of the options. Throws Error if options are bad, if the question is about
-/// no triangles of the scene, or if there are more answers than most_pairs allows; std::logic_error
-/// if validate() would not accept the scene. memory: holds the previous frame, and on return this
-/// frame; may be null.
+/// Answers what the options ask. Throws Error if options are bad, if they ask about no triangles of
+/// the scene, or if there are more answers than most_pairs allows; std::logic_error if validate()
+/// would not accept the scene. memory: holds the previous frame, and on return this frame; may be
+/// null.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
 

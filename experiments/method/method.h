@@ -13,9 +13,9 @@
 namespace farcull {
 
 /// far: FAR (2004), CULLIDE's passes on fattened primitives. cullide: CULLIDE (2003).
-/// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), every triangle an owner.
-/// i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks of triangles. exact: no
-/// culling.
+/// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), tests the triangles of an
+/// object against each other. i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks
+/// of triangles. exact: no culling.
 /// docs/methods.md gives the source of each method, and says where it can miss.
 enum class Method {
   far,
@@ -32,11 +32,11 @@ struct Candidates;  // record.h
 struct Plan;        // plan.h
 class Session;      // session.h
 
-/// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are set.
+/// Makes all decisions that need no pixels. Sets plan.work, trace and ahead; plan.options are set.
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
-/// Runs the method: finds the candidates of the scene that was planned. take: receives them as they
-/// are found, if a tree of boxes finds them (Candidates::streamed); empty: they are listed.
+/// Runs the method: finds the candidates of the planned scene. take: if a tree of boxes finds them
+/// (Candidates::streamed), receives them as they are found; empty: they are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 

@@ -157,7 +157,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
 
 namespace {
 
-// The number of triangles of all objects that are in a pair or tested against themselves.
+// Counts the triangles of the objects that are in a pair or are tested against themselves.
 std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
   std::vector<std::uint8_t> in(scene.objects.size(), 0);
   for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
@@ -218,7 +218,7 @@ void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& 
                                {.clearance = options.clearance,
                                 .full = options.full,
                                 .neighbours = options.neighbours,
-                                // The accounting is about all candidates.
+                                // The accounting needs a list of all candidates.
                                 .lists = options.verify,
                                 .ignored = options.ignored},
                                threads, plan.memory, plan.decided);

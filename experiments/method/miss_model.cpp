@@ -17,10 +17,10 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kMostParts = std::size_t{1} << 22;  // in a view; 72 bytes each
-constexpr int kMostRepeats = 12;  // of the equations of "until a round changes nothing"
-// A corner is snapped to a multiple of 2^-b px, which moves it by an error of variance 4^-b / 12
-// along each axis. The height of a triangle over its longest edge then changes by an error of
-// variance 5/3 of that, averaged over where the foot of the height lies.
+constexpr int kMostRepeats = 12;  // rounds in solve(), if their number is not limited
+// Standard deviation (px) of the error of a triangle's height over its longest edge. Snapping moves
+// corners to multiples of 2^-b px, an error of variance 4^-b / 12 along each axis. The error of the
+// height has 5/3 of this variance, averaged over where the foot of the height lies.
 const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
 
 struct Point2 {
@@ -96,7 +96,7 @@ Polygon hull(std::vector<Point2> of) {
 
 // The image of a triangle as it is drawn: fattened by a disc of `radius`.
 struct Image {
-  Polygon polygon;  // empty: not drawn, or seen from its edge
+  Polygon polygon;  // empty: not drawn, or seen edge-on
   double area = 0;
   Range x, y, depth;
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
@@ -104,7 +104,7 @@ struct Image {
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
-// E|w + s N| / w for a standard normal N.
+// E|w + s N| / w for w = width, s = kSnapped and a standard normal N.
 double snapped_share(double width) {
   const double z = width / kSnapped;
   if (z > 10) return 1;
@@ -178,12 +178,12 @@ struct Part {
 
 struct ViewOfParts {
   std::vector<Image> images;         // per triangle; without polygons
-  std::vector<std::uint32_t> first;  // per triangle its first index into parts; and the end
+  std::vector<std::uint32_t> first;  // per triangle the index of its first part; then the end
   std::vector<Part> parts;           // sorted
   double radius = 0;                 // px, of the ball
 };
 
-// Adds the part of `back` that `front` hides, also where their depths differ by up to `near`.
+// Adds the part of `back` that `front` hides, also where `front` is behind it by at most `near`.
 void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
               double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
   if (back.depth.hi + near < front.depth.lo) return;
@@ -263,7 +263,7 @@ double disc_share(double radius) {
          4 * (radius * radius * std::acos(0.5 / radius) - 0.5 * std::sqrt(radius * radius - 0.25));
 }
 
-// The probabilities, and how they follow from one another.
+// Solves for the probabilities that triangles are kept, which depend on each other.
 class Equations {
  public:
   Equations(const Scene& scene, std::vector<ViewOfParts> views, const CullSettings& settings,
@@ -350,13 +350,13 @@ class Equations {
     return next;
   }
 
-  // The probability that the triangle that hides is still stored.
+  // The probability that the hiding triangle, part.by, is still stored.
   double stored(const Part& part, int side) const {
     if (!settings_.quick) return now_[0][part.by];
     return (owner_[part.by] < owner_[part.of]) == (side == 0) ? now_[1 - side][part.by] : 0;
   }
 
-  // The probability that a view does not clear a triangle. surely: a triangle that is stored.
+  // The probability that a view does not clear a triangle. surely: a triangle known to be stored.
   double seen(std::size_t v, std::uint32_t t, int side, std::uint32_t surely = UINT32_MAX) const {
     const ViewOfParts& view = views_[v];
     double open = 0;  // the logarithm of the share that nothing hides
@@ -365,7 +365,7 @@ class Equations {
       const Part& part = view.parts[i];
       const double p = part.by == surely ? 1 : stored(part, side);
       open += std::log1p(-p * part.share);
-      if (p < 0.05) continue;  // seldom there: its extent would count as much as its area
+      if (p < 0.05) continue;  // rarely stored: p reduces its area, but would not reduce its extent
       x.add(part.x);
       y.add(part.y);
     }
@@ -374,7 +374,7 @@ class Equations {
                               view.radius, sharpness_);
   }
 
-  // The probability that one centre keeps both, where fattened triangles hide each other.
+  // The probability that one pixel centre keeps both, as fattened triangles can hide each other.
   double both_seen(std::size_t v, std::uint32_t a, std::uint32_t b) const {
     const ViewOfParts& view = views_[v];
     if (!(view.radius > 0)) return 0;
@@ -395,8 +395,8 @@ class Equations {
 
 }  // namespace
 
-// The number of missed pairs is off by a factor of up to 1.2; if nearly all are missed, the number
-// of found ones by up to 1.5.
+// The number of missed pairs is off by a factor of up to 1.2. If nearly all pairs are missed, the
+// number of found pairs is off by a factor of up to 1.5.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -408,8 +408,8 @@ double MissPrediction::high() const {
 
 double centre_probability(double area, double width, double height, double radius,
                           double sharpness) {
-  // At most the area, the width and the height. The disc around a point of the region has its share
-  // of all positions; the rest of the region has at most its share of the others.
+  // The probability is at most the area, the width and the height. A disc inside the region holds a
+  // centre with probability `disc`; else the bounds apply to the rest of the region, over `rest`.
   const double disc = disc_share(radius), rest = 1 - disc;
   if (rest <= 0) return 1;
   const auto term = [&](double size) { return std::pow(std::max(size / rest, 1e-12), -sharpness); };
@@ -482,7 +482,7 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
     out.missed += missed;
     variance += missed * (1 - missed);
   }
-  // Pairs with a common triangle are mostly missed together.
+  // Doubled, since pairs with a common triangle are mostly missed together.
   out.deviation = std::sqrt(2 * variance);
   return out;
 }

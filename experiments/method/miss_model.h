@@ -12,13 +12,13 @@
 
 namespace farcull {
 
-/// Missed pairs, over all positions that the grid of pixels may have below the scene.
+/// How many pairs are missed, if all positions of the pixel grid are equally likely.
 struct MissPrediction {
   std::uint64_t colliding = 0;  // pairs
   double missed = 0;            // on average
-  double deviation = 0;         // standard deviation of one position from that average
+  double deviation = 0;         // standard deviation over the positions
 
-  /// An interval for the misses of one run: two deviations, and the error of the model itself.
+  /// The interval for the misses of one run: two deviations and the error of the model either way.
   double low() const;
   double high() const;
 };
@@ -27,8 +27,8 @@ struct MissPrediction {
 /// a guarantee misses nothing and needs none.
 std::string why_unpredicted(const RunOptions& options);
 
-/// The misses of a plan, or why they are not predicted. A method that guarantees to miss nothing
-/// has neither.
+/// The misses of a plan, or why they are not predicted. For a method that guarantees to miss
+/// nothing, both are empty.
 struct MissesOfPlan {
   std::optional<MissPrediction> predicted;
   std::string why_not;
@@ -39,12 +39,12 @@ MissesOfPlan misses_of(const Scene& scene, const Plan& plan);
 /// with a guarantee.
 std::string misses_line(const MissesOfPlan& misses);
 
-/// How sharply a region with an area, a width and a height above one pixel is sure to hold a pixel
-/// centre. Fitted to random triangles on random grids, not to any scene.
+/// How closely centre_probability() follows its bound min(1, area, width, height); infinite: it
+/// equals the bound. Fitted to random triangles on random grids, not to any scene.
 constexpr double kMissSharpness = 3.5;
 /// The probability that a region holds a pixel centre, if all positions of the grid are equally
-/// likely. area, width and height in px; they are those of a region that was fattened by a disc of
-/// `radius` px.
+/// likely. The region was fattened by a disc of `radius` px; area (px^2), width and height (px)
+/// include this.
 double centre_probability(double area, double width, double height, double radius = 0,
                           double sharpness = kMissSharpness);
 

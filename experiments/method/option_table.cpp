@@ -382,7 +382,7 @@ const Option& run_option(std::string_view name) {
 
 std::string option_word(const std::string& name) {
   if (name == "doctor" || name == "run") return "farcull " + name;  // two commands
-  // Messages name these options of single commands, too.
+  // Messages also name these options, which only single commands have.
   static constexpr std::string_view kOthers[] = {"certificate", "compare", "inside", "no_verify",
                                                  "pairs",       "repeat",  "within"};
   if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&

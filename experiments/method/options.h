@@ -26,13 +26,13 @@ inline constexpr Method kDefaultMethod = Method::boxes;
 /// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 
-/// Whose boxes decide what is drawn. objects: a triangle is drawn if its box meets that of another
-/// object, as published. triangles: if its box meets that of a triangle of another object.
+/// Which boxes decide what is drawn. objects: a triangle is drawn if its box meets the box of
+/// another object, as published. triangles: if it meets the box of a triangle of another object.
 enum class BroadPhase : std::uint8_t { objects, triangles };
 
 struct RunOptions {
   Method method = kDefaultMethod;
-  bool method_is_default = false;  // the user named no method; the record says why it is this one
+  bool method_is_default = false;  // the user named no method; records say why this one was chosen
   int resolution = 0;              // px along the larger side of a view's window; 0: 512
   RadiusRule radius = {};          // far only
   std::string offset = "obb";      // far only
@@ -41,11 +41,11 @@ struct RunOptions {
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
-  int rounds = 0;                    // the most rounds; 0: until a round changes nothing, or
-                                     // far's rule
+  int rounds = 0;                    // the most rounds; 0: until a round changes nothing, for far
+                                     // until it culls little
   ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
   bool objects_alone = false;        // culls only objects, not triangles; not s-cullide
-  bool conservative = false;         // a fragment in each pixel touched; not far
+  bool conservative = false;         // draws each pixel that a triangle touches; not far
   BroadPhase broad_phase = BroadPhase::objects;  // not s-cullide
   std::string views = {};                        // "": x,y,z
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even if only a software
@@ -53,35 +53,35 @@ struct RunOptions {
                             // "": GL if a hardware device answers, else the cores of the CPU
   double clearance = 0;     // world units, finite, >= 0; boxes and exact only
   bool verify = true;
-  bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
-                           // candidates of far and boxes, nor decided
-  std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
-                                         // in_order() gives them
-  std::uint64_t limit = 0;  // only the first pairs that collide, neighbours included; 0: all
+  bool neighbours = true;  // false: triangles of one object that share a vertex index are not
+                           // decided, and are no candidates of far and boxes
+  std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other, sorted
+                                         // by in_order()
+  std::uint64_t limit = 0;  // finds only this many colliding pairs, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
-  bool full = false;          // leave nothing out that the scene does not need (docs/methods.md)
+  bool full = false;          // do also what the scene does not need (docs/methods.md)
   bool no_shortcuts = false;  // far draws all that a radius without a guarantee has to draw, so
                               // that radii can be compared; `full` leaves out even less
-  std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: it is not random
+  std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: no random scene
   // The value of a new option goes here.
 };
 
 /// A value as records hold it; empty: null.
 using OptionValue = std::variant<std::monostate, bool, int, double, std::string>;
 
-/// An option that a user gives by name. The table of these makes the command line with its help,
-/// completion, the refusals, Python's keywords, and the options in records.
+/// An option that a user gives by name. The table of options determines the command line, its help
+/// and completion, errors for options that do not fit, Python's keywords, and options in records.
 struct Option {
   const char* name;  // of the parameter, as in depth_format (--depth-format on a command line)
-  const char* type;  // stands for the value in a help, as in "fragment|fixed"; "" for a flag
-  std::string help;  // lines of a help
+  const char* type;  // the value as the help shows it, as in "fragment|fixed"; "" for a flag
+  std::string help;  // text of the help, in lines
   bool (*serves)(const Traits&);  // which methods have the option
-  /// Reads a value; a flag's is "". Returns false if the text is no value of the option, or throws
+  /// Reads a value ("" for a flag). Returns false if the text is no value of the option, or throws
   /// Error if another message says more. Precondition: options.method is set. Null: the option is
   /// about the scene, and the caller reads it.
   bool (*take)(const std::string& text, RunOptions& options) = nullptr;
-  const char* kind = "";    // a bad value "is no <kind>"
-  const char* remedy = "";  // and what to give instead
+  const char* kind = "";    // the error for a bad value says that it "is no <kind>"
+  const char* remedy = "";  // what the error says to give instead
   /// The value as on the command line if it changes what methods do, else nothing. Methods without
   /// the option refuse such a value. Null: they refuse only a value that the user gave, and ignore
   /// others.
@@ -102,7 +102,7 @@ std::span<const Option> run_options();
 /// The option with this name. Precondition: there is one.
 const Option& run_option(std::string_view name);
 /// The option as a word of a command line, as in --depth-format, or one of the commands that
-/// messages name, as in "farcull doctor"; empty if there is none. For spell_parameters().
+/// messages name, as in "farcull doctor"; empty for other names. For spell_parameters().
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".
@@ -146,8 +146,8 @@ bool guaranteed(const RunOptions& options);
 /// The options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as on the
 /// command line: "--rounds 1 --clear all"; empty if there are none.
 std::string form_text(const RunOptions& options);
-/// The options without those of a form that the method cannot take, so that one choice serves
-/// several methods.
+/// The options; those of a form that the method does not have are reset, so that one choice of
+/// options serves several methods.
 RunOptions with_fitting_form(RunOptions options);
 /// "published", "budget", or the factor on the budget radius.
 std::string radius_text(const RadiusRule& radius);

@@ -20,10 +20,10 @@ struct DrawPlan {
   Regions regions;
   std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
   CullSettings settings;            // without the fattener
-  bool self = false;                // triangles of marked objects are owners
+  bool self = false;                // each triangle of a marked object is its own owner
   Patches patches;                  // for far, if an object is tested against itself; else empty
-  /// All pairs whose boxes overlap, if boxes of triangles are compared before drawing; if any of
-  /// them is drawn, the owners of `patches` are set. Empty: only boxes of objects are compared.
+  /// All pairs of triangles whose boxes overlap; if any of them is drawn, patches.owner is set.
+  /// Empty: only boxes of objects are compared before drawing.
   std::optional<PairsToDraw> pairs = {};
 };
 
@@ -48,8 +48,8 @@ Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
           const Progress& progress = {}, FrameMemory* memory = nullptr,
           const BlockDecision* decided = nullptr);
 
-/// Throws Error if an object is tested against itself and the method cannot do that, or if none is
-/// and the method can do nothing else.
+/// Throws Error if an object is tested against itself and the method cannot do that, or if no
+/// object is and the method does only that.
 void require_scene(const Scene& scene, Method method);
 
 }  // namespace farcull

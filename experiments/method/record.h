@@ -42,16 +42,16 @@ struct SweptObjects {
 };
 
 struct Candidates {
-  std::vector<TrianglePair> pairs;       // sorted; empty if they were given
-  bool streamed = false;                 // they were decided as they were found, and not listed
+  std::vector<TrianglePair> pairs;       // sorted; empty if streamed
+  bool streamed = false;                 // pairs were decided as they were found, and not listed
   std::uint64_t count = 0;               // of candidate pairs
   std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
   std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for boxes
                                          // run() fills it from the pairs; empty for a method that
-                                         // culls nothing, as all are kept
+                                         // culls nothing, since it keeps all triangles
   std::uint64_t triangle_count = 0;      // of the potentially colliding set
   std::uint64_t object_count = 0;
-  std::optional<Collisions> decided;  // set if they were given
+  std::optional<Collisions> decided;  // the answers, if streamed
   /// The views of a drawing method, or the objects of a sweep.
   std::variant<std::monostate, std::vector<ViewReport>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
@@ -60,7 +60,7 @@ struct Candidates {
   std::vector<Stage> trace;
   double setup_ms = 0;    // context, shaders; 0 if an earlier run had made them
   double ms = 0;          // of finding, without setup
-  double decided_ms = 0;  // of deciding, if they were given; not part of ms
+  double decided_ms = 0;  // of deciding, if streamed; not part of ms
 
   /// The views in `by`; empty if it holds another kind.
   const std::vector<ViewReport>& views() const {
@@ -68,7 +68,7 @@ struct Candidates {
     const auto* views = std::get_if<std::vector<ViewReport>>(&by);
     return views ? *views : none;
   }
-  /// True if a drawing method drew. If not, boxes left nothing, or pixels could resolve no view.
+  /// True if a drawing method drew. It does not if boxes left nothing or no view is resolvable.
   bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
@@ -82,7 +82,7 @@ struct RunTimes {
   double setup = 0;     // context, shaders; 0 if an earlier run of the process had made them
   double cull = 0;      // plan, fattening, passes, box join of the kept triangles
   double exact = 0;     // exact predicates on the candidates
-  double total = 0;     // of all stages but the verification and the kinds of contact
+  double total = 0;     // setup, cull and exact together
   double contacts = 0;  // kinds of contact
   FARCULL_FIELDS(setup, cull, exact, total, contacts)
 };
@@ -95,9 +95,9 @@ struct Promise {
   std::optional<DeviceVerdict> verdict;  // of that device; empty if the guarantee needs no device
 };
 
-/// Colliding pairs that FAR loses in the same scene, views and pixels with 0.9 of the budget
-/// radius, and without a ball. Where both are 0, a run without misses says nothing about the
-/// radius.
+/// How many colliding pairs FAR loses in the same scene, views and pixels: with 0.9 of the budget
+/// radius (at_risk), and with radius 0 (at_risk_bare). If both are 0, a run without misses says
+/// nothing about the radius.
 struct PairsAtRisk {
   std::uint64_t at_risk = 0, at_risk_bare = 0;
 };
@@ -112,15 +112,15 @@ struct Record {
   Candidates found;
   Collisions collisions;
   std::uint64_t decided = 0;  // candidates that exact predicates decided
-  bool complete = true;       // false: the limit was reached, so candidates were left undecided, or
-                              // colliding ones behind the last were left out
+  bool complete = true;       // false: the limit was reached, so candidates are undecided, or
+                              // colliding pairs after the last one listed are left out
   bool limited = false;       // the limit ended the search, so nothing accounts for the pairs
-  std::vector<ContactShape> contacts;            // of collisions.pairs, if they are asked for;
-  std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs. Without segments
-                                                 // only the kinds are set
-  std::optional<Accounting> verification;        // with kExamples examples
-  std::optional<ContactCounts> missed;  // how many missed pairs touch, and how many penetrate; with
-                                        // a verification, without a clearance
+  std::vector<ContactShape> contacts;            // of collisions.pairs, if contacts are asked for
+  std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs, likewise. Both:
+                                                 // only the kinds, unless segments are asked for
+  std::optional<Accounting> verification;        // with at most kExamples examples
+  std::optional<ContactCounts> missed;  // how many missed pairs touch, and how many penetrate; set
+                                        // with a verification and without a clearance
   std::optional<PairsAtRisk> risk;      // if pairs_at_risk() was asked
   RunTimes ms;
   FloatingPoint callers, used;  // floating-point environment of our caller, and of this run

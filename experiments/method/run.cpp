@@ -60,7 +60,7 @@ class StreamingDecider {
     ms_ += watch.ms();
   }
 
-  // Moves the answers to `found`, whose last stage found the candidates and holds the time of both.
+  // Moves the answers to `found`, and subtracts the time of deciding from the stage of finding.
   void finish(Candidates& found) {
     const Stopwatch watch;
     if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
@@ -85,7 +85,7 @@ class StreamingDecider {
   ExactQuestion question_;
   const unsigned all_threads_;
   std::vector<std::uint8_t> kept_;  // per triangle; empty: none is marked
-  std::mutex mutex_;                // of all below
+  std::mutex mutex_;                // guards all members below
   GatheredPairs pairs_, neighbour_pairs_;
   Collisions counts_;  // without pairs until the end
   std::uint64_t ignored_ = 0;
@@ -93,8 +93,8 @@ class StreamingDecider {
   double ms_ = 0;  // of all threads together
 };
 
-// Whether a run with a limit does not list its candidates, since a tree over all boxes finds them
-// and they are more than kMostListed. (Blocks decide only where triangles overlap few others.)
+// True if a tree over all boxes finds the candidates and they are more than kMostListed. A run with
+// a limit then does not list them. (Blocks are used only where triangles overlap few others.)
 bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& question,
                 unsigned threads) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
@@ -118,8 +118,8 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
   return listed > kMostListed;
 }
 
-// Searches in the order of pairs, and stops when as many pairs collide as the limit says. If hardly
-// any collide, as for points in one place, it stops after kMostSearched candidates.
+// Searches in the order of pairs until options.limit pairs collide. If hardly any collide, as for
+// points in one place, stops after kMostSearched candidates and 16 more for each pair of the limit.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;
@@ -333,7 +333,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   // methods decide() has kept the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
-  require_proved("arithmetic");  // a driver's code ran in this thread too
+  require_proved("arithmetic");  // code of a driver may have changed this thread's settings
   record.used = floating_point();
   return record;
 }

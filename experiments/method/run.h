@@ -16,9 +16,9 @@
 namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// question: if boxes alone find candidates, decides them as they are found, so that memory does
-/// not grow with their number; null: lists them all, except for a method that culls nothing. marks:
-/// false leaves out the triangles of candidates that are not listed. Throws Error for any fault of
+/// question: candidates from a tree of boxes are decided as they are found, so that memory does not
+/// grow with their number; null: all are listed, except by a method that culls nothing. marks: if
+/// false, triangles of candidates that are not listed are left out. Throws Error for any fault of
 /// the device. After any exception the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
@@ -31,7 +31,7 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
 /// How a caller of run() uses it, besides the options of the user.
 struct RunUse {
   /// Removes candidates that are left to other runs (tiles). Called before the exact tests, but
-  /// after the accounting, which is about all candidates. Empty: none is removed.
+  /// after the accounting, which needs all candidates. Empty: none is removed.
   std::function<void(std::vector<TrianglePair>&)> filter = {};
   std::string scene_hash = {};  // scene_hash() of the scene, if the caller knows it
   /// True: the record has only the pairs, their contacts, counts, times and stages. It has no hash
@@ -41,7 +41,7 @@ struct RunUse {
   /// What is new since the last run of the session, if the caller knows; null: the scenes are
   /// compared. Used only if the session remembers frames.
   const FrameChange* change = nullptr;
-  /// Blocks that overlap, as decide_by_motions() gives them, if the caller knows; for boxes. Then
+  /// For `boxes`: the blocks that overlap, by decide_by_motions(), if the caller knows them. Then
   /// only vertices of these blocks are read, and the session neither uses nor keeps frames.
   const BlockDecision* decided = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
@@ -52,8 +52,8 @@ struct RunUse {
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
-/// Runs FAR twice more, with smaller balls, without accounting: in all up to five times the cull
-/// time of the record, since a radius without a guarantee leaves no view out. Empty unless the
+/// Runs FAR twice more, with smaller balls and without accounting. This takes up to five times the
+/// cull time of the record, since no view may be left out without a guarantee. Empty unless the
 /// record is of `far` with a guarantee, drew, and accounts for all pairs.
 std::optional<PairsAtRisk> pairs_at_risk(const Scene& scene, const Record& record, Session& session,
                                          const Progress& progress = {});
@@ -70,8 +70,8 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
 /// their order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// The pairs that were left to the exact tests, sorted. If these were decided as they were found,
-/// as by a method that culls nothing: the colliding pairs, neighbours included, so that every other
+/// The pairs that were left to the exact tests, sorted. If they were not listed, since they were
+/// decided as they were found: only the colliding pairs, neighbours included, so that every other
 /// pair has to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
@@ -80,8 +80,8 @@ std::vector<TrianglePair> pairs_left(const Record& record);
 /// device.
 bool broken(const Record& record, bool strict);
 
-// One rule for program, library and Python: where nothing is tested there is no answer, since 0
-// pairs would be taken for a scene without collisions.
+// One rule for program, library and Python: it is an error if nothing is tested, since an answer of
+// 0 pairs would be taken for a scene without collisions.
 
 /// Throws Error about the argument `where` if so many different pairs of objects are ignored that
 /// none is left, and no object is tested against itself. The remedy is to ignore fewer pairs, or
@@ -89,7 +89,7 @@ bool broken(const Record& record, bool strict);
 void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
                    const std::string& where, const std::string& otherwise);
 
-/// The same of a scene: the pairs that it ignores itself count as well.
+/// The same for a scene: the pairs in scene.ignored count as well.
 void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
                    const std::string& otherwise);
 

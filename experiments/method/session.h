@@ -35,7 +35,7 @@ class Session {
   /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers and
   /// keeps the assumptions; else the cores of the CPU are used, since a software renderer would use
   /// the same cores more slowly. threads: of the CPU; 0: as many as there are cores. say: receives
-  /// one line if the device is probed, which says why; may be empty.
+  /// a line if the device is probed, as in device_verdict(); may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
@@ -50,8 +50,8 @@ class Session {
   const DeviceVerdict& verdict();
   /// The device on which canvases draw: the cores of the CPU, or the GL device of context().
   const CanvasDevice& canvas_device();
-  /// The canvas for the drawables of this fattener. There is one for each name of a fattener. Only
-  /// GL has query modes.
+  /// The canvas for the drawables of this fattener. There is one for each name of a fattener and
+  /// each set of options. Only GL has query modes.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   /// The largest resolution of the session's canvases, in px.
   int max_resolution();

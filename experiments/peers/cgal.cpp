@@ -112,8 +112,8 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
   return inside;
 }
 
-/// Joins the boxes of one pair of objects after the other, or of an object with itself, clipped to
-/// the common part of the objects' boxes.
+/// For each pair of objects, and each `self` object with itself, joins the boxes of the triangles
+/// that meet the common part of the objects' boxes.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   // With one pair of objects only the decisions can be divided over threads.
   const bool parallel = threads > 1 && raw.objects.size() > 2;

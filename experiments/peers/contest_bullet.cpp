@@ -27,7 +27,7 @@ constexpr const char* kType = "float";
 
 enum class Margin { none, by_default };
 
-/// An object in Bullet. Bullet refers to the vertices and triangles of this class.
+/// An object in Bullet. Bullet keeps pointers to the arrays of this class.
 class Body {
  public:
   Body(const Scene& scene, const Object& object, Margin margin) {

@@ -1,6 +1,6 @@
 // farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
-// names, else on the cores of the CPU. Methods run as by `farcull run`, except that boxes runs by
-// the library.
+// names, else on the cores of the CPU. Methods run as by `farcull run`, except that boxes is run by
+// the library (Collider::find()).
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -129,7 +129,7 @@ Contestant far_at(const std::string& radius) {
   return out;
 }
 
-/// Whether the insides of two objects overlap, as `farcull clash` says it.
+/// Whether the insides of two objects overlap, as `farcull clash` decides it.
 bool clash_of(const Scene& scene) {
   const ClashRecord record = clashes(scene, {.threads = 1});
   if (record.rows.empty()) return false;

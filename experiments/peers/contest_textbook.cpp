@@ -152,9 +152,9 @@ T side(const Point<T>& a, const Point<T>& b, const Point<T>& c, const Point<T>& 
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// The corner that is alone on its side of the other plane, and whether that is the negative side.
-/// If one corner is on the plane and the other two are on one side, it is the one on the plane, and
-/// `negative` says that the others are on the positive side.
+/// The lone corner: alone on its side of the other plane. negative: that side is the negative one.
+/// If one corner is on the plane and the other two are on one side, the lone corner is the one on
+/// the plane, and negative: the other two are on the positive side.
 struct Alone {
   int corner = 0;
   bool negative = false;
@@ -197,7 +197,7 @@ bool guigue_devillers(const SuitePair& pair) {
   // Turns each triangle so that the lone corner of the other one is on its positive side.
   if (in_a.negative) std::swap(b[1], b[2]);
   if (in_b.negative) std::swap(a[1], a[2]);
-  // The intervals on the common line overlap.
+  // True if the intervals on the common line overlap.
   return side(a[0], a[1], b[0], b[1]) <= 0 && side(a[0], a[2], b[2], b[0]) <= 0;
 }
 

@@ -46,7 +46,7 @@ Number number(std::string_view text) {
   throw NoQuestion("'" + std::string(text) + "' is no number");
 }
 
-/// The last 18 fields as two triangles.
+/// Reads two triangles from the last 18 of `count` fields.
 SuitePair read_triangles(const Fields& fields, std::size_t count) {
   if (fields.size() != count)
     throw NoQuestion(std::string(fields[1]) + " has " + std::to_string(count) + " fields");
@@ -74,7 +74,7 @@ void add_mesh(const std::string& path, bool self, Scene& out) {
   out.objects.back().self = self;
 }
 
-/// The OBJ files of the fields from `first` to before `end` as objects.
+/// Loads the OBJ files that the fields from `first` to before `end` name, each as an object.
 Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool self) {
   if (fields.size() < std::max(first + 1, end))
     throw NoQuestion(std::string(fields[1]) + " lacks fields");
@@ -110,7 +110,7 @@ class Timer {
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 
-/// The answer that is yes or no, with its time.
+/// The answer to a question of yes or no, with the time that it took.
 template <class Ask>
 std::string verdict(const std::string& begin, const Ask& ask) {
   const Timer timer;

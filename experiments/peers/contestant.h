@@ -1,6 +1,6 @@
 // A contestant is a library, called as its documentation says, in a program that reads questions as
-// text and answers them. docs/ask.md has the protocol. Here is its half in C++: `PROGRAM NAME` is
-// the contestant NAME of the program.
+// text and answers them. docs/ask.md has the protocol; this is the side that answers, in C++.
+// `PROGRAM NAME` is the contestant NAME of the program.
 //
 // Each library has its own program, and is not called by farcull, for three reasons. A library may
 // crash, hang or take all memory. Libraries may not be linked together: Bullet exists in float and
@@ -24,7 +24,7 @@ namespace farcull {
 /// Which pairs of triangles a library calls colliding, according to its documentation.
 enum class Means : std::uint8_t {
   closed,    // closed triangles: touching counts
-  crossing,  // triangles that cross; touching and coplanar ones may be called either
+  crossing,  // triangles that cross; for touching and coplanar ones both answers are right
 };
 
 struct ContestantCard {
@@ -32,13 +32,13 @@ struct ContestantCard {
   std::string library = {};  // name and version, such as "CGAL 5.5.1"
   Means means = Means::closed;
   bool degenerate = true;   // the library takes triangles that are segments or points
-  bool neighbours = false;  // uses which corners two triangles share, and leaves these out
+  bool neighbours = false;  // can be told which corners two triangles share, and ignores these
   double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
   bool guaranteed = false;  // only for farcull's methods: a miss breaks the guarantee
   // For libraries of the study these texts are in experiments/report/chapters/libraries.csv.
   std::string call = {};    // the function that is called, and its arguments
   std::string says = {};    // what its documentation says of exactness and of touching
-  std::string source = {};  // where the documentation says so; others may omit it
+  std::string source = {};  // where the documentation says so; may be empty
   std::string use = {};     // for which purpose it is the right choice
 };
 
@@ -62,8 +62,8 @@ struct Contestant {
   /// objects are tested against themselves too, or none. A triangle with itself is no pair.
   std::function<std::vector<TrianglePair>(const Scene&)> mesh = {};
   std::function<ContestDistance(const SuitePair&)> distance = {};
-  // The other questions, about a scene of one object that is tested against itself, of one closed
-  // object and a point, and of two closed objects.
+  // The other questions. The scene has: for `self` one object, which is tested against itself; for
+  // `inside` one closed object; for `clash` two closed objects.
   std::function<bool(const Scene&)> self = {};
   std::function<bool(const Scene&, const Vec3&)> inside = {};
   std::function<bool(const Scene&)> clash = {};

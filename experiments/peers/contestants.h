@@ -1,5 +1,5 @@
-// The contestants that the study "libraries" knows. They are asked as anybody's program is, by
-// experiments/suite/ask.py (docs/ask.md), which also counts what they get wrong.
+// The contestants that the study "libraries" knows. experiments/suite/ask.py (docs/ask.md) asks
+// them like any other program, and counts their wrong answers.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -25,8 +25,8 @@ const KnownContestant& known_contestant(const std::string& name);
 /// not built.
 std::string command_of(const KnownContestant& contestant);
 
-/// What `ask.py --json` prints with these options about the program that a command line starts.
-/// Throws Error with the reason if it fails.
+/// Runs `ask.py --json` with these options on the program that `command` starts, and returns what
+/// it prints. Throws Error with the reason if it fails.
 nlohmann::json ask_program(const std::string& command, const std::vector<std::string>& options);
 
 }  // namespace farcull

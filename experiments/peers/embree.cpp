@@ -41,9 +41,9 @@ std::string refuses_large(const Scene& scene) {
 
 // The broad phase: hierarchies of user geometries, whose boxes in float are rounded outward.
 
-// These functions move x outward by more than its rounding to float: the step is at least an ulp of
-// f, f -+ an ulp is a float, and rounding is monotone; kTiny is more than half an ulp of subnormal
-// floats. For |x| < 2^127. (This is faster than finding the nearest float beyond x, and suffices.)
+// For |x| < 2^127, these functions move x outward by more than its rounding to float. The step is
+// at least an ulp of f, f - ulp and f + ulp are floats, and rounding is monotone. kTiny is more
+// than half an ulp of subnormal floats. (This is faster than finding the nearest float beyond x.)
 constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);

@@ -102,7 +102,7 @@ struct Objects {
     register_in(manager);
     return meeting(manager);
   }
-  /// As above, of the objects in the manager.
+  /// The same for the objects in the manager.
   static std::vector<IndexPair> meeting(const Manager& manager) {
     std::vector<IndexPair> pairs;
     manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
@@ -163,7 +163,7 @@ BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
   return candidates.finish(build_ms);
 }
 
-/// Sets up FCL's traversal of the hierarchies of two objects, where they are placed.
+/// Sets up FCL's traversal of the hierarchies of two objects at their current poses.
 template <class Node, class Volume, class Request, class Result>
 void initialize(Node& node, const Objects<Volume>& objects, std::size_t a, std::size_t b,
                 const Request& request, Result& result) {
@@ -195,7 +195,7 @@ void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std
   }
 }
 
-/// The pairs that a search of each task found, sorted.
+/// The pairs that all tasks found, each with its lower number first, sorted.
 std::vector<TrianglePair> sorted(const std::vector<std::vector<TrianglePair>>& found) {
   std::vector<TrianglePair> out;
   for (const std::vector<TrianglePair>& some : found) {
@@ -235,7 +235,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   return answer;
 }
 
-/// Keeps hierarchies and broad phase of the objects; a call places the objects anew.
+/// Builds hierarchies and broad phase, which the result keeps; each call moves the objects.
 PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   using All = Objects<fcl::OBBRSS<double>>;
   struct Kept {

@@ -58,7 +58,7 @@ std::string why_missing(const Known& known) {
   return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
 }
 
-/// The peers of a list, taken from one member (`part`) of what the adapters give.
+/// The peers that `list` names, from the member `part` of what the adapters give.
 template <class PeerKind>
 std::vector<PeerKind> listed(std::span<const Known> list,
                              std::vector<PeerKind> LibraryPeers::*part) {

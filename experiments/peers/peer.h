@@ -47,13 +47,13 @@ struct Peer {
                                                           // empty: it is. Null: exact on all
 };
 
-/// objects: every two objects that have triangles. nearest: each such object and its nearest other.
+/// objects: every two objects with triangles. nearest: each such object and its nearest other one.
 enum class DistanceTask : std::uint8_t { objects, nearest };
 
 struct PeerQuestion {
   DistanceTask task = DistanceTask::objects;
-  double within = std::numeric_limits<double>::infinity();  // world units: farther ones may be left
-                                                            // out
+  double within = std::numeric_limits<double>::infinity();  // world units; larger distances may be
+                                                            // left out
 };
 
 /// A distance of two objects. With `objects` a < b; with `nearest` b is the object nearest to a.
@@ -133,8 +133,8 @@ std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 /// Why a peer does not take a scene: `reason` if it has degenerate triangles, else nothing.
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 
-/// A scene as a peer prepares it, which counts to the peer's time: the boxes of the triangles, and
-/// which triangles are tested with which.
+/// What a peer prepares from a scene: the boxes of the triangles, and which triangles are tested
+/// with which. The time for this counts as the peer's.
 struct PeerScene {
   /// with_boxes: false for a peer that makes its own boxes.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
@@ -153,8 +153,8 @@ struct PeerScene {
   bool has_pairs() const;
 };
 
-/// Takes candidates from one thread or several and decides them: full parts while candidates come,
-/// the rest on all threads at the end.
+/// Takes candidates from one thread or several, and decides them: a part as soon as it is full, the
+/// rest on all threads at the end.
 class PeerCandidates {
  public:
   /// parallel: candidates come from several threads, and each thread decides its own full parts.
@@ -197,8 +197,8 @@ class PeerCandidates {
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
-/// Calls work(i) for 0 .. count - 1 on `threads` threads; a thread that is free takes the next
-/// `block`.
+/// Calls work(i) for 0 .. count - 1 on `threads` threads; a free thread takes the next `block` of
+/// these calls.
 template <class Work>
 void for_each_taken(std::size_t count, std::size_t block, unsigned threads, const Work& work) {
   std::atomic<std::size_t> next = 0;
@@ -226,8 +226,8 @@ struct TreeTask {
   bool inner = false;  // compare the leaves below a with each other; first == second and a == b
 };
 
-/// One step of a search. Two leaves are given to `found`; of other nodes the larger is divided, and
-/// the new tasks are given to `next`. Disjoint volumes end the search.
+/// One step of a search. Nothing is done for disjoint volumes. Two leaves are given to `found`.
+/// Else the larger node is divided, and the new tasks are given to `next`.
 template <class Tree, class Found, class Next>
 void step(const TreeTask<Tree>& task, const Found& found, const Next& next) {
   const Tree& first = *task.first;
@@ -285,12 +285,11 @@ void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigne
                  [&](std::size_t i) { descend(tasks[i], with(tasks[i], candidates.part())); });
 }
 
-/// The distances that a task asks for, sorted; the work is divided over the threads.
-/// numbers: numbers of the objects that have triangles, ascending; the functions take indices into
-/// it. most: the first bound. bound(i, k, least): the peer's result for two objects if it is below
-/// `least`; else any value that is `least` or more. gap(i, k): a cheap lower bound of that result.
-/// distance(found): the result as a distance in world units, or infinity if the question does not
-/// ask for it.
+/// The distances that a task asks for, sorted; the work is divided over the threads. numbers: of
+/// the objects that have triangles, ascending; i and k are indices into it. bound(i, k, least): the
+/// peer's result for two objects if it is below `least`; else any value that is `least` or more.
+/// most: `least` at the start. gap(i, k): a cheap lower bound of that result. distance(found): the
+/// result as a distance in world units, or infinity if the question does not ask for it.
 template <class Scalar, class Gap, class Bound, class Distance>
 std::vector<PeerDistance> distances_of_trees(const std::vector<std::uint32_t>& numbers,
                                              DistanceTask task, Scalar most, unsigned threads,

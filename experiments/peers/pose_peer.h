@@ -25,7 +25,7 @@ struct PosePeer {
                                                           // it can
 };
 
-/// All of them, including those that this build does not have. fcl-double is FCL's OBBRSS
+/// All peers for poses, including those that this build does not have. fcl-double is FCL's OBBRSS
 /// hierarchies and fcl::collide(), as in narrow_peers(), with hierarchies and the broad phase kept
 /// from call to call.
 std::vector<PosePeer> pose_peers();

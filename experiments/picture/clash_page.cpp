@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Fills the data of a row; `segments` takes the ends of its curve.
+/// The data of a row. Appends the ends of the segments of its curve to `segments`.
 json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector<Vec3>& segments) {
-  // Of parts that are apart, the line between two nearest points.
+  // For parts that are apart: the line between two nearest points.
   std::vector<std::array<Vec3, 2>> lines = row.segments;
   if (row.squared && !row.inner) lines.push_back(row.witness);
   const std::size_t first = segments.size();

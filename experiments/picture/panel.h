@@ -28,7 +28,7 @@ struct PictureArguments {
       frames;  // of the motion; default 30 frames, or only `frame` for numbered meshes
   std::vector<RunOptions> panels;  // one panel each, side by side; verify and device are ignored
   std::string view;                // direction that the eye looks along, as parse_view(); "":
-                                   // obliquely down on the side that +z points to
+                                   // down at an angle, at the side that faces +z
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
   bool zoom = false;               // only the colliding triangles
   int width = 900, height = 760;   // px of a panel's picture, 64 to kMostPicture
@@ -44,8 +44,8 @@ std::string command_of(const PictureArguments& arguments);
 /// scene, opens no device.
 void validate(const PictureArguments& arguments);
 
-/// The view of the picture: an eye sees the image upright, with right, up and forward of a
-/// right-handed world. Throws Error naming --up if that is the direction of sight.
+/// The view of the picture. Its image is upright and not mirrored: the directions right, up and
+/// backward are right-handed. Throws Error naming --up if --up is the direction of sight.
 View camera(const PictureArguments& arguments);
 
 /// The frames of the motion with arguments.frame. Precondition: a frame is given.
@@ -89,13 +89,13 @@ struct SheetPanel {
   int left = 0, top = 0;  // position of the image in the sheet of compose()
 };
 
-/// Blends `above` over `below`, which is opaque and of the same size, with that opacity.
+/// Blends `above`, times `opacity`, over `below`, which is opaque and of the same size.
 void lay_over(Image& below, const Image& above, double opacity);
 
 /// A circle around (x, y), px from the left and the top, with a light line on both sides of it.
 void draw_ring(Image& image, double x, double y, double radius, double line, const Rgba& colour);
 
-/// Height of the letters for a panel of this width, px. They stay legible at half the size.
+/// Height of the letters for a panel of this width, px. Legible even if it is shown at half size.
 double letter_height(int panel_width);
 
 /// The sheet: title and subtitle, the panels (at least one), a line of small print. Truncates texts

@@ -21,7 +21,7 @@ namespace farcull {
 /// The answer of a method on the scene of a picture, compared with the truth.
 struct MethodAnswer {
   std::vector<TrianglePair> missed;  // colliding pairs that the method lacks; sorted
-  std::vector<std::uint32_t> lost;   // triangles in one of those, ascending
+  std::vector<std::uint32_t> lost;   // triangles in a missed pair, ascending
   std::vector<std::uint32_t> idle;   // kept triangles that are in no collision, ascending
   PanelResult result;                // its counts and texts
 };
@@ -29,9 +29,9 @@ struct MethodAnswer {
 /// The scene of the arguments, kept by the lab. Throws Error as load_scene() and FrameSource do.
 const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab);
 
-/// Runs the method on the last scene that the lab opened, and compares with the lab's truth. The
-/// lab's device answers; the options' device and verification are ignored. Throws Error as run()
-/// does.
+/// Runs the method on the last scene that the lab opened, and compares its answer with lab.truth().
+/// The lab's device is used; the options' device and verification are ignored. Throws Error as
+/// run() does.
 MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab);
 
 struct PictureResult {
@@ -43,9 +43,9 @@ struct PictureResult {
   std::string not_asked;  // not_asked_line() of the scene (tables.h)
 };
 
-/// Runs the methods of the panels and draws. The lab's device answers; if it is "cpu", the first GL
-/// device draws the picture. Throws Error for bad arguments, a scene without triangles or one that
-/// a method does not accept, and for faults of the device.
+/// Runs the methods of the panels and draws, both on the lab's device; if that is "cpu", the first
+/// GL device draws the picture. Throws Error for bad arguments, a scene without triangles or one
+/// that a method does not accept, and for faults of the device.
 PictureResult make_picture(const PictureArguments& arguments, MeasurementContext& lab);
 
 // `farcull picture --html`: one file with the scene, the answers of methods on it, and everything
@@ -80,8 +80,8 @@ struct PageArguments {
 /// Default resolutions that a reader can step through, px: from large pixels to usual ones.
 constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
 
-/// The methods of the panels, each once at every resolution, ascending; a method that takes no
-/// resolution, or lets the scene choose it, appears unchanged.
+/// The methods of the panels: each one that draws, once at every resolution, ascending; the others
+/// once and unchanged.
 std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
                                        std::vector<int> resolutions);
 

@@ -86,8 +86,8 @@ void put(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-// A chunk of PNG with a text, which cairo does not write: iTXt has two flags, a language and a
-// translated keyword before the text, all empty here.
+// A PNG chunk with a text, since cairo writes none. In iTXt, two flags, a language and a translated
+// keyword come before the text; all are empty here.
 std::string chunk_of(const std::string& key, const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
   const std::string body =

@@ -3,8 +3,8 @@
 
 #if FARCULL_WITH_THREE
 
-// The bytes of the file from farcull_NAME to farcull_NAME_end. The assembler includes them: as
-// arrays they would take the compiler minutes.
+// Puts the bytes of a file between farcull_NAME and farcull_NAME_end. The assembler includes them,
+// since the compiler would take minutes for arrays.
 #define FARCULL_EMBED(name, path)          \
   asm(".pushsection .rodata\n"             \
       "farcull_" #name ": .incbin \"" path \

@@ -23,7 +23,7 @@
 
 namespace farcull::python {
 
-// Calls of the library: in another thread, so that the interpreter continues and can stop them.
+// Calls of the library run in another thread, so that the interpreter continues and can stop them.
 
 namespace py = pybind11;
 

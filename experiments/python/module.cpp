@@ -1,5 +1,5 @@
-// Calls in their own threads, exceptions of C++ as those of Python, and the compiled module. In
-// messages, names of options become names of parameters: "--depth-format" is depth_format.
+// Runs calls in their own threads, turns exceptions of C++ into those of Python, and defines the
+// compiled module. Messages name parameters, not options: depth_format, not "--depth-format".
 #include "experiments/python/arrays.h"
 
 #include <cxxabi.h>
@@ -29,8 +29,8 @@ constexpr std::chrono::milliseconds kLook{50};  // between checks for signals
 // The GNU C library returns free memory at the top of a thread's heap to the system if it exceeds
 // twice the largest block that was mapped and freed before, at most 32 MB. While that limit is low,
 // each call requests the same pages again, and writing to new pages took half of the time of small
-// scenes. So one large block is mapped and freed, and never written to. If the environment or
-// mallopt() sets the limit, the library keeps to that.
+// scenes. So one large block is mapped and freed, never written to, which raises the limit. A limit
+// that the environment or mallopt() has set stays.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -62,7 +62,7 @@ class Running {
   static void end_all() {
     const std::lock_guard lock(all().mutex);
     all().ending = true;
-    if (::getpid() != all().process) return;  // forked: the threads of the calls are not here
+    if (::getpid() != all().process) return;  // a fork does not have the threads of the calls
     for (StoppableCall* call : all().calls) call->stop();
     for (StoppableCall* call : all().calls) {
       while (!call->wait_for(kLook)) {

@@ -138,7 +138,7 @@ py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
   return out;
 }
 
-// The pairs of objects that two patterns of names select, as in the program. Errors call it `what`.
+// The pairs of objects that two name patterns select, as in the program. what: its name in errors.
 std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
                                                       const std::string& first,
                                                       const std::string& second,

@@ -85,7 +85,7 @@ CheckResult check_list(const Scene& scene, const std::string& name,
     const TrianglePair pair = pair_of(scene, name, row);
     if (pair.a != pair.b) listed.push_back(pair);
   }
-  // The evidence is about all pairs, so it gets those of ignored objects, too.
+  // The evidence has to cover all pairs, so the pairs of ignored objects are added.
   if (const IgnoredObjects is_ignored(scene, scene.ignored); is_ignored.any()) {
     for (const TrianglePair& pair : all_colliding_pairs(scene, {.clearance = clearance}).pairs) {
       if (is_ignored(pair)) listed.push_back(pair);
@@ -94,12 +94,12 @@ CheckResult check_list(const Scene& scene, const std::string& name,
   CheckResult result =
       check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
   remove_ignored(scene, scene.ignored, result.meeting);
-  result.unattested.clear();  // there is no run
+  result.unattested.clear();  // these claims are about a run, and there is none
   result.ms = start.ms();
   return result;
 }
 
-// Compares the list with the pairs that meet, and makes the verdict one about certificate and list.
+// Compares the list with the pairs that meet. The verdict is then about certificate and list.
 void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
                   SceneCheck& check) {
   CheckResult& result = check.result;

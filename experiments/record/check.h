@@ -21,7 +21,7 @@ struct SceneCheck {
   double clearance = 0;
   std::string claimed_sha256;  // the hash of the list that the certificate names
   Certificate::Claims claimed;
-  CheckResult result;                          // if there is a list, its verdict is also about it
+  CheckResult result;                          // its verdict is also about the list, if given
   std::optional<ListDifferences> differences;  // set if a list was given and pairs were decided
   std::vector<std::string> not_looked_at;      // columns of the list that were not read
 };
@@ -34,7 +34,7 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 /// The statement that the check has proved if its verdict is `proved`: "these 12 pairs of the scene
 /// meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// The same for this many pairs, without the limits of the proof.
+/// The same for this many pairs, without proved_limits().
 std::string proved_text(std::size_t pairs, double clearance);
 /// The end of the statement if it is not about all pairs. self: whether an object is tested against
 /// itself; ignores: whether pairs of objects are ignored.

@@ -29,7 +29,7 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-/// How the surfaces meet, by the most of it: "faces lie on each other".
+/// How the surfaces meet, by the strongest contact: "faces lie on each other".
 std::string contact_words(const ClashRow& row) {
   using enum ContactKind;
   const auto any = [&](ContactKind kind) { return row.kinds[static_cast<std::size_t>(kind)] > 0; };
@@ -41,7 +41,7 @@ std::string contact_words(const ClashRow& row) {
   return how + " in " + counted(row.pairs, "pair of triangles", "pairs of triangles");
 }
 
-/// A name for two parts that stays the same in other files, options and orders of the parts.
+/// An id for two parts by name. It does not depend on their order, on the file or on options.
 std::string id_of(std::string a, std::string b) {
   if (b < a) std::swap(a, b);
   return sha256(a + '\n' + b).substr(0, 8);
@@ -147,7 +147,7 @@ std::string compared_text(const ClashComparison& compared) {
                      grouped(same), grouped(compared.gone.size()));
 }
 
-/// What may be wrong with the parts themselves.
+/// Lines about likely faults of the input: copies of a part, and parts in different units.
 std::string hints_text(const Scene& scene, const ClashRecord& record) {
   constexpr std::size_t kShown = 3;
   std::string out;

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
-// In the order of DistancePairs, then of WhichInside. `unknown`: the objects meet.
+// Words for the values of DistancePairs, then of WhichInside; `unknown` (objects meet) has none.
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 

@@ -293,7 +293,7 @@ std::string pairs_header(const Scene& scene, const PairColumns& columns) {
 
 namespace {
 
-// Appends the rows of some pairs and of the colliding neighbours between them, in order.
+// Indices of some sorted pairs, and of the colliding neighbours that come between them in order.
 struct RowRange {
   std::size_t pairs = 0, pairs_end = 0;  // of Collisions::pairs
   std::size_t neighbours = 0, neighbours_end = 0;

@@ -67,7 +67,7 @@ nlohmann::ordered_json json_list(const Values& values, const One& one) {
   return out;
 }
 
-/// The value if it counts, else null.
+/// The value; null if `counts` is false.
 template <class Value>
 nlohmann::ordered_json json_if(bool counts, const Value& value) {
   return counts ? json_of(value) : nlohmann::ordered_json(nullptr);
@@ -171,26 +171,26 @@ std::string verdict_text(const DistanceAccounting& accounting);
 /// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
 
-/// The rows of a record beside those of an earlier CSV. Two rows are the same if they name the same
-/// two parts, in any order, and have the same verdict.
+/// The differences between the rows of a record and those of an earlier CSV. Two rows are the same
+/// if they name the same two parts, in any order, and have the same verdict.
 struct ClashComparison {
   struct Gone {
     std::string a, b, verdict;
   };
-  std::vector<bool> same;  // of each row of the record: it is in the file
+  std::vector<bool> same;  // per row of the record: whether the file has it
   std::vector<Gone> gone;  // rows of the file that the record does not have
 };
-/// text: the CSV; name: of the file, for errors. Throws Error if it is none of clash_csv().
+/// text: the CSV; name: of the file, for errors. Throws Error if clash_csv() wrote no such text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name);
 
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};        // with touch, pairs that touch are listed, too
+  std::vector<ClashVerdict> failing = {};        // as for is_clean(); with touch, lists touches
   std::string unit = {};                         // of the lengths, such as "mm"; empty: not said
   std::optional<ClashComparison> compared = {};  // with an earlier CSV
 };
 
-/// For people: the summary, then the rows but those of pairs that touch, unless they are asked for.
+/// For people: the summary, then the rows; rows of pairs that touch only if `failing` has touch.
 /// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
@@ -204,8 +204,8 @@ bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failin
 /// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
 std::string no_depth_words(const Scene& scene, const ClashRow& row);
 
-/// A row for each pair that is not clear; numbers with all digits. A row that is gone has only its
-/// names and the verdict it had.
+/// A row for each pair that is not clear, numbers with all digits; then a row for each pair that is
+/// gone (ClashComparison), with only its names and its old verdict.
 std::string clash_csv(const Scene& scene, const ClashRecord& record, const ClashTable& table = {});
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,

@@ -19,7 +19,7 @@ std::string triangles_left(std::uint64_t n) {
   return counted(n, "triangle is left", "triangles are left");
 }
 
-// "fatten" of "fatten x, round 2", in the order of StageKind.
+// The first word of a stage's name, as in "fatten x, round 2"; in the order of StageKind.
 constexpr std::array kVerbs = {"boxes",
                                "blocks",
                                "setup",

@@ -1,4 +1,4 @@
-// Every word that a person reads about a stage: tables, JSON, the terminal's progress, the library.
+// The words for stages that people read in tables, JSON, the terminal's progress and the library.
 #pragma once
 
 #include <cstdint>

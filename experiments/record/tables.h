@@ -9,7 +9,7 @@
 
 namespace farcull {
 
-/// The view with the largest budget, which a reader should quote. Null if no view was drawn.
+/// The view with the largest budget: the one that texts quote. Null if no view was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
 /// A triangle as a person can find it: its object, and its number there.
@@ -33,7 +33,7 @@ std::string default_method_line(const RunOptions& options);
 
 /// The text in the line of a drawing method if boxes leave nothing to draw.
 inline constexpr const char* kNothingToDraw = "nothing left to draw";
-/// Why a method that draws did not, such as kNothingToDraw; empty if it did, and for other methods.
+/// Why a drawing method did not draw, such as kNothingToDraw; empty if it drew, or for others.
 std::string not_drawn_text(const Record& record);
 /// The line that names a faster method, for a guaranteed method that draws on the cores of a CPU;
 /// empty for others (docs/results/stages.md).
@@ -46,7 +46,7 @@ std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, b
 /// Pairs that the scene leaves out (verify/certificate/certificate.h): "12 pairs of triangles
 /// inside a and b"; empty if it leaves out none.
 std::string not_asked_text(const Scene& scene);
-/// A whole line with this text and with `options`, which would ask about these pairs; empty if the
+/// A whole line with this text and the `options` that would ask about these pairs; empty if the
 /// scene leaves out none.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
 
@@ -71,7 +71,7 @@ std::string run_answer(const Scene& scene, const Record& record, const std::stri
 /// The lines that run --verbose adds: the views, the radius, and a row for each stage, with what
 /// was left out and why. The stages of a view share one row, and so do all rounds after the first.
 std::string run_details(const Record& record);
-/// Both.
+/// run_answer(), then run_details().
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
 /// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was

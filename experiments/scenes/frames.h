@@ -19,31 +19,31 @@
 
 namespace farcull {
 
-/// Frames first to last, both included; 0 <= first <= last. A built-in motion that is a path has
-/// last + 1 frames, of which these are the end: 30:59 is the second half of 60 frames.
+/// Frames first to last, both included; 0 <= first <= last. A built-in motion along a path has last
+/// + 1 frames in all, so 30:59 is the second half of a path that is divided into 60 frames.
 struct FrameRange {
   long first = 0;
   long last = 0;
   long count() const { return last - first + 1; }
 };
-/// "N" (0 to N - 1) or "A:B", at most a million frames, numbers up to 1e9. Throws Error naming
-/// --frames.
+/// "N" for frames 0 to N - 1, or "A:B"; at most a million frames, numbers up to 1e9. Throws Error
+/// naming --frames.
 FrameRange parse_frames(const std::string& text);
 
 /// A scene that depends on the number of a frame.
 class FrameSource {
  public:
-  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes some
-  /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
-  /// tested against itself. Throws Error if nothing moves, or as load_scene() does for the first
-  /// frame.
+  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or mesh files
+  /// on the command line or in a scene file, some with %d or %04d (the frame) in their names. self:
+  /// every object is tested against itself. Throws Error if nothing moves, or as load_scene() does
+  /// for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
-  /// A scene that moves, in place of arguments.
+  /// For a moving scene that the caller has made.
   explicit FrameSource(MovingScene moving);
 
-  /// The scene at a frame of the range. Returns the same object each time, and the same memory of
-  /// triangles if the topology is that of the previous call. Throws Error naming the file if a mesh
-  /// cannot be read, or as MovingScene does.
+  /// The scene at a frame of the range. Returns the same Scene object each time. Its triangles stay
+  /// in the same memory if the topology did not change since the previous call. Throws Error naming
+  /// the file if a mesh cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
   /// The Error that at() would throw for the first frame of the range that lacks a file now; empty

@@ -25,13 +25,13 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Whether a backslash makes the next character of the text one of a name.
+/// True if text[at] is a backslash that makes the next character a part of a name.
 bool escapes(std::string_view text, std::size_t at) {
   return text[at] == '\\' && at + 1 < text.size() &&
          std::string_view(",:*").find(text[at + 1]) != std::string_view::npos;
 }
 
-/// The first such character from a place on that no backslash makes one of a name; npos if there is
+/// The first `character` at or after `from` that has no such backslash before it; npos if there is
 /// none.
 std::size_t find_plain(std::string_view text, char character, std::size_t from = 0) {
   for (std::size_t k = from; k < text.size(); ++k) {

@@ -35,7 +35,7 @@ constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 // memory for each byte of a path.
 constexpr std::size_t kMaxPathBytes = 4096;
 
-// Iterates over the characters of a text and counts the line of the one read last.
+// Iterates over the characters of a text and counts its lines.
 class Reading {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -109,13 +109,13 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string twice;   // a key that occurs twice in one object
   std::size_t at = 0;  // bytes read when the error was found, the offending one included
   std::string reason;
-  std::vector<long> ignore_lines;  // line of each array in the array "ignore" of the file's object
+  std::vector<long> ignore_lines;  // line of each pair in the array "ignore" of the file
 
  private:
   const long& line_;
   std::vector<std::set<std::string>> keys_;
   int arrays_ = 0;    // number of open arrays
-  std::string last_;  // the last key of the file's object
+  std::string last_;  // the last key of the outermost object
 };
 
 // Names of meshes are relative to the scene file.
@@ -228,7 +228,7 @@ Parsed parsed(const std::string& text, const std::string& path) {
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const Parsed file = parsed(text, path);
   SceneFile reader(path, file.ignore_lines, meshes);
-  const bool later_frame = !meshes.numbered_paths().empty();  // the first frame has read them
+  const bool later_frame = !meshes.numbered_paths().empty();  // the first frame fills these
   Scene scene = reader.read(file.root).finish();
   if (file.root.contains("ignore")) {
     scene.ignored = reader.read_ignored(
@@ -266,7 +266,7 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
 
 // The name of each file without extension; with its folder if another file has the same name.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
-  std::map<std::string, std::set<std::string>> called;  // the files with a name
+  std::map<std::string, std::set<std::string>> called;  // by name without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);
   std::vector<std::string> out;
   for (const std::string& path : paths) {

@@ -20,7 +20,7 @@ namespace farcull {
 /// An answer compared with the truth of its scene (measure/harness.h).
 struct AnswerCounts {
   std::uint64_t colliding = 0, missed = 0;  // pairs
-  std::uint64_t missed_triangles = 0;       // colliding triangles in none of its pairs
+  std::uint64_t missed_triangles = 0;       // colliding triangles in no pair of the answer
   std::uint64_t candidates = 0;             // pairs given to exact tests
   std::uint64_t triangles = 0, objects = 0;
 };
@@ -60,8 +60,8 @@ struct RunCounts : AnswerCounts {
   /// Pairs that the same run misses with 0.9 of its radius, and without a ball; empty: not
   /// measured. If both are 0, a run without misses says nothing about the radius.
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
-  /// What culled: the triangles that boxes left to views or to a join, and the views that were
-  /// drawn. Without a view the boxes of triangles decided.
+  /// Which stage culled: how many triangles boxes left to views or to a join, and how many views
+  /// were drawn. If none was drawn, the boxes of triangles decided.
   std::uint64_t left_by_boxes = 0, views_used = 0;
   std::uint64_t colliding_triangles = 0;  // that truly collide
   std::uint64_t kept_triangles = 0, kept_objects = 0;
@@ -98,7 +98,7 @@ struct LemmaCounts {
   double largest_px = 0, largest_steps = 0;
   double step_px = 0;  // of the depth buffer
   double radius_px = 0, budget_px = 0;
-  bool promises = false;  // fragment depth at the budget radius or more: a violation breaks it
+  bool promises = false;             // set with fragment depth and the budget radius or more
   std::optional<bool> revoked = {};  // as in RunCounts
   FARCULL_FIELDS(points, violations, no_sample, not_bounding, rounded, largest_px, largest_steps,
                  step_px, radius_px, budget_px, promises, revoked)
@@ -137,7 +137,7 @@ struct ForecastCounts {
 struct ClothCounts {
   std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; the first includes the others
   std::uint64_t candidates = 0;                             // pairs given to exact tests
-  std::uint64_t neighbour_candidates = 0;                   // of them, which no method culls
+  std::uint64_t neighbour_candidates = 0;                   // neighbours among them, never culled
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
   std::uint64_t left_by_boxes = 0, views_used = 0;               // as in RunCounts
@@ -179,9 +179,9 @@ using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
 using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 
 /// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong`
-/// compare with closed triangles, `own_` with the library's documented guarantee; `scores` has them
-/// for each family, parameter and kind. example_FAULT: a family, and the smallest pair of its kind
-/// of fault for which the documentation guarantees the answer.
+/// compare with the answers for closed triangles; names with `own_`, with what the library's
+/// documentation guarantees. `scores` has them for each family, parameter and kind. example_FAULT:
+/// a family, and the smallest pair with this fault whose answer the documentation guarantees.
 struct LibraryCounts {
   NamedCounts values = {};
 };
@@ -190,8 +190,8 @@ struct LibraryCounts {
 struct SetCounts {
   NeighbourSizes sizes;
   std::uint64_t triangles = 0, objects = 0;  // of the scene
-  /// All pairs of triangles of different objects: how many the accounting of the exact answers
-  /// decided (verify/distance_accounting.h).
+  /// How many pairs of triangles of different objects the accounting of the exact answers decided:
+  /// all of them (verify/distance_accounting.h).
   std::uint64_t accounted = 0;
   bool promises = false;  // to lose no nearest neighbour and no nearest pair of triangles
   std::string scene_hash;
@@ -218,7 +218,7 @@ using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, 
                             ForecastCounts, ClothCounts, SceneCounts, LibraryCounts, SetCounts,
                             DistanceCounts>;
 
-/// The values of counts, with the fields of members in place of the members.
+/// The names and values of counts. A member with fields is replaced by its fields.
 NamedCounts to_columns(const Counts& counts);
 
 /// Milliseconds; they differ between runs.
@@ -239,7 +239,7 @@ struct PointResult {
   std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build lacks, a
-                              // resolution beyond the device); empty if it was
+                              // resolution beyond the device); empty if it was measured
 };
 
 /// A JSON object that is copied like a value. A pointer hides it because <nlohmann/json.hpp> costs

@@ -32,8 +32,8 @@ namespace farcull {
 
 namespace {
 
-// The pixel centres of row `y` inside the convex quadrilateral, as [from, to] in x; empty if from >
-// to.
+// The part of row `y` that is inside a convex quadrilateral, as the interval [from, to] of x; empty
+// if from > to.
 struct Span {
   double from = 0, to = -1;
 };
@@ -160,9 +160,9 @@ Study offsets_study() {
 
 namespace {
 
-// The native canvas with a depth buffer of 16 bits of fixed point, for depths() alone: what a
-// monotone rounding of the nearest or the farthest depth gives is the nearest or the farthest of
-// the rounded depths.
+// The native canvas with a depth buffer of 16 bits of fixed point; offers only depths(). It rounds
+// the nearest or farthest depth, which gives the nearest or farthest of the rounded depths, since
+// rounding is monotone.
 class CoarseCanvas final : public Canvas {
  public:
   CoarseCanvas(DepthMode mode, const SolidProgram& solid)
@@ -203,16 +203,16 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel; other triangles are too small.
+// Generators of triangles whose depth varies inside a pixel; those of the others are too small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
 
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
-  // Each side with its border makes a viewport of a power of two. The largest depth is that of a
-  // window (core/view/view.h, fit_window): there a step of 24 bits is longer than the chord of the
-  // ball at the corner of a pixel, and a step of 16 bits in one of 2^13 px.
+  // Each side with its border makes a viewport of a power of two. 2^20 px is the largest depth of a
+  // window (core/view/view.h, fit_window). In that depth a step of 24 bits is longer than the chord
+  // of the ball at the corner of a pixel; in a depth of 2^13 px a step of 16 bits is.
   const std::vector<int> sides = choice.quick ? std::vector{508, 1020} : std::vector{508, 4092};
   const std::vector<double> depths =
       choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p13, 0x1p20};
@@ -280,12 +280,12 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; so small that other pairs rarely keep a missed one
+constexpr double kSmallest = 0x1p-5;  // px; few missed pairs are kept because of other pairs
 
-// Three series. With 8 subpixel bits: triangles of each size at the published radius (10^6
-// placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius. The smallest
-// triangles at the published radius, with other numbers of subpixel bits and at other resolutions.
-// The smallest triangles at the budget radius, which must miss none.
+// Three series: (1) with 8 subpixel bits, triangles of each size at the published radius (10^6
+// placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius; (2) the
+// smallest triangles at the published radius, with other numbers of subpixel bits and at other
+// resolutions; (3) the smallest triangles at the budget radius, which must miss none.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;
@@ -310,7 +310,7 @@ std::vector<PlacementPoint> placements(const GridChoice& choice) {
       };
       for (const Size& size : sizes) add(size, kUsualBits, kPublishedRadius, usual_resolution);
       for (const Size& size : sizes) {
-        if (size.side > 4) continue;  // few of them fit a window
+        if (size.side > 4) continue;  // few larger ones fit a window
         const Size fewer = {size.side, std::min<std::uint64_t>(size.placements / 4, 5000)};
         for (const char* factor : {"0.5", "0.7", "0.8", "0.9", "0.95"})
           add(fewer, kUsualBits, parse_radius(factor), usual_resolution);

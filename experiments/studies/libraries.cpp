@@ -40,8 +40,8 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-/// The folder of the point's suite. A suite that was not given is made in the folder that the
-/// variable FARCULL_MADE_SUITE names, unless it is there.
+/// The folder of the point's suite. If none was given, the suite is made in the folder that the
+/// variable FARCULL_MADE_SUITE names, unless that has it already.
 std::string folder_of(const LibraryPoint& point) {
   if (!point.suite.empty()) return point.suite;
   const char* const named = std::getenv("FARCULL_MADE_SUITE");
@@ -57,7 +57,7 @@ std::string folder_of(const LibraryPoint& point) {
   return folder;
 }
 
-/// The library of a contestant with its version, asked once; or why it cannot be asked.
+/// A contestant's library with its version, or why it cannot be asked. Each is asked once.
 struct Asked {
   std::string command = {}, library = {}, missing = {};
 };

@@ -1,5 +1,5 @@
-// Decides which rows fit together in one store: those with
-// one version of each library. Reads shards, refuses those that do not fit, and writes one store.
+// Decides which rows fit together in one store: those with one version of each library. Reads
+// shards, refuses those that do not fit, and writes one store.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -121,8 +121,8 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// Gives the rows of one point in several studies the times of the first of these studies: another
-// shard may have timed the others.
+// If several studies have rows of one point, all get the times of the first study, since different
+// shards may have timed them.
 void share_times(std::vector<Source>& sources) {
   std::map<PointKey, JsonObject> times;
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {

@@ -1,6 +1,6 @@
 // The study "model" compares the misses that the model of docs/misses.md predicts with those of
-// runs. A run has one position of the grid of pixels below the scene; the model averages over all.
-// So each point is run at several positions, drawn at random.
+// runs. In a run the grid of pixels has one position below the scene; the model averages over all
+// positions. So each point is run at several random positions of the grid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ namespace {
 constexpr int kPositions = 4;
 constexpr int kMostFarResolution = 256;  // px; beyond, FAR takes minutes and misses little
 
-// Moves the grids of all views below the scene, each by up to a pixel along both axes: adds two
-// objects of one tiny triangle whose boxes overlap, a random distance of up to two pixels beyond
-// the lower corner of the places where objects may meet. Windows are centred on these places.
+// Moves the pixel grids of all views below the scene, each by up to a pixel along both axes.
+// Windows are centred on the places where objects may meet. So this adds another place: two objects
+// of one tiny triangle whose boxes overlap, up to two pixels beyond the lower corner of the others.
 Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution,
                       shapes::Random& random) {
   Box all = Box::empty();

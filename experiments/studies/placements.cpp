@@ -1,5 +1,5 @@
-// Patches grow over shared vertices from a randomly drawn triangle. Cell (i, j) of n x n is at (i,
-// j, i + j modulo n): no two cells share a place in any of the three axis views.
+// Patches grow over shared vertices from a random triangle. Each placement has a cell: cell (i, j)
+// of n x n is at (i, j, i + j modulo n), so that no two overlap in any of the three axis views.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ using shapes::Corners;
 using shapes::Random;
 
 /// The native canvas as a device that snaps: rounds corners of proxies to the nearest multiple of
-/// 2^-bits px, which A2 allows (docs/reliability.md).
+/// 2^-bits px, as assumption A2 allows (docs/reliability.md).
 class SnappingCanvas final : public Canvas {
  public:
   SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
@@ -68,9 +68,9 @@ class Quarry {
          const std::vector<std::vector<std::uint32_t>>& around)
       : scene_(scene), object_(object), around_(around) {}
 
-  /// kPatchTriangles triangles: a random one and the nearest to it over shared vertices. If they
-  /// are too few (soups have no neighbours), others are drawn and put beside them. Scaled so that
-  /// the mean of their longest sides is `side`, about their mean point, and turned.
+  /// Returns kPatchTriangles triangles: a random one and the nearest to it over shared vertices. If
+  /// these are too few (soups have no neighbours), others are drawn and put beside the first. The
+  /// patch is centred, scaled to a mean longest side of `side`, and turned at random.
   std::vector<Corners> cut(Random& random, double side) const {
     std::vector<std::uint32_t> taken = {random.below(object_.triangle_count)};
     for (std::size_t i = 0; i < taken.size() && taken.size() < kPatchTriangles; ++i) {
@@ -158,8 +158,9 @@ void cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   shift(other, to - inner(other[random.below(other.size())], random));
 }
 
-// Reflects and moves the second patch so that its corner farthest from its middle pokes below a
-// triangle of the first. The depth is a fraction, of any magnitude, of its side (or a pixel).
+// Reflects and moves the second patch so that its corner farthest from its middle pokes through a
+// triangle of the first. The depth is a random fraction, 2^-20 to 1, of the smaller of that
+// triangle's longest side and 1 px.
 void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -172,7 +173,7 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
     return;
   }
   normal /= normal.norm();
-  // The reflection that turns the direction of the tip into the triangle.
+  // The reflection that maps the direction of the tip to -normal.
   const Vec3 across = tip / tip.norm() + normal;
   const double square = across.squaredNorm();
   const auto reflected = [&](const Vec3& p) -> Vec3 {

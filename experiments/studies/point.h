@@ -27,7 +27,7 @@ struct MotionFrame {
   long frame = 0;
   long frames = 1;  // of the whole motion
 };
-/// A frame of the cloth of that name above its sphere, without self-collision tests.
+/// A frame of the scene "cloth", named with its numbers; the cloth is not tested against itself.
 struct ClothApart {
   std::string name;
   long frame = 0;
@@ -37,12 +37,12 @@ struct PixelCorners {};
 
 /// Clusters of small objects in a large cube, drawn at random (clusters() in run_point.cpp).
 struct ClusteredScene {
-  int ratio = 64;  // the side of the cube over the side of a cluster
+  int ratio = 64;  // side of the cube / side of a cluster
   std::uint64_t seed = 1;
 };
 
-/// Contacts at corners of pixels, of a family in which one number goes to an extreme
-/// (contact_cells() in contact_cells.cpp).
+/// Contacts at corners of pixels. Each family takes one number to an extreme (contact_cells() in
+/// contact_cells.cpp).
 struct ContactCells {
   std::string family;  // slivers, stack, mixed, gap, offset or scale
   int side = 24;       // cells in a row; there are side * side of them
@@ -52,7 +52,7 @@ struct ContactCells {
 using PointScene =
     std::variant<NamedScene, MotionFrame, ClothApart, PixelCorners, ClusteredScene, ContactCells>;
 
-/// A method of `farcull run`. The method chooses the value of an empty field.
+/// A method of `farcull run`. If a field is empty, the method chooses its value.
 struct RunPoint {
   PointScene scene;
   Method method = Method::far;
@@ -60,12 +60,12 @@ struct RunPoint {
   std::optional<RadiusRule> radius = {};         // of far
   std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
-  int resolution = 0;                            // px; 0: none, or chosen by the scene
-  /// If the resolution is 0: take the least one at which triangles that can take part cover this
-  /// many pixels on average, over the triangles and the axes. 0: as the field above says.
+  int resolution = 0;                            // px; 0: none, or see mean_pixels
+  /// If not 0, the resolution is the least one at which triangles that can take part cover this
+  /// many pixels on average (size_for() in run_point.h).
   double mean_pixels = 0;
   std::string views = {};
-  /// Forms of the methods that draw, as in RunOptions.
+  /// Options that choose the form of a method that draws, as in RunOptions.
   int rounds = 0;
   ClearRule clear = ClearRule::any;
   bool objects_alone = false;
@@ -83,14 +83,14 @@ struct PeerPoint {
 /// The lemma experiment (lemma/lemma.h) with one generator at one radius.
 struct LemmaPoint {
   std::string generator;     // one of lemma_generators()
-  std::uint64_t points = 0;  // of this generator, at least
+  std::uint64_t points = 0;  // from this generator, at least
   double depth = 256;        // px, of the window
-  bool worst = false;        // on verify/worst_canvas.h, with the drawing displaced as far as
-                             // double arithmetic may; else on the lab's device
+  bool worst = false;        // on verify/worst_canvas.h, displacing what is drawn as far as
+                             // rounding in double may; else on the device of the run
   RadiusRule radius = {};
   DepthMode depth_mode = DepthMode::fragment;  // fixed: the boxes as surfaces
-  /// If given, and always with fixed depth, the samples are what a buffer of this format stores;
-  /// empty: what the shader computes.
+  /// The samples are what a buffer of this format stores. Empty: what the shader computes (with
+  /// fixed depth, what the device's buffer stores).
   std::optional<DepthFormat> depth_format = {};
   bool coarse = false;  // the samples are what a buffer of 16 bits of fixed point stores
   int side = 0;         // px, of the window; 0: the generator's own
@@ -99,11 +99,11 @@ struct LemmaPoint {
 
 /// FAR on many small patches of triangles that are placed into each other at random (run_point.h).
 struct PlacementPoint {
-  std::string from;      // the built-in scene whose first two objects the patches are cut from
+  std::string from;      // built-in scene; patches are cut from its first two objects
   bool grazing = false;  // a corner of one patch pokes through the other; else they cross
   double side = 1;       // px, mean longest side of a triangle
   std::uint64_t placements = 0;
-  int subpixel_bits = 0;  // grid to which corners of proxies are snapped; 0: none
+  int subpixel_bits = 0;  // corners of proxies are snapped to 2^-bits px; 0: not
   RadiusRule radius = {};
   int resolution = 0;  // px
   std::uint64_t seed = 1;
@@ -151,7 +151,7 @@ inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
 struct PointKey {
   std::string scene = {};   // as on the command line, or as key_of() writes it
   std::string method = {};  // as --method with the options of its form ("cullide --rounds
-                            // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
+                            // 1"), perhaps with the mean size of triangles ("@4px"); or a peer;
                             // "lemma", "lemma-worst", "lemma-fixed16"; of placements "far",
                             // "far-snapped-8"; a contestant, perhaps with what it is asked
                             // ("cgal-aabb nearest"); of potential neighbours "boxes", "trees",
@@ -182,7 +182,7 @@ std::optional<T> column_of(const std::string& text);
 /// In how many rounds a point is timed. All timed points of a run are visited in each round, so
 /// that minutes lie between the rounds of a point (run_studies.h).
 inline constexpr int kRounds = 3;
-/// The runs of the point in all rounds; at most 1: only its counts matter, and one run gives them.
+/// The runs of the point in all rounds. At most 1: it is run once, for its counts, and not timed.
 int runs_of(const Point& point);
 inline bool is_timed(const Point& point) { return runs_of(point) > 1; }
 
@@ -201,7 +201,7 @@ struct LemmaScene {
 
   std::string name() const;
 };
-/// Precondition: the text is a name(); std::logic_error otherwise.
+/// Precondition: name() wrote the text; std::logic_error otherwise.
 LemmaScene parse_lemma_scene(const std::string& text);
 
 // Points that several studies use. They are not timed unless `repeat` is set.
@@ -227,7 +227,7 @@ inline RunPoint cullide_point(PointScene scene, Method method, int resolution) {
           .resolution = resolution};
 }
 
-/// The same with the options of a form, as in RunPoint.
+/// Options of a form of CULLIDE, as in RunPoint; in_form() sets them.
 struct CullideForm {
   int rounds = 0;
   ClearRule clear = ClearRule::any;
@@ -247,15 +247,15 @@ inline RunPoint in_form(RunPoint point, const CullideForm& form) {
 inline const CullideForm kPublishedForm = {.rounds = 1};
 inline constexpr const char* kBothDirections = "x,-x,y,-y,z,-z";
 
-/// The same at the least resolution at which triangles cover this many pixels on average.
+/// The point at the least resolution at which triangles cover this many pixels on average.
 inline RunPoint at_mean_pixels(RunPoint point, double pixels) {
   point.resolution = 0;
   point.mean_pixels = pixels;
   return point;
 }
 
-/// The scene with the first `count` of the five seeds with which randomly drawn scenes are
-/// measured: the scene's default seed, and 101 to 104.
+/// A randomly drawn scene with the first `count` of the five seeds that are measured: the scene's
+/// default seed, and 101 to 104.
 inline std::vector<std::string> drawn_scenes(const std::string& name, int count = 5) {
   std::vector<std::string> out = {name};
   for (int i = 1; i < count; ++i) out.push_back(name + "@seed" + std::to_string(100 + i));

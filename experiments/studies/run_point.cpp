@@ -30,9 +30,9 @@ namespace farcull {
 namespace {
 
 // Two objects of segments. Each segment crosses a segment of the other object at 45 degrees, within
-// 2^-10 px of a corner of a pixel in the view z at this resolution. Both boxes are as many units
-// wide as the window has pixels, so that a unit is a pixel and corners are whole numbers
-// (core/view/view.h, fit_window).
+// 2^-10 px of a corner of a pixel in the view z at this resolution. The objects' boxes are as many
+// units wide as the window has pixels, so that a unit is a pixel and corners of pixels are whole
+// numbers (core/view/view.h, fit_window).
 constexpr const char* kCorners = "pixel-corners";
 constexpr int kCornersResolution = 96;
 
@@ -201,7 +201,7 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
     different += (different.empty() ? "" : ", ") + text;
   };
   if (first.device != other.device) add("device " + first.device + " and " + other.device);
-  // For each name of a count both values, "none" if it is missing.
+  // By name of a count: its two values, "none" if it is missing.
   std::map<std::string, std::pair<std::string, std::string>> values;
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;

@@ -31,7 +31,7 @@ SizeCounts size_for(const Scene& scene, double pixels);
 /// A point is left out if the size of triangles requires a higher resolution.
 constexpr int kMostSizedResolution = 8192;
 
-/// The options of a run at the point, without the accounting: the run is compared with the truth.
+/// The options of a run at the point. No accounting, since the run is compared with the truth.
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
 /// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
@@ -41,7 +41,7 @@ RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 constexpr int kCellsResolution = 512;
 Scene contact_cells(const ContactCells& scene);
 
-/// The triangles that boxes left, and the views that were drawn: RunCounts::left_by_boxes and
+/// How many triangles boxes left, and how many views were drawn: RunCounts::left_by_boxes and
 /// views_used.
 std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const Record& record);
 
@@ -49,10 +49,10 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
 std::string answered(const Record& record);
 
 /// Opens the scene and runs the point's method on it once. A run does not depend on earlier ones in
-/// the lab: i-collide starts without lists. Only on a MotionFrame does i-collide keep the lists of
-/// the previous frame, which is its purpose; a second run of the same frame would find them sorted,
-/// so `repeat` is 1 there (std::logic_error otherwise). Throws Error as run() does. The counts are
-/// RunCounts without `fragments`. record: receives the run; may be null.
+/// `lab`: i-collide starts without sorted lists. On a MotionFrame, however, i-collide keeps the
+/// lists of the previous frame, as it is meant to. A second run of that frame would find them
+/// sorted, so `repeat` must be 1 there (else std::logic_error). Throws Error as run() does. The
+/// counts are RunCounts without `fragments`. record: receives the run; may be null.
 PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* record = nullptr);
 /// The same for a Point that is a RunPoint, without the record.
 inline PointResult measure_run_point(const Point& point, MeasurementContext& lab) {
@@ -60,7 +60,7 @@ inline PointResult measure_run_point(const Point& point, MeasurementContext& lab
 }
 
 /// The pairs that FAR misses at the point with 0.9 of its radius, and without a ball:
-/// RunCounts::at_risk and at_risk_bare. Runs it twice.
+/// RunCounts::at_risk and at_risk_bare. Runs FAR twice.
 std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
                                                       MeasurementContext& lab);
 /// measure_run(); for FAR at a radius with a guarantee, also the pairs at risk.
@@ -76,8 +76,8 @@ PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsign
 /// points (Study::library).
 std::string library_of_peer(const Point& point);
 
-/// Throws Error if two runs of a point differ in anything but times: neither then represents the
-/// point. The error names each difference with both values, a miss among them.
+/// Throws Error if two runs of a point differ in anything but times: neither of them can then stand
+/// for the point. The error names each difference with both values.
 void require_same(const PointKey& point, const PointResult& first, const PointResult& other);
 
 /// Runs the generator of the point. Left out if the window is larger than the device can draw. The
@@ -93,9 +93,9 @@ PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab);
 /// too many pairs. Throws Error if the accounting refutes the exact answers.
 PointResult measure_neighbours(const NeighbourPoint& point, MeasurementContext& lab);
 
-/// The same for a DistancePoint and its contestant. The counts are DistanceCounts. Left out if this
-/// build lacks the library or the library refuses the scene. Throws std::logic_error if there is no
-/// such contestant.
+/// Asks the point's contestant once for the distances, on one thread. The counts are
+/// DistanceCounts. Left out if this build lacks the library or the library refuses the scene.
+/// Throws std::logic_error if there is no such contestant.
 PointResult measure_distances(const DistancePoint& point, MeasurementContext& lab);
 /// The same for the given contestant, whatever its name.
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
@@ -117,9 +117,9 @@ struct Fragments {
 
 /// Counts on the CPU, from the record's views and radii and the function that the shaders run
 /// (SolidProgram::interval), so that the count depends on the device only through its budget.
-/// Ignores the rasterizer's snapping of corners: it may decide otherwise about a pixel centre
-/// within a snap of a proxy's edge. offset: obb or exact, counted alone even if a run tries another
-/// one first. Precondition: record is of `far` with fragment depth on this scene.
+/// Ignores that a rasterizer snaps corners, which may change whether it covers a pixel centre that
+/// is very near a proxy's edge. offset: obb or exact; only this one is counted, even if a run tries
+/// another one first. Precondition: record is of `far` with fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
 // Measures how often FAR misses a pair at a radius, on many small patches of triangles that are
@@ -136,7 +136,7 @@ struct PlacedPatches {
   std::uint64_t placements = 0;
 };
 
-/// Cuts patches from the first two objects of a scene, which has two or more.
+/// Cuts patches from the first two objects of a scene.
 class PatchSource {
  public:
   explicit PatchSource(Scene from);
@@ -149,7 +149,7 @@ class PatchSource {
 
  private:
   Scene from_;
-  std::array<std::vector<std::vector<std::uint32_t>>, 2> around_;  // per object: triangles by
+  std::array<std::vector<std::vector<std::uint32_t>>, 2> around_;  // per object: its triangles by
                                                                    // vertex of the scene
 };
 
@@ -158,7 +158,7 @@ class PatchSource {
 /// other seeds, so that rows that differ in these can be added up.
 std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window);
 
-/// The longest segment in which two triangles meet, in px and double; 0 if there is none.
+/// The length of the longest segment in which two triangles meet, in double; 0 if there is none.
 double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// Runs FAR on scene after scene, with oriented boxes and fragment depth in the views x, y, z, on

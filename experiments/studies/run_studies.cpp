@@ -1,4 +1,4 @@
-// The list of studies, the rounds over their open points, and the sums that are printed.
+// The list of studies, the rounds over their open points, and the summary that is printed.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ struct Task {
   std::map<std::size_t, Measurement> rows;  // of open points: what their rows hold so far
   double seconds = 0;                       // of this run
   std::size_t measured = 0;                 // points
-  std::size_t visits = 0, visits_left = 0;  // a visit is a point, or a round of it
+  std::size_t visits = 0, visits_left = 0;  // a visit: an untimed point, or a round of a timed one
 };
 
 void make_folder(const std::string& folder) {
@@ -148,8 +148,8 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Seconds for what is left, at the mean time of a visit of the same study in this run, or of any
-// study if this one had none yet.
+// Estimates the seconds that are left. A visit takes the mean time of the visits so far in this
+// run: those of the same study, or of all studies if that one had none yet.
 std::optional<double> remaining(const std::vector<Task>& tasks) {
   double seconds = 0;
   std::size_t visits = 0;
@@ -171,7 +171,7 @@ bool has_times(const Measurement& row) {
   return row.left_out.empty() && rounds_in(row).value_or(0) > 0;
 }
 
-// Adds a round and makes the total anew.
+// Adds a round and computes the total again.
 void add_round(JsonObject& times, const std::vector<double>& ms, const std::optional<Load>& load,
                bool is_void) {
   Json rounds = times->value("rounds", Json::array());
@@ -263,7 +263,7 @@ class Runner {
       }
     }
   }
-  // A frame of a motion is left out: its lists depend on the frames before.
+  // Keeps a row for other studies. Not of a frame of a motion: it may depend on earlier frames.
   void know(const PointKey& key, const Measurement& row, bool plain) {
     if (key.frame >= 0 || !row.left_out.empty()) return;
     if (has_times(row)) {
@@ -306,8 +306,8 @@ class Runner {
     }
   }
 
-  // The row that the point has, or one with the counts that another study has of it, or with those
-  // of a run now. Empty if the run did not end.
+  // The row that the point has; else one with the counts that another study has of it; else one
+  // with the counts of a run now. Empty if that run failed.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;
@@ -326,7 +326,7 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // Runs the points of a scene in turn, all runs of the round, and again if the machine was busy.
+  // Does all runs of a round for a scene's points, in turn; repeats them if the machine was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -411,8 +411,8 @@ class Runner {
     if (progress_) progress_(now_);
   }
 
-  // Empty if measuring failed, or gave another answer than before: the failure is noted, nothing
-  // more of the point is measured in this run, and the next point gets a new device.
+  // Empty if measuring failed, or gave another answer than before. The failure is then noted, the
+  // point is not measured again in this run, and the next point gets a new device.
   std::optional<PointResult> measure(const At& at) {
     std::string why = lacking(at.key());
     if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
@@ -436,8 +436,8 @@ class Runner {
     return std::nullopt;
   }
 
-  // All runs of a point must agree: those of this process in everything, those of an earlier one in
-  // their counts.
+  // All runs of a point must agree: runs of this process in everything, and with runs of an earlier
+  // process in the counts.
   void require_as_before(const At& at, const PointResult& result) {
     const auto [first, is_new] = first_.try_emplace({at.task, at.position}, result);
     if (!is_new) return require_same(at.key(), first->second, result);

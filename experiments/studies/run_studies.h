@@ -23,10 +23,10 @@ namespace farcull {
 // a store that is resumed after an upgrade, or shards of two machines, would hold two versions, and
 // a table would show them as one.
 
-/// Refuses to measure the points at the positions `open` of the grid if rows of the same contestant
-/// or peer name a library version other than the present one. A contestant that is absent now adds
-/// no rows, so its old ones stay. Throws Error naming the store at `path`, each such contestant
-/// with both versions, and the command that deletes the old rows.
+/// Refuses to measure points (those at the positions `open` of the grid) if stored rows of their
+/// contestant or peer name another version of its library than the present one. A contestant that
+/// is absent now adds no rows, so its old ones stay. Throws Error naming the store at `path`, and
+/// each such contestant with both versions.
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
                            const std::vector<Point>& points, const std::vector<std::size_t>& open);
 
@@ -68,8 +68,8 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// If other programs take more of the processors than this, times are measured again, and at last
-/// marked void.
+/// If other programs take a larger share of the processors than this, times are measured again; if
+/// that does not help, they are marked void.
 constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {
@@ -97,10 +97,10 @@ struct StudiesProgress {
 struct StudySummary {
   std::string study;
   std::size_t points = 0;       // of this shard
-  std::size_t before = 0;       // had a row already
+  std::size_t before = 0;       // whole before this run
   std::size_t measured = 0;     // in this run, including those left out
-  std::size_t left_out = 0;     // of all rows: nothing could be measured; the row says why
-  std::size_t void_rounds = 0;  // of timed points, by all rows
+  std::size_t left_out = 0;     // rows, old and new, that say why nothing was measured
+  std::size_t void_rounds = 0;  // of timed points, in rows old and new
   double seconds = 0;           // of this run
 };
 
@@ -114,19 +114,19 @@ struct StudiesSummary {
   std::vector<std::string> broken;
 };
 
-/// Measures every point without a row, with a row that says why nothing was measured, or whose row
-/// lacks rounds or has void ones. Two studies do not measure the same twice: times that a study of
-/// the store has of the same point are taken from there, and so are the counts between studies that
-/// are `plain`. Holds the TimingLock while points are timed. After an Error at a point the error is
-/// noted and the next point gets a new device; an Error of the store ends the run. Signals end the
-/// program, with a line that says how many points are stored. Throws Error for a folder that cannot
-/// be created, for a store that Store or Store::declare() refuses, if another process measures
-/// times, if it has rows of a study and `resume` is not set, and if it has rows of another commit
-/// of farcull, another device, other CPU features, or another version of a library.
+/// Measures every point that has no row, or whose row says why nothing was measured, lacks rounds
+/// or has void ones. If another study of the store has times of the same point, these are taken; so
+/// are counts, between studies that are `plain`. Holds the TimingLock while points are timed. After
+/// an Error at a point the error is noted and the next point gets a new device; an Error of the
+/// store ends the run. Signals end the program, with a line that says how many points are stored.
+/// Throws Error if the folder cannot be created, if Store or Store::declare() refuses the store, if
+/// another process measures times, if the store has rows of a study and `resume` is not set, and if
+/// it has rows of another commit of farcull, another device, other CPU features, or another version
+/// of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 
-/// For people.
+/// The summary as a table for people.
 std::string summary_table(const StudiesSummary& summary);
 
 }  // namespace farcull

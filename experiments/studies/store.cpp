@@ -204,7 +204,7 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Numbers in full; invalid UTF-8 in a text (of a driver, say) is replaced.
+// Writes numbers in full. Replaces invalid UTF-8 in a text (of a driver, say).
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -288,7 +288,7 @@ Store::Store(const std::string& path, Access access) {
                 "measure first: farcull experiment all --quick");
   }
   guarded(path, [&] {
-    // Read-write also for reading: SQLite first rolls back the unfinished work of a killed program.
+    // Writable even for reading: SQLite first rolls back the unfinished work of a killed program.
     const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
     // SQLite interprets "file:..." as a URI.
     const std::string name = path.starts_with('/') ? path : "./" + path;

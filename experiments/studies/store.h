@@ -65,9 +65,9 @@ struct StoredStudy {
 
 // The times of a timed point (is_timed()), in its row:
 //   total     the median over the runs of all rounds that are not void
-//   rounds    for each round so far its runs in ms, the share of the processors that other programs
-//             took meanwhile ("load"; null if the system does not say), and whether this was too
-//             much ("void")
+//   rounds    one object per round so far: the times of its runs ("ms"), the share of processors
+//             that other programs took meanwhile ("load"; null if the system does not say), and
+//             whether this was too much ("void")
 //   no_times  true if the point was measured without times (--no-times)
 /// How many rounds the row has; empty if its point is not timed.
 std::optional<int> rounds_in(const Measurement& row);
@@ -76,11 +76,11 @@ bool is_whole(const Measurement& row);
 
 class Store {
  public:
-  /// write_at_once: has no journal beside the file, for a file that appears when it is whole.
+  /// write_at_once: keeps no journal beside the file; for a file that is renamed when it is whole.
   enum class Access { read, write, write_at_once };
-  /// write: creates the file if it does not exist, and locks out every other program until it is
-  /// closed. Throws Error naming the path for a file that is no store of ours, of another version,
-  /// damaged, in use, or that cannot be opened.
+  /// write: creates the file if it does not exist, and locks out every other program until this
+  /// object is destroyed. Throws Error naming the path for a file that is no store of ours, of
+  /// another version, damaged, in use, or that cannot be opened.
   Store(const std::string& path, Access access);
   ~Store();
   Store(Store&&) noexcept;
@@ -98,12 +98,11 @@ class Store {
   /// Repeating a declaration changes nothing. Throws Error if the study was declared differently.
   void declare(const Declaration& declaration);
   /// Adds a row in one transaction; it is on the disk when the function returns. Replaces a row
-  /// that says why nothing was measured, and one that lacks rounds or has void ones. Throws Error
-  /// if the point has another row, is not in the grid, or the disk refuses; the file is then
-  /// unchanged.
+  /// only if it says why nothing was measured, lacks rounds or has void ones. Throws Error if the
+  /// point has any other row, is not in the grid, or the disk refuses; the file is then unchanged.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
-  /// The same for a row of another store; row.run is the number in this one. Ignores `point`.
+  /// The same for a row of another store; row.run is a run of this one. Ignores row.point.
   void add(const std::string& study, const Row& row);
   /// Runs `work` in one transaction: keeps everything that it adds, or nothing if it throws.
   void together(const std::function<void()>& work);
@@ -118,7 +117,7 @@ class Store {
 /// DIR/results.sqlite, or DIR/results-K-of-N.sqlite for a shard.
 std::string store_path(const std::string& folder, int shard = 1, int of = 1);
 
-/// DIR/on-DEVICE: the folder of the results on a further device, with its own store. Throws Error
+/// DIR/on-DEVICE: the folder for the results on another device, with its own store. Throws Error
 /// naming --devices if that is no valid file name.
 std::string device_folder(const std::string& folder, const std::string& device);
 

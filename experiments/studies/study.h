@@ -19,7 +19,7 @@ struct GridChoice {
   bool quick = false;      // the small one, for a first look and for tests
   std::uint64_t seed = 1;  // seed of random points; at least 1
   std::string suite = {};  // of the study "libraries": the folder of a suite; empty: generated
-  std::vector<std::string> contestants = {};  // of the same study: the chosen ones; empty: all
+  std::vector<std::string> contestants = {};  // of the same study: those to measure; empty: all
 };
 
 struct Study {
@@ -29,13 +29,13 @@ struct Study {
   /// The points, each once. Points of one scene are together, except in a campaign. The same choice
   /// gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
-  /// Throws Error for faults of the device or the machine: the run ends there and can be resumed.
+  /// Throws Error for faults of the device or the machine: the point fails; a later run repeats it.
   std::function<PointResult(const Point&, MeasurementContext&)> measure;
   /// The library that would answer the point now, with its version, as in "CGAL 5.5.1": the value
   /// of the count `library` in its row. Empty: no library answers it, or the library is missing.
   /// Null: no point of this study asks a library.
   std::function<std::string(const Point&)> library = {};
-  /// A RunPoint has the counts of measure_run() and no others, so that studies share its row.
+  /// RunPoints have exactly the counts of measure_run(), so that studies can share their rows.
   bool plain = false;
   /// A campaign is not part of `all`: it takes many hours, needs what most machines lack, or has
   /// its own page of results. It may alternate between its scenes, so that an early stop has

@@ -133,8 +133,8 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
   return out;
 }
 
-// Libraries leave neighbours out, but boxes gives them to the predicates. They are counted
-// here, for the number of candidates without them.
+// Libraries leave neighbours out, but the method boxes gives them to the predicates. They are
+// counted here, so that they can be subtracted from its candidates.
 PointResult measure_culling(const Point& point, MeasurementContext& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
@@ -146,7 +146,7 @@ PointResult measure_culling(const Point& point, MeasurementContext& lab) {
 
 struct MovingCase {
   const char* scene;
-  bool self = false;  // also tests its objects against themselves, by few methods
+  bool self = false;  // its objects are also tested against themselves, by few methods
 };
 
 // All scenes that move, in sizes that methods that draw can handle on a software device.
@@ -176,7 +176,7 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
 struct Case {
   std::string scene;
   int resolution;  // of the methods that draw
-  bool drawn;      // by the methods that draw too, which are far slower on a software device
+  bool drawn;      // also by methods that draw, which are far slower on a software device
 };
 
 std::vector<Case> cases(bool quick) {
@@ -185,7 +185,7 @@ std::vector<Case> cases(bool quick) {
   const auto add = [&out](std::string scene, int resolution, bool drawn) {
     out.push_back({std::move(scene), resolution, drawn});
   };
-  // At least six sizes of each, so that a fitted exponent has an interval.
+  // At least six sizes of each, so that a fitted exponent has a confidence interval.
   // Objects: all are of about the same size, in a box that grows with their number.
   for (const int n :
        quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
@@ -215,8 +215,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Nine is the smallest number of runs whose range holds the median of another nine with 95 %
-// (docs/experiments.md, "Statistics").
+// Nine is the smallest number of runs whose range holds the median of another nine with a
+// probability of 95 % (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
 std::vector<RunPoint> points_of(const Case& c) {

@@ -1,8 +1,8 @@
 // Labels of pairs and of meshes.
 //
 // The kind follows from the common points of two triangles. Their intersection is convex, and each
-// corner of it is a corner of a triangle, a point where an edge crosses the other plane, or a point
-// where two edges cross. All of these are found as rational numbers, so nothing is rounded.
+// corner of it is a corner of a triangle, a point where an edge crosses the other triangle's plane,
+// or a point where two edges cross. All are found as rational numbers, so nothing is rounded.
 #include "experiments/suite/label.h"
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ bool on_edge(const Q3& p, const Triangle& t) {
     const Q3 w = minus(p, t[i]);
     if (!is_zero(cross(e, w))) continue;
     const Q along = dot(e, w);
-    // An edge without length holds only its end.
+    // An edge of length 0 contains only its end point.
     if (is_zero(e) ? is_zero(w) : along >= 0 && along <= dot(e, e)) return true;
   }
   return false;
@@ -96,7 +96,7 @@ class CommonPoints {
            std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
   }
   /// Whether all six corners are in one plane. Precondition: there are at least two common points.
-  /// So if both triangles are segments, these lie on one line.
+  /// So two triangles that are segments (both normals are 0) lie on one line.
   bool coplanar() const {
     const Q3& n = is_zero(normal_a_) ? normal_b_ : normal_a_;
     const auto in_plane = [&](const Q3& p) { return sgn(dot(n, minus(p, a_[0]))) == 0; };
@@ -166,8 +166,8 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
-  // The relative interior of a triangle is the triangle without its edges. A segment consists of
-  // edges; it comes here only if it goes through the inside of the other triangle, in one point.
+  // The relative interior of a triangle is the triangle without its edges. A triangle that is a
+  // segment has only edges; here it meets the other's interior, in one point.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }

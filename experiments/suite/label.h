@@ -1,5 +1,5 @@
-// Labelled triangle pairs and meshes, and the programs that decide labels. docs/suite.md has the
-// format of their files.
+// Labelled triangle pairs and meshes, and the functions that decide labels. docs/suite.md has the
+// format of the files.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ enum class SuiteKind : std::uint8_t {
   coplanar,
   equal,
   neighbours_meet,   // they share vertices, and meet in more than these and the edge between them
-  neighbours_apart,  // they share vertices, and do not meet in more
+  neighbours_apart,  // they share vertices, and meet only in these and that edge
   unlabelled
 };
 
-/// As in a list of pairs: "touch-vertex"; "?" for unlabelled.
+/// The name in a list of pairs, such as "touch-vertex"; "?" for unlabelled.
 std::string to_string(SuiteKind kind);
 /// Whether a pair of this kind collides. Precondition: not unlabelled.
 bool collides(SuiteKind kind);
@@ -39,8 +39,8 @@ struct SharedCorner {
 };
 
 struct SuitePair {
-  std::uint64_t id = 0;  // counts from 0 in its file
-  double parameter = 0;  // the family's number; 0 if it has none
+  std::uint64_t id = 0;  // position in its file, from 0
+  double parameter = 0;  // the family's parameter; 0 if it has none
   /// Ascending, each once; empty for triangles that are not neighbours in a mesh.
   std::vector<SharedCorner> shared;
   SuiteKind kind = SuiteKind::unlabelled;
@@ -76,19 +76,19 @@ std::string hexadecimal(double value);
 std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair);
 
 // Decides how two triangles meet, and which pairs of a mesh collide. Two exact oracles that share
-// no code give each answer; a disagreement is an Error. So no label of the suite rests on one
-// program alone.
+// no code give each answer, and an Error is thrown if they differ. So no label of the suite rests
+// on one program alone.
 
-/// How two closed triangles meet, as docs/suite.md defines the kinds. CGAL's predicates
-/// (verify/exact), and the 38 directions and 21 points in integers (verify/certificate), decide
-/// whether they meet. Their common points, as rational numbers, decide how; CGAL's predicates also
-/// decide whether they cross (verify/contact). Throws Error naming `where` if two answers
-/// differ. Precondition: finite coordinates.
+/// How two closed triangles meet; docs/suite.md defines the kinds. Each answer is found in two
+/// ways, and an Error naming `where` is thrown if they differ. Whether they meet: CGAL's predicates
+/// (verify/exact), and integer arithmetic on 38 directions and 21 points (verify/certificate). How
+/// they meet: their common points as rational numbers; CGAL's predicates (verify/contact) also
+/// decide whether they cross. Precondition: finite coordinates.
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::string& where);
 
 /// The kind of a pair of neighbours: whether they meet in more than their shared corners and the
-/// segments between these. By CGAL's predicates and by integers; throws Error as decide_kind().
+/// segments between these. By CGAL's predicates and in integers; throws Error as decide_kind().
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
 

@@ -1,4 +1,4 @@
-// Makes and decides the questions of a suite beyond pairs.
+// Makes the questions of a suite that are not about colliding pairs, and decides their labels.
 #include "experiments/suite/questions.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ std::size_t number_of(SuiteQuestionKind kind) { return static_cast<std::size_t>(
 
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 
-/// The objects with these numbers as a scene of their own.
+/// A scene of only the objects with these numbers.
 Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bool self) {
   Scene out;
   out.name = scene.name;
@@ -50,8 +50,8 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
   return out;
 }
 
-/// Points where deciding "inside" is hard. The parameter: 0 anywhere in the box; 1 above or below a
-/// vertex, where a ray along an axis meets it; 2 a vertex; 3 beside the middle of a face.
+/// Points where deciding "inside" is hard. parameter: 0 anywhere in the box; 1 straight above or
+/// below a vertex, where a ray along an axis hits it; 2 at a vertex; 3 near the middle of a face.
 Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];
   const auto corners = scene.corners(object.first_triangle + draws.below(object.triangle_count));
@@ -78,8 +78,8 @@ SuiteQuestion about(SuiteQuestionKind kind, const SuiteMesh& mesh,
   return out;
 }
 
-/// Whether the object meets itself; empty if it has two vertices at one position, so that its
-/// triangles may be neighbours by position alone.
+/// Whether the object meets itself; empty if two of its vertices are at one position: then
+/// triangles may be neighbours by position, but not by index.
 std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   try {
     return !decide_mesh(scene, where).empty();
@@ -89,8 +89,8 @@ std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   }
 }
 
-constexpr int kPoints = 24;              // of each closed object
-constexpr std::size_t kDistances = 530;  // of each family of pairs: those of the small suite
+constexpr int kPoints = 24;              // per closed object
+constexpr std::size_t kDistances = 530;  // per family of pairs, as many as the small suite has
 
 }  // namespace
 
@@ -193,7 +193,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // The result of which() holds only for points off the mesh.
+    // which() is right only for points off the mesh, so points on it are found first.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

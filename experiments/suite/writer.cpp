@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Pairs of a family; the 19 families have 10070 together, or 1007000.
+/// Pairs per family. All 19 families together have 10070 (small) or 1007000 (full).
 std::uint64_t pair_count(SuiteSize size) { return size == SuiteSize::small ? 530 : 53000; }
 
 std::size_t members(const MeshFamily& family, SuiteSize size) {

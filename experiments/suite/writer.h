@@ -1,5 +1,5 @@
-// Makes a suite, writes it as files, and reads their list. docs/suite.md has the format. The bytes
-// depend only on the size and the seed, not on the machine or its number of cores.
+// Makes a suite, writes it as files, and reads the list of its files. docs/suite.md has the format.
+// The bytes depend only on the size and the seed, not on the machine or its number of cores.
 #pragma once
 
 #include <array>
@@ -61,8 +61,8 @@ struct SuiteSummary {
 SuiteCounts counts_of(const SuitePairs& pairs);
 SuiteCounts counts_of(const SuiteMesh& mesh);
 
-/// Pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends on the seed, the name
-/// of the family and the ID alone. So any part of a suite can be made alone, and the number of
+/// Pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends only on the seed, the
+/// name of the family and the ID. So any part of a suite can be made alone, and the number of
 /// threads changes nothing.
 SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id);
 /// The pairs of a family of this suite, decided, in the order of their IDs. Throws Error naming the
@@ -73,9 +73,8 @@ std::vector<std::string> mesh_names(SuiteSize size);
 /// A mesh of this suite with its colliding pairs. Throws as make_pairs().
 SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
 
-/// Makes the suite in `folder`, which must not exist or be empty. suite.txt comes last, so a folder
-/// without it is not whole. Throws Error naming a path that the system refuses, and as
-/// make_pairs().
+/// Makes the suite in `folder`, which must be new or empty. suite.txt comes last, so a folder
+/// without it is not whole. Throws as make_pairs(), and Error naming a path that cannot be used.
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
                          const Progress& progress = {});
 

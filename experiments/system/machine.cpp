@@ -27,7 +27,7 @@
 namespace farcull {
 namespace {
 
-// The value of the first of these keys in /proc/cpuinfo.
+// The value on the first line of /proc/cpuinfo that starts with one of these keys.
 std::string cpuinfo(std::initializer_list<std::string_view> keys) {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -132,8 +132,8 @@ std::optional<LoadMeter::Ticks> LoadMeter::read() {
   return out;
 }
 
-// Each tick of a processor falls on a busy moment or does not, so n ticks have a standard deviation
-// of at most sqrt(n) / 2.
+// At each tick a processor is busy or not. So the number of busy ones among n ticks has a standard
+// deviation of at most sqrt(n) / 2.
 std::optional<Load> LoadMeter::now() const {
   const std::optional<Ticks> after = read();
   if (!before_ || !after) return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<Load> LoadMeter::now() const {
 }
 
 TimingLock::TimingLock(const std::string& path) {
-  // A file of another user cannot be opened for writing, and is locked as well.
+  // A file of another user cannot be opened for writing, but a lock needs only reading.
   const auto open = [&](int flags) { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); };
   const bool ours = (file_ = open(O_RDWR)) >= 0 || (file_ = open(O_RDWR | O_CREAT)) >= 0;
   if (!ours && (file_ = open(O_RDONLY)) < 0) {
@@ -166,7 +166,7 @@ TimingLock::TimingLock(const std::string& path) {
   ::fchmod(file_, 0666);
   const std::string own = std::to_string(::getpid());
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // The number is for the message alone.
+    // No error: the number is only for the message above.
   }
 }
 

@@ -1,5 +1,5 @@
-// The machine as measurements report it: cores, memory, names, what else runs on it; and the lock
-// of programs that measure times.
+// The machine, for reports of measurements: its cores, CPU, memory and load. Also the lock that
+// keeps two programs from measuring times at once.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@ namespace farcull {
 /// How many cores this process may use.
 unsigned usable_cores();
 
-/// Confines the process, with all threads that it starts from now on, to this number of cores, so
-/// that no library uses more cores than it should. Throws Error naming --threads if the machine has
-/// fewer or the system refuses. Precondition: threads >= 1.
+/// Confines the process, and all threads that it starts from now on, to this number of cores, so
+/// that no library uses more of them. Throws Error naming --threads if the process may use fewer
+/// cores or the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
 /// The model of the CPU as /proc/cpuinfo has it; "unknown" if the file does not say.
@@ -35,21 +35,21 @@ class PeakMemory {
 
 /// How much other programs used the processors that this process may use.
 struct Load {
-  double share = 0;  // of their time, 0 to 1
-  /// Two standard deviations of `share`, since the system counts by ticks of a clock.
+  double share = 0;  // part of these processors' time, 0 to 1
+  /// Two standard deviations of `share`: the system counts only whole clock ticks.
   double error = 0;
   bool beyond(double limit) const { return share - error > limit; }
 };
 
-/// The load since construction: the time in which these processors were busy (/proc/stat, with what
-/// a hypervisor stole) less the time of this process and of its children that have ended. The load
-/// average of the system is not asked: in a container it counts the processes of all others,
-/// wherever they run, and it lags by a minute.
+/// The load since construction: the time in which these processors were busy (/proc/stat, including
+/// time that a hypervisor took), less the time of this process and of its children that have ended.
+/// The system's load average is not used: in a container it counts the processes of the whole
+/// machine, on whichever cores they run, and it lags by a minute.
 class LoadMeter {
  public:
   LoadMeter();
-  /// Empty if the system does not say: there is no /proc/stat, or it misses this process's own time
-  /// (gVisor). A container that sees its own time alone (lxcfs) reports none of the others.
+  /// Empty if there is no /proc/stat, or if it lacks the time of this process (gVisor). If a
+  /// container's /proc/stat has only its own time (lxcfs), other load is not seen.
   std::optional<Load> now() const;
 
  private:
@@ -60,13 +60,13 @@ class LoadMeter {
   std::optional<Ticks> before_;
 };
 
-/// Held by the one process of a machine that measures times, until it ends, however it ends.
+/// Lets one process per machine measure times. The lock ends with the process, even in a crash.
 class TimingLock {
  public:
   static constexpr const char* kFile = "/tmp/farcull-times.lock";
 
   /// Throws Error naming the process that holds the lock, or the path if it cannot be opened.
-  /// Another path is for tests.
+  /// Tests give another path.
   explicit TimingLock(const std::string& path = kFile);
   ~TimingLock();
   TimingLock(const TimingLock&) = delete;

@@ -1,6 +1,6 @@
 // Writes a file beside its path and renames it, so that a reader sees the old file or the new one.
 // A file that grows is written once in this way; each addition then overwrites the file's end.
-// Handlers of signals take no memory and no lock.
+// Signal handlers allocate no memory and take no lock.
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
@@ -21,8 +21,8 @@
 
 namespace farcull {
 
-// The handler of a signal writes the line of an interrupted run, so this code takes no memory and
-// no lock.
+// A signal handler writes the message about an interrupted run, so this code allocates no memory
+// and takes no lock.
 
 namespace {
 
@@ -94,8 +94,8 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// The place that a path leads to. A regular file or a new one is put there by renaming. Anything
-// else is `direct`: it takes the text as it comes.
+// What a path leads to. A regular file or a new one is written beside it and renamed. Anything else
+// is `direct`: the text is written to it as it comes.
 struct Target {
   std::string path;
   bool exists = false;
@@ -125,8 +125,8 @@ std::string folder_of(const std::string& path) {
 // Path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// The path of a file until it is put in place: in the same folder, under its name with an ending.
-// The name is cut if it is too long for the file system, but not within a UTF-8 character.
+// The path of the half-written file: in the same folder, the file's name with an ending. The name
+// is cut if it is too long for the file system, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
@@ -367,8 +367,8 @@ void GrowingOutput::finish() {
 void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // The next file that is opened would get the number of a closed stream, and the table would be
-  // written into that file. So another file takes the number: one that refuses reads or writes.
+  // The next file that is opened would get the number of a closed stream, and output for the stream
+  // would be written into that file. So /dev/null takes the number, opened such that its use fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

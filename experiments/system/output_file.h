@@ -14,41 +14,41 @@
 
 namespace farcull {
 
-/// Throws Error naming the path if write_output would refuse it for what is known before anything
-/// is written: no such folder, a directory, no permission, a name or path that is too long, a
-/// closed standard output. So a run of an hour does not fail at its end.
+/// Throws Error naming the path if write_output() would fail for a reason that is known beforehand:
+/// no such folder, a directory, no permission, a name or path that is too long, a closed standard
+/// output. Called before a long run, so that the run does not fail at its end.
 void check_output(const std::string& path);
 
-/// Writes the text beside the path and renames it into place; "-" is standard output. A symbolic
-/// link stays and its file is replaced; devices and pipes take the text as it comes. Throws Error
-/// naming the path if the disk, the folder or a closed pipe refuses. No half-written file is left,
-/// even if SIGINT, SIGTERM or SIGHUP ends the program meanwhile. SIGPIPE and SIGXFSZ have to be
-/// ignored for that (prepare_output()).
+/// Writes the text to a file beside the path and renames that file; "-" is standard output. A
+/// symbolic link stays and its file is replaced; devices and pipes take the text as it comes.
+/// Throws Error naming the path if the disk, the folder or a closed pipe refuses. No half-written
+/// file is left, even if SIGINT, SIGTERM or SIGHUP ends the program meanwhile. Precondition:
+/// SIGPIPE and SIGXFSZ are ignored (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
 /// Takes a text part by part.
 using TextSink = std::function<void(std::string_view)>;
-/// write_output() of a long text, which write(sink) gives to the sink. An exception of `write` is
-/// thrown again here, and a file stays as it was.
+/// write_output() for a long text: write(sink) passes the text to the sink part by part. An
+/// exception of `write` is passed on, and an existing file stays as it was.
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 
-/// Writes help, or another text that a reader may end early (help run | head), to standard output:
+/// Writes help, or another text whose reader may stop early (help run | head), to standard output:
 /// a closed pipe is no error. Throws Error as write_output() if the disk refuses.
 void write_help(const std::string& text);
 
 /// Writes the text to a new file beside `path`, an absolute or relative path that is no symbolic
 /// link, and renames it into place. The new file gets the permissions of a file that it replaces.
-/// Returns 0 or the errno of the first failure. No half-written file is left, as by write_output().
-/// One at a time in a process.
+/// Returns 0 or the errno of the first failure. As with write_output(), no half-written file is
+/// left. Only one call at a time in a process.
 int replace_file(const std::string& path, const std::string& text);
 
-/// Once, at the start of the program: a full disk and a closed pipe answer with an error instead of
-/// a signal, and standard streams that are closed do not let a file take their number.
+/// Call once, at the start of the program. Afterwards a full disk and a closed pipe give an error
+/// instead of a signal, and no file that is opened gets the number of a closed standard stream.
 void prepare_output();
 
-/// A text that grows by additions and has an end, such as a JSON array with its brackets. After
-/// each addition a file holds all additions and the end, so whatever ends the program leaves a
-/// whole text; only a kill or a crash of the machine while an addition is written can cut it short.
+/// A text that grows by additions and has an end, such as the last bracket of a JSON array. After
+/// each addition the file holds all additions and the end, so the text is whole whenever the
+/// program ends. Only a kill or a crash of the machine during an addition can cut the text short.
 /// The first addition replaces the file as write_output() does; until then the old file stays.
 /// Standard output, devices and pipes take the additions as they come, and the end once.
 class GrowingOutput {
@@ -69,19 +69,19 @@ class GrowingOutput {
   std::string path_;
   std::string end_;
   bool begun_ = false, finished_ = false, streamed_ = false;
-  int file_ = -1;       // of a regular file, or of a device or pipe
-  long long kept_ = 0;  // bytes before the end
+  int file_ = -1;       // file, device or pipe; -1 for standard output
+  long long kept_ = 0;  // bytes of all additions
 };
 
 class HalfWritten;
 
-/// Writes a file beside the path; put() renames it into place. A file that is not put is removed,
-/// even if SIGINT, SIGTERM or SIGHUP ends the program. One at a time in a process, and no
-/// write_output() meanwhile. A symbolic link stays and its file is replaced.
+/// Writes a file beside the path; put() renames it into place. Without put() the file is removed,
+/// even if SIGINT, SIGTERM or SIGHUP ends the program. Only one may exist in a process, and
+/// write_output() must not be called meanwhile. A symbolic link stays and its file is replaced.
 class StreamedOutput {
  public:
-  /// Throws Error naming the path if it is standard output, a device or a pipe, which cannot appear
-  /// at once, or if the folder or the disk refuses.
+  /// Throws Error naming the path if it is standard output, a device or a pipe, which cannot be
+  /// replaced by renaming, or if the folder or the disk refuses.
   explicit StreamedOutput(const std::string& path);
   ~StreamedOutput();
   StreamedOutput(const StreamedOutput&) = delete;
@@ -89,7 +89,7 @@ class StreamedOutput {
 
   /// Throws Error if the disk refuses.
   void add(std::string_view text);
-  /// The file until put(), for a library that writes it by its name instead of add().
+  /// Path of the file before put(), for a library that opens and writes the file itself.
   const std::string& half() const { return half_; }
   /// Waits until the file is on the disk, and puts it in place. Throws Error as add() does.
   void put();
@@ -139,7 +139,7 @@ class SignalGuard {
 /// of the program ignores (nohup) stay ignored. One at a time in a process.
 class Interruptible {
  public:
-  /// The texts have to outlive this object. terminal: the line of progress is cleared first.
+  /// The texts have to outlive this object. terminal: clears the line of progress first.
   Interruptible(long wanted, const char* what, const char* end, bool terminal);
 
   void done(long count);

@@ -1,4 +1,4 @@
-// The Python that runs the parts of the program that are written in it.
+// Finds and starts Python, in which parts of the program are written.
 #pragma once
 
 #include <unistd.h>
@@ -14,7 +14,7 @@
 
 namespace farcull {
 
-/// FARCULL_PYTHON, else Debian's Python, which sees the packages of Debian, else the one in PATH.
+/// The Python to run: $FARCULL_PYTHON, else Debian's (for Debian's packages), else that in PATH.
 inline std::string python() {
   const char* const named = std::getenv("FARCULL_PYTHON");
   constexpr const char* kUsual = "/usr/bin/python3";
@@ -38,8 +38,8 @@ inline std::string report_folder(const std::string& of_sources) {
   return folder;
 }
 
-/// Replaces this process by Python with these arguments. Throws Error with `remedy` if there is
-/// none.
+/// Replaces this process by Python with these arguments. Throws Error with `remedy` if Python
+/// cannot be run.
 [[noreturn]] inline void become_python(std::vector<std::string> words, const std::string& remedy) {
   words.insert(words.begin(), python());
   std::vector<char*> arguments;

@@ -1,5 +1,5 @@
-// Text for people to read: aligned tables, colours on a terminal, and words of command lines that
-// are shown to be typed again.
+// Text for people to read: aligned tables, colours on a terminal, and the quoting of words in
+// command lines that the reader is to copy.
 #pragma once
 
 #include <algorithm>
@@ -15,24 +15,24 @@
 
 namespace farcull {
 
-/// Columns for text that people read: those of the stream's terminal, but at least 40; 100 where it
-/// is no terminal, so that a file or a pipe gets the same text everywhere.
+/// The width of text for people, in characters: that of the stream's terminal, but at least 40. It
+/// is 100 if the stream is no terminal, so that a file or a pipe gets the same text everywhere.
 std::size_t text_columns(std::FILE* stream = stdout);
 
-/// Breaks lines at blanks, so that each has at most `columns` if its words allow it. The rest of a
-/// line stands below its text: after its leading blanks and a label that two blanks end, or after
-/// `indent` blanks if these are more.
+/// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it.
+/// Continuation lines are indented to where the line's text starts: after its leading blanks and
+/// after a label that two blanks follow. The indentation is at least `indent`.
 std::string wrapped(const std::string& text, std::size_t columns = text_columns(),
                     std::size_t indent = 0);
 
-/// Rows of cells; each column is as wide as its widest cell, and the table as `columns` allow. If
-/// it is wider, the widest left column is wrapped. If that is not enough, the columns that do not
-/// fit stand in a second table below, after the first column again.
+/// Rows of cells. Each column is as wide as its widest cell. If the table is then wider than
+/// `columns`, its widest left-aligned column is wrapped. If that would not be enough, the columns
+/// that do not fit stand in further tables below; each repeats the first column.
 class Table {
  public:
-  /// One letter a column: 'l' to the left, 'r' to the right.
+  /// One letter per column: 'l' aligns to the left, 'r' to the right.
   explicit Table(std::string_view alignment) : alignment_(alignment) {}
-  /// A row of one cell, in a table of several columns, is a note below the row before.
+  /// In a table of several columns, a row of one cell is a note on the row above it.
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   /// Two blanks between columns, none at the ends of lines.
   std::string text(std::size_t columns = text_columns()) const;
@@ -44,14 +44,14 @@ class Table {
 
 enum class Colour { good, bad, doubtful };  // green, red, yellow
 
-/// Whether a stream (STDOUT_FILENO, STDERR_FILENO) takes colours: a terminal that is not dumb, and
-/// NO_COLOR is unset or empty (https://no-color.org).
+/// True if the stream (STDOUT_FILENO, STDERR_FILENO) is a terminal that is not dumb, and NO_COLOR
+/// is unset or empty (https://no-color.org).
 bool takes_colour(int stream);
 
 /// The text in bold and in the colour if the stream takes colours; else unchanged.
 std::string coloured(const std::string& text, Colour colour, int stream);
 
-/// The word as a POSIX shell reads it back: unchanged if it is plain, else in single quotes.
+/// Quotes a word for a POSIX shell: unchanged if it is plain, else in single quotes.
 inline std::string quoted(const std::string& word) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||

@@ -1,4 +1,4 @@
-// Merges sorted lists: the least of the next lines of all lists is the next line of the whole.
+// Merges sorted lists: the next line of the result is the least of the next lines of all lists.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -30,7 +30,7 @@ constexpr const char* kRecordRemedy =
     "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote";
 constexpr const char* kAgain = "run the tile again";
 
-// A record, and its values that must fit those of the other records.
+// A record, and the values of it that the merge uses.
 struct Source {
   std::string path;
   Json json;
@@ -42,7 +42,7 @@ struct Source {
   throw Error(path, reason, kRecordRemedy);
 }
 
-// The value at a place such as /tile/k. Throws Error if it has another type.
+// The value at a JSON pointer such as /tile/k. Throws Error if it is missing or has another type.
 template <class Value>
 Value at(const Source& source, const char* place) {
   try {
@@ -147,7 +147,7 @@ class List {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
-  // Reads the next row; false at the end. There it throws if the list is not what the record says.
+  // Reads the next row; false at the end. Throws at the end if the list is not that of the record.
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {
@@ -159,8 +159,8 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle, of both
-  const std::string& line() const { return line_; }                 // without its end
+  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle of a, then b
+  const std::string& line() const { return line_; }                 // without its newline
 
   [[noreturn]] void fail(const std::string& reason) const {
     throw Error(source_->list, reason, kAgain, static_cast<long>(lines_));
@@ -199,7 +199,7 @@ class List {
   Sha256 hash_;
 };
 
-// All lists are open at once. The limit of open files that a shell has set may be too low.
+// Raises the limit of open files: all lists are open at once, and a shell may have set a low limit.
 void open_many_files() {
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;

@@ -56,8 +56,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The number of cuts that are at most `reach` after the place, rounded as in meets(). With reach 0
-// this is the tile in which the place lies.
+// The number of cuts that are at most at + reach, rounded as in meets(). With reach 0 this is the
+// index of the tile in which `at` lies.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
@@ -66,7 +66,7 @@ std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
 
 Box box_of(const Scene& scene, std::uint32_t triangle) { return grown_box(scene, triangle, 0); }
 
-// Counts the boxes that meet each tile, from the tiles where the boxes begin and end.
+// Counts the boxes that meet each tile. step_[k] is the count of tile k less that of tile k - 1.
 class Loads {
  public:
   Loads(const Cuts& cuts, double clearance)
@@ -75,7 +75,7 @@ class Loads {
     ++step_[tile_at(cuts_, box.lo[cuts_.axis])];
     --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
-  // The triangles of the fullest tile, and the sum over all tiles.
+  // The count of the fullest tile, and the sum over all tiles.
   std::pair<std::uint64_t, std::uint64_t> most_and_all() const {
     std::pair<std::uint64_t, std::uint64_t> out;
     std::uint64_t now = 0;
@@ -258,8 +258,8 @@ class Gathering {
   std::vector<std::uint32_t> vertex_;  // by vertex of the part: its number in the tile, or kNone
 };
 
-// Renumbers pairs of objects of the whole scene for the part. Leaves out those with an object
-// outside the part, since they have no pair of triangles here.
+// Renumbers pairs of objects of the whole scene for the part. Leaves out pairs with an object
+// outside the part: this tile has none of their triangle pairs.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -462,7 +462,7 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // A small scene has the same answer: at most two objects with triangles, and one without.
+  // A smaller scene has the same answer: at most two objects with triangles, and one without.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

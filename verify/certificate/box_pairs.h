@@ -60,9 +60,9 @@ struct BoundsTree {
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
 /// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
 /// With a clearance > 0 (world units, finite): the pairs whose boxes are no farther apart than the
-/// clearance along any axis, by differences in double. With a tile: those of them that belong to
-/// it. Memory O(triangles). Precondition: validate() accepts the scene. The scene must outlive the
-/// object.
+/// clearance along any axis, by differences in double. With a tile: only those of these pairs that
+/// belong to it. Memory O(triangles). Precondition: validate() accepts the scene. The scene must
+/// outlive the object.
 class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene, double clearance = 0, const Tile& tile = {});
@@ -79,7 +79,7 @@ class BoxPairs {
   Tile tile_;
   BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
-  std::uint32_t triangle_ = 0;  // the next to be asked
+  std::uint32_t triangle_ = 0;  // the next one whose partners are sought
 };
 
 }  // namespace farcull

@@ -16,8 +16,8 @@
 
 namespace farcull {
 
-// One pass over the objects: n triangles make n (n - 1) / 2 pairs, and neighbours in the order of
-// the scene join into one range.
+// One pass over the objects: n triangles make n (n - 1) / 2 pairs, and objects that follow each
+// other in the scene join into one range.
 
 NotAsked not_asked(const Scene& scene) {
   NotAsked out;
@@ -66,7 +66,7 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
 /// Finds the pairs of a sorted list in a longer sorted list, whose pairs come one after the other.
 class Marked {
  public:
-  /// others: skip pairs that are not in the longer list; else they are an error.
+  /// others: pairs that are not in the longer list are skipped; if false, they are an error.
   Marked(std::span<const TrianglePair> pairs, const char* name, bool others)
       : pairs_(pairs), name_(name), others_(others) {
     for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -104,7 +104,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error("make_certificate: a clearance must be finite and not negative");
   constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
-  constexpr std::size_t kPerThread = 1024;  // pairs per thread, enough to pay for it
+  constexpr std::size_t kPerThread = 1024;  // fewer pairs are not worth a thread
   Certificate out;
   out.scene = whole ? whole->key : key_of(scene);
   out.clearance = clearance;

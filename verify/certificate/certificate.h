@@ -5,11 +5,11 @@
 // A check that passes proves something about the scene alone: which of the pairs of triangles that
 // count meet. A pair counts if its triangles are of different objects, or of one object marked
 // `self`. The certificate names the list of the pairs that meet by its hash, so that a written list
-// is proved, too.
-// Neighbours (verify/exact.h) meet iff they share more than their shared part. Pairs whose boxes
-// are disjoint need no evidence. Nothing is proved about the run: neither how it came to its answer
-// (Run) nor which pairs it kept. If the certificate calls a pair culled that meets, it is refuted.
-// If it calls this pair kept, its statement about the scene is true, whatever the run did.
+// is proved, too. Neighbours (verify/exact.h) meet iff they share more than their shared part.
+// Pairs whose boxes are disjoint need no evidence. Nothing is proved about the run: neither how it
+// came to its answer (Run) nor which pairs it kept. A certificate that calls a pair culled although
+// the pair meets is refuted. If it calls such a pair kept, its claim about the scene is true,
+// whatever the run did.
 //
 // With a clearance D > 0 read "meets" as "is at distance D or less", "overlap" as "are no farther
 // apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
@@ -59,8 +59,8 @@ struct Certificate {
     bool operator==(const Unasked&) const = default;
   };
 
-  /// Counts of pairs that count whose closed boxes overlap: separated + neighbours + meeting, and
-  /// kept + culled.
+  /// Numbers of pairs that count and whose closed boxes overlap: box_pairs = separated + neighbours
+  /// + meeting = kept + culled.
   struct Claims {
     std::uint64_t box_pairs = 0;
     std::uint64_t kept = 0;        // called kept: left to the exact tests by the method
@@ -103,7 +103,7 @@ struct Certificate {
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
   /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
-  /// separates the pair, or kMeets, or kNeighbours; kKept: the pair is called kept; bit 7 is 0.
+  /// separates the pair, or kMeets, or kNeighbours; bit 6 (kKept): called kept; bit 7: 0.
   std::vector<std::uint8_t> evidence;
 
   bool operator==(const Certificate&) const = default;
@@ -115,10 +115,10 @@ constexpr std::uint8_t kKept = 0x40;
 
 struct ListNumbers;
 
-/// The whole scene of which a scene has the triangles that meet a tile.
+/// The whole scene, for a scene that has only those of its triangles that meet a tile.
 struct WholeScene {
   Tile tile;
-  const ListNumbers* numbers = nullptr;  // of the objects and triangles of the part in the whole
+  const ListNumbers* numbers = nullptr;  // of the part's objects and triangles in the whole scene
   Certificate::SceneKey key;
   Certificate::Unasked not_asked;
 };
@@ -128,7 +128,7 @@ Certificate::SceneKey key_of(const Scene& scene);
 Certificate::Unasked unasked_of(const Scene& scene);
 
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
-/// those of them that the run found to meet, neighbours included. Both are sorted, each pair once,
+/// the kept pairs that the run found to meet, neighbours included. Both are sorted, each pair once,
 /// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. Throws
 /// std::logic_error otherwise. Errors of the run are written as the run made them, so that the
 /// check refutes them. A kept pair is said to meet iff it is in `colliding`. If the run calls a

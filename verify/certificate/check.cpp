@@ -152,7 +152,7 @@ std::string wrong_list(const std::string& claimed, const std::string& found) {
                                 claimed + ", and that of the pairs that meet is " + found;
 }
 
-/// Counts the decided pairs, and keeps the pair to be named.
+/// Counts the decided pairs, and remembers the pair to be named in the result.
 class Tally {
  public:
   explicit Tally(bool clearance) : clearance_(clearance) {}
@@ -168,7 +168,7 @@ class Tally {
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == EvidenceFault::as_claimed) return;
-    // Names the first pair that refutes; if there is none yet, the first that is not proved.
+    // Names the first pair that refutes; before one is found, the first that is not proved.
     const bool refuted = refutes(decision.finding);
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
@@ -176,7 +176,7 @@ class Tally {
     result_.reason = sentence(decision.finding, byte, clearance_);
   }
 
-  /// The result. Every pair has been added.
+  /// The result; to be called after every pair was added.
   CheckResult finish(const Certificate& certificate, const Scene& scene, const WholeScene* whole,
                      double decide_ms) {
     result_.decide_ms = decide_ms;

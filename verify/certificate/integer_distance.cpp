@@ -54,8 +54,8 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-/// Whether x is the rounded fraction: whether the fraction lies between the middles from x to the
-/// next lower double and from x to the next higher double.
+/// Whether x is the rounded fraction: whether the fraction lies between the middle of x and the
+/// next lower double and the middle of x and the next higher double.
 bool is_rounded(double x, const mpq_class& exact) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
@@ -135,18 +135,18 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
   return false;
 }
 
-// Counts the crossings along a ray in the direction of the first axis. The ray starts a
-// little beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
-// smaller than any number. So the ray meets no edge, and one ray is enough. The sign of a
-// polynomial in e is that of its first coefficient that is not 0.
+// Counts the crossings along a ray in the direction of the first axis. The ray starts a little
+// beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
+// infinitely small. So the ray meets no edge, and one ray is enough. The sign of a polynomial in e
+// is that of its coefficient of lowest degree that is not 0.
 
 namespace {
 
 using integer::BigVector;
 
 /// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
-/// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ at
-/// most along the ray.
+/// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ in
+/// no coordinate but the first.
 int side_of_edge(const BigVector& p, const BigVector& q) {
   const int sign = cmp(mpz_class(p[1] * q[2]), mpz_class(p[2] * q[1]));
   if (sign != 0) return sign;
@@ -192,7 +192,7 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
         side_of_edge(pair.b[2], pair.b[0]) != side) {
       continue;  // passes by
     }
-    // Along the ray the plane is at distance determinant / n_x, and n_x has the sign `side`.
+    // The ray meets the plane of t at determinant / n_x, n a normal; n_x has the sign `side`.
     const int ahead = sgn(determinant(pair.b));
     if (ahead == 0) return std::nullopt;
     if (ahead != side) continue;
@@ -230,7 +230,7 @@ IntegerSurface mesh_of(const Scene& scene, const Object& object) {
     }
   }
   std::ranges::sort(edges);
-  // The edges of one place follow each other, those downwards first.
+  // Edges with the same two ends follow each other, downward ones first.
   bool oriented = true;
   for (std::size_t i = 0; i < edges.size();) {
     const auto [lower, upper, up] = edges[i];

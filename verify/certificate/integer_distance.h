@@ -29,9 +29,9 @@ struct FractionPoint {
 /// False for -0.0.
 bool is_rounded(const Vec3& x, const FractionPoint& point);
 
-/// The distance of two triangles, and the places of its ends. Features are numbered: 0 to 2 the
-/// corners, 3 to 5 the edge from corner 0 to 2 to the next one, 6 the face. The features are the
-/// first pair (by the feature of a, then by that of b) that has two nearest points.
+/// The distance of two triangles, and where its ends are. Features are numbered: 0 to 2 the
+/// corners, 3 + i the edge from corner i to the next, 6 the face. The features are the first pair
+/// (by the feature of a, then by that of b) that has two nearest points.
 struct IntegerDistance {
   Fraction squared;
   std::array<std::uint8_t, 2> features{};
@@ -54,10 +54,10 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
 // proof.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
-// triangles; triangles with two equal corners do not count. It is *oriented* if they also pass each
-// edge equally often in both directions. A point off an oriented mesh is *inside* if a ray from it
-// does not cross the mesh equally often from both sides; off another closed mesh, if it crosses it
-// an odd number of times.
+// triangles; triangles with two equal corners do not count. It is *oriented* if its triangles also
+// pass each edge equally often in both directions. A point off the mesh is *inside* an oriented
+// mesh if a ray from the point does not cross the mesh equally often from both sides; inside
+// another closed mesh, if the ray crosses it an odd number of times.
 
 /// a, b: this object is inside the other, with all of its points. none: neither object is inside
 /// the other. not_closed: neither is inside the other, but the box of one is in the box of the

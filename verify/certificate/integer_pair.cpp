@@ -57,7 +57,7 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       top = std::max(top, x.exponent + bit_length(x.mantissa < 0 ? -Wide{x.mantissa} : x.mantissa));
     }
   }
-  constexpr int kWidest = 125;  // bits of a coordinate, so that a difference still is a Wide
+  constexpr int kWidest = 125;  // bits of a coordinate, so that a difference still fits a Wide
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (corners_[0][i] != corners_[1][j]) continue;

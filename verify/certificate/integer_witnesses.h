@@ -117,9 +117,9 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
 /// True iff the direction s.d proves that a and b share no more than their shared part; shared_a
 /// and shared_b are the corners that a and b have in common. If a plane perpendicular to d has all
 /// of a on one side and all of b on the other, the triangles meet only in the plane, where each is
-/// the hull of its corners in the plane. This is no more than the shared part if all these corners
-/// of one triangle are shared, or if an edge of each lies in the plane and the edges are not
-/// parallel (d is their product).
+/// the hull of its corners in the plane. What they share is no more than the shared part if all
+/// corners of one triangle that lie in the plane are shared, or if an edge of each lies in the
+/// plane and the edges are not parallel (d is their product).
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
@@ -144,8 +144,8 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   return in_a == edge_of((direction - 2) / 3) && in_b == edge_of((direction - 2) % 3);
 }
 
-/// The largest bits for which has_gap(make_direction()) stays in 127 bits. With |differences| < D =
-/// 2^bits, each coordinate itself the difference from a's first corner:
+/// The largest number of bits for which has_gap(make_direction()) stays in 127 bits. Let |x| < D =
+/// 2^bits for all differences x of coordinates; coordinates are relative to a's first corner:
 ///   corner-corner: |d| < D, |projection| < 3 D^2 < 2^(2 bits + 2)
 ///   cross products: |d| < 2 D^2, |projection| < 6 D^3 < 2^(3 bits + 3)
 ///   perpendiculars: e.e, |w.e| < 3 D^2, |d| < 6 D^3, |projection| < 18 D^4 < 2^(4 bits + 5)

@@ -154,8 +154,8 @@ struct Fraction {
 /// The most decimal digits of either part of a squared distance. All coordinates of a scene times
 /// 2^1074 are integers below 2^2098, and their differences are below D = 2^2099. In this scale the
 /// square of a distance is, by the features of the nearest points, (w . d)^2 / (d . d) with d at
-/// most a product of two edges, so both parts are below (6 D^3)^2 < 2^12600. In world units
-/// the lower part has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 < 2^10548. Dividing
+/// most a cross product of two edges, so both parts are below (6 D^3)^2 < 2^12600. In world units
+/// the denominator has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 < 2^10548. Dividing
 /// by common factors makes none longer. log10(2^12600) < 3793.
 constexpr std::size_t kMostDigits = 4000;
 

@@ -1,5 +1,4 @@
-// Certificates as text. The reader does not trust the text: a first pass checks the syntax
-// alone.
+// Certificates as text. The reader does not trust the text: a first pass checks the syntax alone.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -52,7 +51,7 @@ class Syntax : public nlohmann::json_sax<Json> {
   }
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::json::exception& error) override {
-    // Without the end of the message, which quotes the text of the file.
+    // Cuts off the end of the message, which quotes the text of the file.
     const std::string_view fault = json_fault(error.what());
     return stop("not JSON at byte " + std::to_string(position) + ": " +
                 printable(fault.substr(0, fault.find("; last read")), 120));

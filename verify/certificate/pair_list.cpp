@@ -262,7 +262,7 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
   struct Meeting {  // a row whose pair meets
     TrianglePair pair;
     std::uint64_t line;
-    bool wrong;  // about neighbours
+    bool wrong;  // its entry in `neighbours` is wrong
     auto operator<=>(const Meeting&) const = default;
   };
   std::vector<Meeting> listed;

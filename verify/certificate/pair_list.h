@@ -33,7 +33,7 @@ struct ListNumbers {
 /// object; `neighbours` is 1 for triangles of one object that share a vertex position, else 0.
 class PairListRows {
  public:
-  /// The scene and the numbers must outlive the object. Null: the numbers of the scene itself.
+  /// numbers: null for those of the scene itself; else they, as the scene, must outlive the object.
   explicit PairListRows(const Scene& scene, const ListNumbers* numbers = nullptr);
   /// Appends the line of a pair to `text`. Precondition: both triangles are of the scene.
   void append(const TrianglePair& pair, std::string& text) const;
@@ -93,9 +93,9 @@ struct ListDifferences {
 /// list and the line if the scene has no such object or triangle.
 TrianglePair pair_of(const Scene& scene, const std::string& name, const ListedPair& row);
 
-/// Compares rows with the pairs that meet, or with a clearance the pairs within it (sorted, each
-/// once).
-/// The order of rows and of the triangles in a row does not matter. Throws Error as pair_of().
+/// Compares rows with `meeting`: the pairs that meet (with a clearance: that are within it),
+/// sorted, each once. The order of rows and of the triangles in a row does not matter. Throws Error
+/// as pair_of().
 ListDifferences find_differences(const Scene& scene, const std::string& name,
                                  std::span<const ListedPair> rows,
                                  std::span<const TrianglePair> meeting, double clearance = 0);

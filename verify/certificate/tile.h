@@ -32,7 +32,7 @@ inline bool holds(const Tile& tile, double at) { return at >= tile.from && at < 
 
 /// True if a triangle may be in a pair that belongs to the tile and whose boxes are at most
 /// `clearance` apart. lo, hi: the ends of its box on the axis. The difference is rounded as that of
-/// two boxes (box_pairs.h); rounding is monotone.
+/// two boxes (box_pairs.h), and rounding is monotone, so no such triangle is left out.
 inline bool meets(const Tile& tile, double lo, double hi, double clearance) {
   return lo < tile.to && tile.from - hi <= clearance;
 }

@@ -48,14 +48,13 @@ bool has_word(const std::string& list, const std::string& word) {
   return (" " + list + " ").find(" " + word + " ") != std::string::npos;
 }
 
-// Threads of the driver are counted by their names, and by what LP_NUM_THREADS asked for. Neither
-// alone is enough: another user of Mesa in this process may have opened the display, when the
-// variable had another value; and a thread gets its name a moment after it was started.
+// driver_threads() is the larger of two counts. The threads with llvmpipe's name may be too few: a
+// thread gets its name a moment after its start. LP_NUM_THREADS may be wrong: another user of Mesa
+// in this process may have opened the display when it had another value.
 
-// Reads LP_NUM_THREADS as llvmpipe does. Without the variable there is a thread for each core, but
-// none if there is only one core.
+// Reads LP_NUM_THREADS as llvmpipe does. Without it: a thread per core, but none on a single core.
 int read_variable() {
-  constexpr long kMost = 16;  // of Mesa 22
+  constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
   const long cores = static_cast<long>(std::thread::hardware_concurrency());
   long threads = cores > 1 ? cores : 0;
   if (const char* const text = std::getenv("LP_NUM_THREADS")) {
@@ -66,7 +65,7 @@ int read_variable() {
   return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
 }
 
-// Call it before the first display is opened: llvmpipe reads the variable then, and never again.
+// Must be called before the first display is opened, which is when llvmpipe reads the variable.
 int asked_threads() {
   static const int threads = read_variable();
   return threads;
@@ -86,15 +85,14 @@ int running_threads() {
 }
 
 // Address space that Mesa's software device takes: its libraries with LLVM, and a stack and a heap
-// for each of up to 16 threads. With less, loading it fails in many ways, which look as if it were
-// not installed, or it crashes.
+// for each of up to 16 threads. With less it crashes, or seems not to be installed.
 std::size_t driver_bytes() {
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   return (std::size_t{256} + std::size_t{64} * threads) << 20;
 }
 
-// Throws Error if driver_bytes() of address space are not left, as under a limit of the process
-// (ulimit -v): reserves them and gives them back untouched.
+// Throws Error if less than driver_bytes() of address space is left, as under ulimit -v. To find
+// out, reserves that much and releases it untouched.
 void require_memory() {
   const std::size_t bytes = driver_bytes();
   void* const reserved = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
@@ -229,7 +227,7 @@ struct GlContext::Handles {
   GlInfo info;
 };
 
-// EGL's current context belongs to a thread, and so does the rendering API that is bound.
+// What is current: EGL has one current context and one bound rendering API per thread.
 struct GlCurrent::Before {
   EGLenum api = eglQueryAPI();
   EGLDisplay display = eglGetCurrentDisplay();
@@ -320,7 +318,7 @@ GlContext::~GlContext() = default;
 const GlInfo& GlContext::info() const { return handles_->info; }
 
 bool GlContext::hardware_listed() {
-  const FloatingPointGuard guard;  // as above
+  const FloatingPointGuard guard;  // drivers are loaded here, too
   require_egl();
   for (EGLDeviceEXT device : devices()) {
     if (describe(device, 0).kind == "hardware") return true;
@@ -329,7 +327,7 @@ bool GlContext::hardware_listed() {
 }
 
 std::vector<GlDevice> GlContext::list_devices() {
-  const FloatingPointGuard guard;  // as above
+  const FloatingPointGuard guard;  // drivers are loaded here, too
   require_egl();
   const GlCurrent before;
   std::vector<GlDevice> out;
@@ -348,7 +346,7 @@ std::vector<GlDevice> GlContext::list_devices() {
 }
 
 int driver_threads(const std::string& renderer) {
-  // zink draws with llvmpipe through Vulkan, and names it too.
+  // Mesa's zink (OpenGL on Vulkan) also names llvmpipe if it draws with it.
   if (renderer.find("llvmpipe") == std::string::npos) return 0;
   return std::max(asked_threads(), running_threads());
 }

@@ -18,7 +18,7 @@ struct GlDevice {
   std::string problem;                    // why it is not usable
 };
 
-/// The device that answered; recorded with every result.
+/// The device of a context; recorded with every result.
 struct GlInfo {
   std::string kind;  // "software" or "hardware"
   std::string vendor, renderer, version, glsl;
@@ -31,13 +31,13 @@ struct GlInfo {
 };
 
 /// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent of it lives. A thread can use any number of contexts one after the other, besides the
-/// caller's own, and several threads can use one context, one at a time.
+/// GlCurrent of it lives. Besides the caller's own context, a thread can use any number of contexts
+/// one after the other. Several threads can use one context, one at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of
   /// list_devices(). Throws Error if there is no EGL or no such device, or if its OpenGL is too
-  /// old. The context that was current in the calling thread is current again afterwards.
+  /// old. Afterwards the context that was current in this thread is current again.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -57,9 +57,9 @@ class GlContext {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Makes a context current in this thread for as long as the object lives. Then the previous
-/// context is current again: none, another GlContext, or a context of the caller with its surfaces
-/// and its rendering API. Objects may be nested. All code that calls GL holds such an object.
+/// Makes a context current in this thread for as long as the object lives. Then restores what was
+/// current before: no context, another GlContext, or a context of the caller with its surfaces and
+/// its rendering API. Objects may be nested. All code that calls GL holds such an object.
 class GlCurrent {
  public:
   /// Throws Error if the context cannot be made current: another thread is using it, or a
@@ -73,16 +73,16 @@ class GlCurrent {
   friend class GlContext;
   struct Before;
   GlCurrent();                      // remembers what is current, and changes nothing
-  std::unique_ptr<Before> before_;  // null: the context was current already
+  std::unique_ptr<Before> before_;  // null: the context was already current
 };
 
-/// How many threads of the driver draw in this process: those of Mesa's llvmpipe, or as many as
-/// LP_NUM_THREADS asks for if that is more; 0 if the renderer neither is llvmpipe nor draws with
-/// it. They may write to memory that was freed (docs/drivers.md), so a device with such threads
-/// guarantees nothing (assumption A10).
+/// The number of threads with which the driver draws in this process: those of Mesa's llvmpipe, or
+/// as many as LP_NUM_THREADS asks for if that is more; 0 if the renderer does not use llvmpipe.
+/// Such threads may write to freed memory (docs/drivers.md), so a device that has them guarantees
+/// nothing (assumption A10).
 int driver_threads(const std::string& renderer);
 
-/// The risk of those threads and the remedy, without a full stop; empty if there are none.
+/// A text on the risk of these threads and its remedy, without a full stop; empty without threads.
 std::string risk_of_threads(const std::string& renderer);
 
 /// Reads GL's error flags and the reset status. Throws Error naming `stage` unless both are clean

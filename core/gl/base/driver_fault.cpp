@@ -13,9 +13,9 @@ using Kind = DriverFaultKind;
 
 struct Plan {
   Kind kind;
-  std::optional<std::size_t> strike;  // the call at fault; empty: none yet
-  std::size_t calls = 0;              // since strike()
-  bool query_lost = false;            // the query that is not open
+  std::optional<std::size_t> strike;  // number of the call that fails; empty: none
+  std::size_t calls = 0;              // counted since strike()
+  bool query_lost = false;            // the current query was not begun, so it is not ended
 
   bool now() { return strike && calls++ == *strike; }
 };
@@ -33,7 +33,7 @@ void draw(GLenum mode, GLint first, GLsizei count) {
 }
 
 // Every compute program of farcull has this line, which ends an invocation when its work items run
-// out. The replacement also ends the invocation at the item before far_lost_item.
+// out. The replacement also ends it before the item far_lost_item - 1; 0: before no item.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";

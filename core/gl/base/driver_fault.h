@@ -1,7 +1,7 @@
-// Faults of a GL driver, with which `farcull doctor` and the tests check that a fault is noticed
-// (assumption A7). While an object lives, failing functions replace GL's entry points (libepoxy's
-// function pointers), and shader sources are changed on their way to the compiler. Only core/gl and
-// its tests include this.
+// Simulated faults of a GL driver. With them `farcull doctor` and the tests check that faults are
+// noticed (assumption A7). While an object lives, failing functions replace GL's entry points
+// (libepoxy's function pointers), and shader sources are changed on their way to the compiler. Only
+// core/gl and its tests include this.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -19,7 +19,7 @@ template <auto* Pointer, class Function = std::remove_pointer_t<decltype(Pointer
 class GlEntryPoint;
 
 /// Puts `replacement` in place of *Pointer for the lifetime of the object; one object per entry
-/// point at a time. The replacement reaches the driver by original().
+/// point at a time. The replacement calls the driver by original().
 template <auto* Pointer, class Result, class... Arguments>
 class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
  public:
@@ -37,8 +37,8 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
   static Result original(Arguments... arguments) {
     if (resolved_) return original_(arguments...);
-    // The first call of a function resolves it: libepoxy puts what it found into its pointer, and
-    // calls it from there. Then the pointer is left alone, since other threads may be calling.
+    // On the first call libepoxy looks up the driver's function and writes it to *Pointer. Later
+    // calls do not touch *Pointer, since other threads may be calling it.
     *Pointer = original_;
     struct Again {
       ~Again() {
@@ -59,14 +59,14 @@ enum class DriverFaultKind {
   lost_draw,           // a draw call never runs
   lost_dispatch,       // a compute dispatch never runs
   oversized_dispatch,  // a compute dispatch beyond the device's limit
-  unfinished_item,     // a work item of a dispatch, and those after it of its invocation, never run
+  unfinished_item,     // an invocation of a dispatch ends before one of its work items
   lost_query,          // an occlusion query is never issued
   blind_queries,       // all occlusion queries answer zero, from strike() on
 };
 
-/// Only calls of the thread that made the object are at fault; those of other threads reach the
-/// driver unchanged. A second object, of another thread, waits for the first. Programs must be
-/// compiled while the object lives for unfinished_item.
+/// Only calls of the thread that made the object fail; calls of other threads reach the driver
+/// unchanged. An object of another thread waits until this one is destroyed. For unfinished_item,
+/// programs must be compiled while the object lives.
 class DriverFault {
  public:
   explicit DriverFault(DriverFaultKind kind);
@@ -74,8 +74,8 @@ class DriverFault {
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;
 
-  /// Makes the call with this number fail: a draw, a dispatch or a query, by the kind of fault. The
-  /// calls are counted from 0 and from now on. No call fails before strike().
+  /// Makes one draw, dispatch or query (by the kind of fault) fail: the one with this number,
+  /// counted from 0 from now on. No call fails before strike().
   void strike(std::size_t call = 0);
 
  private:

@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* kReport = "report this driver's log with the output of `{doctor}`";
 
-// Shaders write out and inout parameters through these names, so that kernels compile as C++ too
-// (core/base/glsl_shim.h).
+// Names for what GLSL and C++ write differently, such as out parameters. With them kernels compile
+// as C++, too (core/base/glsl_shim.h).
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
     "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n#define FAR_CONSTANT const float\n"
@@ -21,9 +21,9 @@ constexpr const char* kKernelNames =
     "#define FAR_UNIFORM(c) (c)\n";
 
 // FAR_AT: an element of the array at the end of a storage block; the last one if `index` is larger.
-// An upload, a binding or a uniform that was lost is noticed when results are read. Until then
-// indices that come from buffers may be anything, and a device without robust access must not read
-// or write outside the buffer. A storage buffer of ours is never empty.
+// A lost upload, binding or uniform is noticed only when results are read. Until then an index from
+// a buffer may be anything, and a device without robust access must not use it outside the buffer.
+// Our storage buffers are never empty.
 constexpr const char* kElement =
     "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
 
@@ -37,8 +37,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Every update goes through this binding. GL is asked whether it took effect: else the contents
-// that follow would go to the buffer that was bound before.
+// Binds the buffer that an update is for, and asks GL whether it is bound. If it were not, the
+// update would go to the buffer that was bound before.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;
@@ -71,8 +71,8 @@ bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
   }
 }
 
-// Numbers that look random, so that it is unlikely that a few of them cancel in a sum. Each step is
-// a bijection, so the first 2^32 numbers are all different.
+// The numbers look random, so it is unlikely that a few of them cancel in a sum. Each step is a
+// bijection, so the first 2^32 numbers are all different.
 std::uint32_t gl_number() {
   static std::atomic<std::uint32_t> last{0};
   std::uint32_t tag = last += 1;
@@ -207,7 +207,7 @@ void GlClock::forget() {
   for (GlQuery& stamp : stamps_) stamp = GlQuery();
 }
 
-// A new name each time: the name of a lost stamp then has no object, so no stale time is read.
+// Each stamp has a new name. If the stamp is lost, the name has no object, so no old time is read.
 void GlClock::stamp(std::size_t place) {
   if (!ticks_) return;
   GlQuery& query = stamps_.at(place);

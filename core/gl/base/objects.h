@@ -1,6 +1,6 @@
 // The GL objects that this folder shares: names that are deleted with their owners, programs,
-// storage buffers, the device's clock, and the echo by which lost commands are seen. For core/gl
-// and its tests alone.
+// storage buffers, the device's clock, and the echo (a checksum that reveals lost commands). For
+// core/gl and its tests alone.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -24,7 +24,7 @@ namespace farcull {
 [[noreturn]] void throw_lost(const std::string& stage, const std::string& reason,
                              const std::string& cause = "a command was lost");
 
-/// Ends open queries, makes the context current while drop() deletes objects, and forgets GL's
+/// Makes the context current, ends open queries, calls drop() to delete objects, and clears GL's
 /// errors. False if the context cannot be made current: then drop() was not called.
 bool gl_forget(const GlContext& context, const std::function<void()>& drop);
 
@@ -80,33 +80,32 @@ struct ShaderText {
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 
-/// Starts `groups` work groups of the program in use, in rows of at most `row`. A barrier lets
-/// later commands read what they write.
+/// Starts `groups` work groups of the program in use, in rows of at most `row`. A barrier follows,
+/// so that later commands can read what the groups write.
 void gl_dispatch(std::uint32_t groups, int row);
 
-/// Replaces the contents of a shader storage buffer (at least 16 bytes long, so that it can always
-/// be bound).
+/// Gives a shader storage buffer new contents, and at least 16 bytes, so that it can be bound.
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
 
-/// A number that differs from all others that this process got, for the first 2^32 calls.
+/// A number that is unique in this process (among the first 2^32 calls).
 std::uint32_t gl_number();
 
-/// Bytes of a storage buffer before its data: its tag and three words 0.
+/// Bytes of a storage buffer before its data: its tag and three zero words.
 constexpr std::size_t kTagBytes = 16;
 
 /// A shader storage buffer that grows and never shrinks. It begins with a tag, a number that no
-/// other buffer of the process has. A program reads the tag to know that this buffer is bound.
-/// Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the data. Every
-/// function asks GL whether the buffer is bound before it touches contents, so that a lost binding
-/// cannot spoil another buffer. Each function throws Error if GL fails.
+/// other buffer of the process has. Programs add the tag to their echo, so the echo shows which
+/// buffer was bound. Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the
+/// data. Every function asks GL whether the buffer is bound before it touches contents, so that a
+/// lost binding cannot spoil another buffer. Each function throws Error if GL fails.
 class GlStore {
  public:
-  /// Grows to hold `wanted` bytes of data, or up to half as much again, at most `most`. Returns
-  /// true if
-  /// the contents are lost, and so undefined. The store is unchanged if it throws.
+  /// Makes room for `wanted` bytes of data. If the store has to grow, its new size is `wanted` or
+  /// 1.5 times the old size (at most `most`), whichever is larger. Returns true if it has grown:
+  /// then the contents are undefined. If this throws, the store is unchanged.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
-  /// Sets the first `bytes` bytes to 0; a multiple of 4.
+  /// Sets the first `bytes` bytes of data, a multiple of 4, to 0.
   void clear(std::size_t bytes);
   void read(std::size_t at, void* out, std::size_t bytes) const;
 
@@ -125,8 +124,8 @@ class GlStore {
 void gl_wait(const std::string& stage);
 constexpr int kLongestWait = 600;  // s
 
-/// Records when the device reaches a place in its work, if it has a clock (GL_TIMESTAMP). It never
-/// waits, and no answer depends on it. A context must be current in every call.
+/// Records when the device reaches the places 0, 1, ... of its work, if it has a clock
+/// (GL_TIMESTAMP). Never waits; no answer depends on it. A context must be current in every call.
 class GlClock {
  public:
   /// A clock with `stamps` places.
@@ -144,11 +143,12 @@ class GlClock {
 };
 
 // The echo (assumption A7): the device returns a hash of what a program read, and of what was sent,
-// so that lost commands are seen. kEchoGlsl does the same arithmetic in shaders.
+// so that lost commands are noticed. kEchoGlsl does the same arithmetic in shaders.
 
-/// Mixes a word with its place: a bijection of the word, after which a change of any bit may change
-/// every bit (the finalizer of MurmurHash3). So changes of a few words do not cancel in a sum, as
-/// changes of signs or of small numbers would if words were only multiplied.
+/// Mixes a word with its place (the finalizer of MurmurHash3): a bijection of the word, in which
+/// each bit of the word can change every bit of the result. So it is unlikely that changes of a few
+/// words cancel in a sum. If words were only multiplied, changes of signs or of small numbers would
+/// often cancel.
 inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   std::uint32_t mixed = word ^ place * 0x9e3779b9u;
   mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
@@ -156,7 +156,7 @@ inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   return mixed ^ mixed >> 16;
 }
 
-/// For shaders that write a hash of the values they read: FAR_ADD adds a mixed word to `sum`.
+/// For shaders that write a hash of the values they read. FAR_ADD adds a mixed word to `sum`.
 inline constexpr char kEchoGlsl[] = R"glsl(
 uint far_mixed(uint word, uint place) {
   uint mixed = word ^ place * 0x9e3779b9u;

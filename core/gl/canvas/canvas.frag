@@ -1,8 +1,9 @@
-// Stores or asks one fragment. FAR_VALUE: the fragment's depth in px is written out as well. FAR_PROXY: the depth comes from
-// the solid's own data (its function stands before this text): the entry when storing, the exit when asking. FAR_ASK: asks, and
-// is the slack by which the asked depth lies behind that of the exit (kAskedBehind). FAR_FLAGS: an asked fragment raises its
-// slot's flag by writing this pass's serial number there: a proxy does so if it passes its own comparison with the stored
-// depth, a triangle if it passes the depth test. Without FAR_FLAGS an occlusion query counts.
+// Stores or asks one fragment. FAR_VALUE: also writes out the fragment's depth in px. FAR_PROXY:
+// the depth comes from the solid's data, by its function (in front of this text): the entry when
+// storing, the exit when asking. FAR_ASK: asks; the define's value is a slack (kAskedBehind), which
+// moves the asked depth behind the exit's. FAR_FLAGS: an asked fragment that is seen raises its
+// slot's flag by writing this pass's serial number there. Proxies compare with the stored depth
+// here, for triangles the depth test decides. Without FAR_FLAGS an occlusion query decides.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
 uniform float u_scale;   // of the depth map

@@ -15,13 +15,13 @@
 namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
-/// flags: an asked fragment raises its slot's flag. Proxies compare with the stored depth in the
-/// shader (float32 only: a comparison with a texel of a 24-bit texture loses equal depths);
-/// triangles at fixed depth rely on early fragment tests. occlusion: GL_ANY_SAMPLES_PASSED, many in
-/// flight, as published.
+/// How the canvas learns whether an asked slot is seen. flags: a fragment raises its slot's flag.
+/// Proxies compare with the stored depth in the shader (float32 only: a comparison with a texel of
+/// a 24-bit texture loses equal depths); triangles at fixed depth rely on early fragment tests.
+/// occlusion: a GL_ANY_SAMPLES_PASSED query per slot, many in flight, as published.
 enum class QueryMode { flags, occlusion };
 
-/// The define that makes canvas.frag ask; it gives the slack as bits.
+/// The define that makes canvas.frag ask. Its value is the slack `behind`, as bits.
 inline std::string ask_define(float behind = kAskedBehind) {
   return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
 }
@@ -32,7 +32,7 @@ struct GlCanvasOptions {
   /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
   /// GL_INTEL_conservative_rasterization.
   bool conservative = false;
-  /// The most bytes that a storage block is taken to hold. 0: the device's own limit.
+  /// Bytes that a storage block may hold at most; 0: the device's own limit.
   long storage_limit = 0;
 };
 
@@ -40,11 +40,11 @@ struct CanvasState;
 
 class GlCanvas final : public Canvas {
  public:
-  /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
+  /// `mode` and `solid`: those of the fattener that makes the drawables. Throws Error if the
   /// options do not go together or the device refuses. The context must outlive the canvas, which
   /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
-  /// depths() all that lies on the device is dropped. The next begin() makes it anew; until then
-  /// the other functions throw std::logic_error.
+  /// depths() everything on the device is dropped. The next begin() makes it again; until then the
+  /// other functions throw std::logic_error.
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
@@ -69,7 +69,7 @@ class GlCanvas final : public Canvas {
   GlCanvasOptions options_;
   RasterLimits limits_;
   std::unique_ptr<CanvasState> state_;  // null after a failure
-  CanvasWork earlier_;                  // of states that were dropped
+  CanvasWork earlier_;                  // work of states that were dropped
 };
 
 /// A GlCanvas behind the interface Canvas.

@@ -1,9 +1,9 @@
-// Fetches an element for each draw of a batch (draws of one step that read one element buffer) and places it. FAR_PROXY:
-// a quadrilateral of two triangles that share the corners of a diagonal, seven vec4 an element. Otherwise: a triangle,
-// three vec4 an element.
-// FAR_ECHO: the buffers have tags. The draws of a batch follow its head: this pass's serial number, and the batch's word of
-// the report. Into that word the first vertex of the batch writes an echo (a checksum, core/gl/base/objects.h) of what the
-// program reads; with FAR_FLAGS, also of what the fragment stage reads.
+// Fetches an element for each draw of a batch (draws of one step that read one element buffer) and
+// places it. FAR_PROXY: an element is seven vec4, a quadrilateral of two triangles that share the
+// corners of a diagonal. Otherwise: three vec4, a triangle.
+// FAR_ECHO: the buffers have tags. The draws of a batch follow its head: this pass's serial number,
+// and the batch's word of the report. To that word the first vertex of the batch writes an echo: a
+// checksum (core/gl/base/objects.h) of what both stages read.
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
@@ -25,11 +25,11 @@ uniform vec2 u_to_ndc;   // 2 / viewport side: powers of two, so the product is 
 uniform float u_scale;   // of the depth map
 
 flat out uint v_slot;
-flat out uint v_fixed;  // 1: an element of the canvas's own, at a fixed depth, drawn outside the window as well
+flat out uint v_fixed;  // 1: the canvas's own element: fixed depth, drawn outside the window, too
 #ifdef FAR_PROXY
 flat out vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
 #endif
-// A control item is asked at the very depth that another program stored.
+// So that a control item is asked at exactly the depth that another program stored.
 invariant gl_Position;
 
 #ifdef FAR_ECHO
@@ -80,7 +80,7 @@ void main() {
 #endif
   v_slot = item.y;
 #ifdef FAR_ECHO
-  // Computed outside the condition: llvmpipe then reads once for all vertices that it works on together.
+  // Outside the condition: llvmpipe then reads once for all vertices that it computes together.
   uint word = head.y, echo = far_echo();
   if (gl_VertexID == 0) FAR_AT(report, word) = echo;
 #endif

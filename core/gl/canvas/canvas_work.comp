@@ -1,6 +1,7 @@
-// Step 0 sums the words of a buffer, each mixed with its place. Step 1 packs flags, one word each, into bits: a flag is
-// raised if it holds this pass's serial number. The report begins with the number of work items that finished and the sum,
-// both over all dispatches since the host set them to 0. Each dispatch writes its echo to another word of the report.
+// Step 0 sums the words of a buffer, each mixed with its place. Step 1 packs flags, one word each,
+// into bits: a flag is raised if it holds this pass's serial number. The report begins with the
+// number of finished work items and the sum, both over all dispatches since the host set them to 0.
+// Each dispatch writes its echo to a word of its own in the report.
 layout(local_size_x = 64) in;
 #if FAR_STEP == 0
 layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uvec4 from[]; };
@@ -10,7 +11,7 @@ layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uint from[]; 
 layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
 
 layout(location = 0) uniform uint u_count;       // work items
-layout(location = 1) uniform uint u_echo;        // word of the report for the echo of this dispatch
+layout(location = 1) uniform uint u_echo;        // word of the report for this dispatch's echo
 layout(location = 2) uniform uint u_serial;
 layout(location = 3) uniform uint u_flags;       // flags in all
 layout(location = 4) uniform uint u_bits;        // word of the report where the bits begin

@@ -1,7 +1,7 @@
-// The passes of the GL canvas. A pass is cut into batches, one for each element buffer that a step
-// reads in a row. It sends its list and draws it batch by batch. It uses the results only if the
-// report, the count of primitives and the control items show that everything ran. After any failure
-// GlCanvas forgets its state, since the contents of the device are then unknown.
+// The passes of the GL canvas. A pass is cut into batches of consecutive draws of a step that read
+// the same element buffer. The draw list is sent, and drawn batch by batch. The results are used
+// only if the report, the count of primitives and the control items show that everything ran. After
+// any failure GlCanvas forgets its state, since the contents of the device are then unknown.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class Layout {
     out_.serial = gl_number();
     out_.list.assign(kTagBytes / sizeof(GpuDraw), GpuDraw{0, 0});
     out_.slots = pass.slots;
-    // The quad covers the window and nothing of the border.
+    // The quad covers the pixel centres of the window and none of the border.
     const double x = 0.5 * canvas.window.width + 0.25, y = 0.5 * canvas.window.height + 0.25;
     add_quad(-x, -y, x, y, 0.0f);
     own_elements_ = quad_elements();
@@ -157,7 +157,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
       chunks[c].write(0, chunk.data(), chunk.size());
       work.uploaded_bytes += chunk.size();
     }
-    // The data on the device are compared each time, also if nothing is sent.
+    // The data on the device are compared each time, even if nothing was sent.
     report->expect(chunks[c], chunk);
   }
   if (!known) current.bytes.assign(bytes.begin(), bytes.end());
@@ -171,8 +171,8 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
 // Selects the stored elements with these bytes; false: the caller must write them. A scene that
 // does not change has one set of elements for each view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // so there are three in all
-  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
+  constexpr std::size_t kEarlier = 2;                       // besides `current`
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes; a larger one drops the earlier
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
   };
@@ -193,7 +193,7 @@ bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   return false;
 }
 
-// Draws the batches of a pass and returns how many primitives they are.
+// Draws the batches of a pass and returns their number of primitives.
 std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   const bool with_flags = options.query == QueryMode::flags;
   std::uint64_t primitives_of_pass = 0;
@@ -291,7 +291,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   return seen;
 }
 
-// Waits, reads the report, and takes the time since the stamp 0.
+// Waits, reads the report, and adds the device's time between the stamps 0 and 1 to `work`.
 std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   const std::uint64_t bytes = report->bytes_in_all();
   std::vector<std::uint8_t> seen = report->read(stage);
@@ -316,7 +316,7 @@ std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;
     glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &result);
-    // A query that was never issued has no object behind its name, and gives no result.
+    // The name of a query that was never issued has no object, so `result` keeps its value.
     if (result == kNone) throw_lost("pass", "query " + std::to_string(i) + " gave no answer");
     seen[i] = result != 0;
   }
@@ -349,7 +349,7 @@ void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<
   float corner[3] = {-1, -1, -1};
   glReadPixels(0, 0, 3, 1, GL_DEPTH_COMPONENT, GL_FLOAT, corner);
   check_gl("samples");
-  // 24 bits move a depth by at most depth_rounding() steps, far less than half a gap.
+  // With 24 bits, depth_rounding() is less than 4 steps of 2^-24, which are half a gap.
   const double moved = std::abs(corner[0] - (kControlTop - kControlGap));
   if (!(moved <= (options.depth_format == DepthFormat::float32 ? 0x1p-24 : 4 * 0x1p-24)))
     throw_lost("samples", "the control item was not drawn");
@@ -403,8 +403,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   return out;
 }
 
-// Runs `work` with the context current and the state there; a failure drops all that lies on the
-// device.
+// Runs `work` with the context and a state. If it fails, drops everything on the device.
 template <class Work>
 auto GlCanvas::guarded(const Work& work) {
   const GlCurrent current(context_);
@@ -435,8 +434,8 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
   GLint framebuffer[2] = {0, 0};
   glGetIntegerv(GL_MAX_FRAMEBUFFER_WIDTH, &framebuffer[0]);
   glGetIntegerv(GL_MAX_FRAMEBUFFER_HEIGHT, &framebuffer[1]);
-  // A window is up to five pixels wider than its resolution (fit_window), and its viewport side a
-  // power of two.
+  // A window is up to five pixels wider than its resolution (fit_window), and a side of its
+  // viewport is a power of two.
   const int viewport = static_cast<int>(std::bit_floor(static_cast<unsigned>(info.max_viewport)));
   limits_.max_resolution =
       std::min({viewport, info.max_texture_size, framebuffer[0], framebuffer[1]}) - 2 * kBorder - 6;
@@ -447,8 +446,7 @@ GlCanvas::~GlCanvas() { forget(); }
 
 const RasterLimits& GlCanvas::limits() const { return limits_; }
 
-// Deletes everything on the device. If the context cannot be made current, the end of the context
-// does that.
+// Deletes everything on the device, or leaves that to the context if it cannot be made current.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
   if (!gl_forget(context_, [&] { state_.reset(); })) static_cast<void>(state_.release());

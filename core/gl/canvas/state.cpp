@@ -55,7 +55,7 @@ constexpr std::uint32_t kGroup = 64;            // local_size_x of canvas_work.c
 constexpr std::uint32_t kBatches[2] = {64, 4};  // work items of an invocation, by step
 constexpr std::size_t kVec4 = 4 * sizeof(std::uint32_t);
 
-// Places of core/gl/canvas/canvas.vert in the echo.
+// Places of words in the echo of core/gl/canvas/canvas.vert.
 constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11, kReportPlace = 12,
                         kFlagsPlace = 13, kFlagSerialPlace = 14, kTouchingPlace = 15;
 
@@ -63,7 +63,8 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // Each piece begins where a range may begin, and its first 16 bytes are reserved for a tag.
+  // The range of a piece begins 16 bytes before its data, at a multiple of the alignment. These
+  // bytes are the tag or, for later pieces, the end of the previous piece.
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -81,7 +82,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this write is lost, read() finds the counts of the last pass.
+  // If this write is lost, read() finds counts that include those of the last pass.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -138,7 +139,8 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   gl_wait(stage);
   const std::size_t bits = kHead + echoes_.size();
-  // This filling contains no echo, so if nothing is read, no echo is found.
+  // An echo can equal this initial value by chance, but the number of finished work items cannot.
+  // So if the read fails silently, that number is wrong, which is noticed below.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);
@@ -329,7 +331,7 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// The canvas's own elements fill single pixels, so they are never drawn conservatively.
+// Off for the canvas's own elements: they cover exactly the pixels that are meant.
 void CanvasState::set_conservative(bool on) const {
   if (conservative != 0) set_enabled(conservative, on, "conservative rasterization");
 }
@@ -370,7 +372,7 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   if (with_flags) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFlags, flags.name());
 }
 
-// `before`: the batch that was bound last, whose elements may serve again.
+// before: the batch that was bound last, or null. What both share is not bound again.
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());

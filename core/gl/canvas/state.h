@@ -2,12 +2,12 @@
 // and done (assumption A7), and the state. For core/gl/canvas alone.
 //
 // The canvas draws elements besides those of the caller: the quad for kEverywhere, and control
-// items, which reveal lost commands. Control items are in corner pixels of the
-// render target, outside the window. In pixel 0 the k-th store of a pass leaves the depth
-// kControlTop - k * kControlGap. The next ask has a control item at that depth (or half a gap
-// behind it, where equal depths are not seen), which is seen only if that store ran. Passes
-// alternate between the marked pixels 1 and 2. Each pass asks in the pixel that the previous pass
-// marked: kAsked is seen there unless the buffer was cleared.
+// items, which reveal lost commands. They are in corner pixels of the render target, outside the
+// window. In pixel 0 the k-th store of a pass leaves the depth kControlTop - k * kControlGap. The
+// next ask has a control item at that depth (half a gap behind it if equal depths are not seen). It
+// is seen only if that store ran. Each pass stores a mark (the depth kMark) in pixel 1 or 2, in
+// turn, and asks at kAsked in the other one, which the previous pass marked. This is seen unless
+// the buffer was cleared in between.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct GpuDraw {
   std::uint32_t slot;
 };
 
-/// A batch of draws: consecutive ones of one step that read one element buffer.
+/// A batch: consecutive draws of one step that read the same element buffer.
 struct CanvasBatch {
   std::size_t step;
   Verb verb;
@@ -46,11 +46,11 @@ constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 /// All that a pass sends.
 struct CanvasPass {
   std::uint32_t serial = 0;   // unique among the passes of the process
-  std::vector<GpuDraw> list;  // begins with two entries where the store has its tag; each
-                              // batch begins with {serial, word of the report}
+  std::vector<GpuDraw> list;  // two entries in place of the store's tag, then the batches; each
+                              // begins with its head {serial, word of the report}
   std::vector<float> own;     // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  std::uint32_t slots = 0;  // caller's; then one that must stay unseen (with marks); then controls'
+  std::uint32_t slots = 0;  // the caller's, one that must stay unseen (with marks), control items'
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
   }
@@ -64,12 +64,13 @@ constexpr GLuint kReport = 3;
 /// items finished. The buffer holds the packed flags of a pass, too.
 class CanvasReport {
  public:
-  static constexpr std::uint32_t kHead = 2;  // words before the echoes: finished, sum
+  static constexpr std::uint32_t kHead = 2;  // words before the echoes: items finished, sum
 
   /// block: bytes of data in a storage block; alignment: of a storage buffer range, in bytes.
   CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment);
 
-  /// Expects this many batches of draws, at most `dispatches` dispatches, and `flags` to be packed.
+  /// Begins a report of this many batches, at most `dispatches` dispatches and `flags` packed
+  /// flags.
   void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
   /// The number of dispatches that expect() makes for this many bytes.
   std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
@@ -78,10 +79,10 @@ class CanvasReport {
   void expect(const GlStore& store, std::span<const std::byte> data);
   /// The echo that a batch writes to word kHead + batch.
   void expect_batch(std::size_t batch, std::uint32_t echo) { echoes_[batch] = echo; }
-  /// Lets the device pack the flags that hold `serial`; the last dispatch before read().
+  /// Lets the device pack `count` flags: 1 if one holds `serial`. Must come last before read().
   void pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count);
-  /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are those that were
-  /// expected, every work item finished and GL has no error. Returns packed flags.
+  /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are as expected,
+  /// every work item finished and GL has no error. Returns the flags of pack(), a byte each.
   std::vector<std::uint8_t> read(const std::string& stage);
   const GlStore& store() const { return store_; }
   /// Totals of all passes: dispatches that were started, and bytes that were read.
@@ -99,9 +100,9 @@ class CanvasReport {
   std::size_t block_, piece_;
   std::array<GlProgram, 2> programs_;  // by step: sum, pack
   GlStore store_;
-  std::vector<std::uint32_t> echoes_;     // expected: of the batches, then of the dispatches
+  std::vector<std::uint32_t> echoes_;     // expected: batches, then dispatches
   std::uint32_t finished_ = 0, sum_ = 0;  // expected
-  std::uint32_t flags_ = 0;               // packed
+  std::uint32_t flags_ = 0;               // how many are packed
   std::uint64_t dispatches_ = 0, bytes_ = 0;
 };
 
@@ -137,7 +138,7 @@ struct CanvasState {
   int target_width = 0, target_height = 0;
   bool odd = false;                     // which of pixels 1 and 2 the next pass marks
   CanvasElements current;               // of the last begin()
-  std::vector<CanvasElements> earlier;  // of calls before, which may come again
+  std::vector<CanvasElements> earlier;  // of earlier calls, for use again
   std::size_t per_chunk = 0;            // elements
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
@@ -155,9 +156,10 @@ struct CanvasState {
 
   std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
-  // Proxies write their depth, so their fragments compare with the stored one themselves. Triangles
-  // at fixed depth let the depth test decide before the fragment program raises the flag: then no
-  // step reads the texture that another step draws to, so no step waits for another.
+  // With flags, the fragment program of a proxy computes the depth, so it also compares it with the
+  // stored depth, which it reads from the texture. Triangles have a fixed depth, so the depth test
+  // can decide before the fragment program raises the flag. Then no step reads a texture that
+  // another step draws to, and no step waits for another.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }
@@ -182,7 +184,7 @@ struct CanvasState {
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
 
-  // Uploads the elements of `drawables` and prepares the targets. All functions throw Error if the
+  // begin() uploads the elements and prepares the targets. All four functions throw Error if the
   // device refuses or a command was lost; the contents of the device are then unknown.
   void begin(const Window& window, const Drawables& drawables);
   std::vector<std::uint8_t> run(const Pass& pass);

@@ -14,8 +14,8 @@
 namespace farcull {
 namespace {
 
-// Triangles that are shaded on the CPU. A corner: x, y and depth in normalized device coordinates,
-// and its colour, RGBA8 in 32 bits.
+// Draws triangles that were shaded on the CPU. A corner: x, y and depth in normalized device
+// coordinates, and its colour, RGBA8 in 32 bits.
 constexpr char kTriangles[] = R"glsl(
 #ifdef FAR_VERTEX
 layout(std430, binding = 0) readonly buffer Corners { uvec4 corners[]; };
@@ -38,7 +38,7 @@ void main() { o_colour = v_colour; }
 // Light comes from over the viewer's left shoulder; x right, y up, depth away.
 const Vec3 kLight = Vec3(-0.45, 0.60, -0.66).normalized();
 constexpr double kAmbient = 0.42;
-constexpr std::size_t kBatch = 1 << 18;  // corners on the way to the device at a time
+constexpr std::size_t kBatch = 1 << 18;  // the most corners that are sent at once
 
 struct Corner {
   float x, y, z;
@@ -53,8 +53,8 @@ std::uint32_t packed(const Rgba& colour, double light) {
   return channel(colour.r) | channel(colour.g) << 8 | channel(colour.b) << 16 | 255u << 24;
 }
 
-// The fraction of its colour that a triangle shows to the eye, the same on both sides. Degenerate
-// triangles have no normal and are fully lit.
+// The factor by which light scales a triangle's colour, the same on both sides. Degenerate
+// triangles have no normal and keep their colour.
 double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
@@ -64,7 +64,7 @@ double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   return kAmbient + (1.08 - kAmbient) * facing;
 }
 
-// Corners on their way to the device, drawn whenever a batch is full.
+// Collects corners, and draws them whenever a batch is full.
 class Batch {
  public:
   Batch(const Window& window, GLuint buffer) : window_(window), buffer_(buffer) {
@@ -131,7 +131,7 @@ class Batch {
   double lift_ = 0;
 };
 
-// The mean of samples x samples texels for each pixel; the first row of GL is the lowest.
+// Each pixel is the mean of samples x samples texels. The first row of texels is the lowest.
 Image filtered(const std::vector<Rgba>& texels, int width, int height, int samples) {
   Image out(width, height, {0, 0, 0, 0});
   for (int y = 0; y < height; ++y) {
@@ -157,8 +157,7 @@ Image filtered(const std::vector<Rgba>& texels, int width, int height, int sampl
   return out;
 }
 
-// The window with the whole depth of the triangles, which may be more than the depth that it was
-// made for.
+// The window, deepened to hold all triangles: they may reach beyond the boxes it was made for.
 Window deepened(Window window, const Scene& scene, std::span<const PictureTriangle> triangles) {
   const Window before = window;
   for (const PictureTriangle& t : triangles) {

@@ -1,5 +1,5 @@
 // Pictures of scenes for people: triangles in colours, seen orthographically, the nearest in front,
-// antialiased. Nothing here takes part in culling, and no guarantee rests on it.
+// antialiased. Culling does not use this, and no guarantee depends on it.
 #pragma once
 
 #include <cstdint>
@@ -50,29 +50,29 @@ struct PictureTriangle {
   std::uint32_t triangle = 0;
   Rgba colour;         // drawn opaque; its `a` is ignored
   bool shaded = true;  // Lambert on both sides, and ambient light; false: the colour as it is
-  float outline = 0;   // px: its edges are drawn as strips that wide, so that it covers a disc of
-                       // this diameter, however small, narrow or degenerate it is
-  float lift = 0;      // px that it is moved towards the eye, in front of what it touches
+  float outline = 0;   // px: the width of strips along its edges. So even a small, narrow or
+                       // degenerate triangle covers a disc of this diameter
+  float lift = 0;      // px by which it is moved towards the eye, in front of what it touches
 };
 
 struct PictureSettings {
-  int samples = 3;  // along each side of a pixel, which is the mean of samples^2 of them
+  int samples = 3;  // along each side of a pixel; the pixel is the mean of samples^2 samples
 };
 
-/// Largest width and height of a picture, px. OpenGL 4.3 allows it with 4 samples.
+/// Largest width and height of a picture, px. Every OpenGL 4.3 can draw it with samples = 4.
 constexpr int kMostPicture = 4096;
 
-/// The window that looks along the view and holds the boxes with `margin` (a part of its size, <
-/// 1/2) around them, in a picture of that many pixels (each even, 2 to kMostPicture). The origin is
-/// inside the boxes, so a scene far from the world's origin is drawn as sharply as one near it.
-/// Throws Error naming the scene where doubles cannot distinguish its pixels.
+/// The window of a picture of width x height pixels (each even, 2 to kMostPicture). It looks along
+/// the view and shows the boxes with a border of `margin` (a fraction of its size, < 1/2) on each
+/// side. The origin is inside the boxes, so a scene far from the world's origin is drawn as sharply
+/// as one near it. Throws Error naming the scene if doubles cannot distinguish its pixels.
 Window picture_window(const View& view, std::span<const Box> boxes, int width, int height,
                       double margin, const std::string& scene_name);
 
-/// Draws the triangles inside the window's width and height, of whatever depth. Image x is right
-/// along window.view's first row, image up is its second, and a smaller depth is nearer. Where no
-/// triangle is, alpha is 0; at an edge it is the covered part. Triangles that pixel space cannot
-/// resolve (clip.h) are left out. Memory does not grow with their number. Throws Error where the
+/// Draws the triangles inside the window's width and height, at any depth. In the image, x (right)
+/// is the first row of window.view, up is its second row, and a smaller depth is nearer. Alpha is
+/// the covered part of a pixel: 0 where no triangle is. Triangles that pixel space cannot resolve
+/// (clip.h) are left out. Memory does not grow with the number of triangles. Throws Error if the
 /// device refuses the size or reports an error.
 Image draw_picture(const GlContext& context, const Scene& scene, const Window& window,
                    std::span<const PictureTriangle> triangles,

@@ -21,7 +21,7 @@ Window picture_window(const View& view, std::span<const Box> boxes, int width, i
              .height = height,
              .lo = {},
              .hi = {}};
-  // Twice: the middle of the boxes is not the middle of their image.
+  // The first turn moves the origin to the middle of the image, which may not be that of the boxes.
   Box image = Box::empty();
   for (int turn = 0; turn < 2; ++turn) {
     image = Box::empty();

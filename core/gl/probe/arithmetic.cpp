@@ -15,7 +15,7 @@ namespace farcull::probe {
 namespace {
 
 constexpr double kUnit = 0x1p-23;
-constexpr double kSmallest = 0x1p-126;  // results below may be flushed
+constexpr double kSmallest = 0x1p-126;  // smaller results may be flushed to 0
 constexpr double kLargest = 0x1.fffffep127;
 constexpr int kWidth = 1024, kHeight = 512;
 constexpr std::size_t kCases = static_cast<std::size_t>(kWidth) * kHeight;
@@ -24,8 +24,8 @@ using Operands = std::array<float, 4>;  // a, b, c, unused
 
 float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Error of `got` as an approximation of head + tail (exact, |tail| tiny), in units of 2^-23 of this
-// sum. A result that may be flushed or overflow counts as right if it is flushed or overflows.
+// Error of `got` as an approximation of the exact head + tail (|tail| is tiny), in units of 2^-23
+// of this sum. Where a result may be flushed to 0 or overflow, doing so is no error.
 double units(float got, double head, double tail) {
   const double exact = std::abs(head);
   if (exact > kLargest) {
@@ -92,7 +92,7 @@ std::vector<Operands> make_operands(Random& random) {
         break;
     }
     float c = a * b;
-    // c is about the product, unless that may be flushed or overflow.
+    // c is about a * b, unless that product may be flushed or overflow.
     if (!(std::abs(c) > 0x1p-100f && std::abs(c) < 0x1p100f)) c = random.normal(-24, 20);
     out[i] = {a, b, neighbour(c, random.below(3) - 1), 0};
   }
@@ -116,7 +116,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step is judged by the device's result of the previous step: no rounding mode is assumed.
+    // Each step starts from the device's result of the previous step: no rounding mode is assumed.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)
@@ -202,8 +202,9 @@ ProbeResult transport(const ProbeOptions& options) {
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// Runs canvas.frag itself on sorted depths: the values in the depth buffer must not fall, and lie
-// in [1/4, 3/4], exits up to kAskedBehind beyond; an exit at an entry must not be before it.
+// Runs canvas.frag itself on sorted depths. The mapped depths must not decrease, and must lie in
+// [1/4, 3/4], those of exits up to kAskedBehind beyond. If an entry and an exit have the same
+// depth, the exit must not be mapped before the entry.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
@@ -234,7 +235,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
     };
     const std::vector<std::uint32_t> entry = depths(store), exit = depths(ask);
     const bool floats = format == DepthBuffer::float32;
-    // A quarter and three quarters, floats exactly, fixed point to a step of 2^-24.
+    // 1/4 and 3/4: exact for floats, to within 2^-24 for fixed point.
     const std::uint32_t least = floats ? std::bit_cast<std::uint32_t>(0.25f) : 0x3fffff00u;
     const std::uint32_t most = floats ? std::bit_cast<std::uint32_t>(0.75f) : 0xc0000100u;
     const std::uint32_t behind = floats ? std::bit_cast<std::uint32_t>(0.75f + kAskedBehind)
@@ -264,8 +265,8 @@ std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& option
 
 }  // namespace farcull::probe
 
-// Kernels on cases: solids are drawn by a canvas, one to a pixel of a square window, and their
-// entry and exit depths read back.
+// Kernels on single cases. A canvas draws the solids, one in each pixel of a square window; their
+// entry and exit depths are read back.
 namespace farcull {
 
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
@@ -285,7 +286,7 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
   const std::vector<float> entry = canvas.samples(Verb::store, draws);
   const std::vector<float> exit = canvas.samples(Verb::ask, draws);
   std::vector<SolidAnswer> out;
-  // If only one of the two hits, the other depth is NaN, so the interval contains nothing.
+  // If only the entry or only the exit was drawn, the other is NaN, and the interval is empty.
   for (std::size_t i = 0; i < cases.size(); ++i)
     out.push_back({!std::isnan(entry[i]) || !std::isnan(exit[i]), entry[i], exit[i]});
   return out;

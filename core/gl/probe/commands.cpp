@@ -94,8 +94,8 @@ void run(GLuint program, GLuint from, GLuint to, std::uint32_t count, std::uint3
   glDispatchCompute((count + kGroup - 1) / kGroup, 1, 1);
 }
 
-// Checks that every ticket of every counter is taken once, that every bit is set, and that of two
-// invocations exactly one finds their mark unset.
+// Checks that every number of every counter is taken once, that every bit is set, and that of the
+// two invocations with the same mark exactly one finds it unset.
 ProbeResult atomics(const ProbeOptions& options) {
   const GlProgram program = step_program(0, options.plain_atomics);
   Worst wrong;
@@ -164,8 +164,8 @@ ProbeResult dispatches(const ProbeOptions& options) {
 }
 
 // A draw counts the fragments of each pixel, a dispatch reads the counts. The drawing program has a
-// discard, like all programs of the canvas that write to buffers: without one, llvmpipe (Mesa
-// 22.3.6) drops all work on a tile, buffer writes included, before a triangle that covers the tile.
+// discard, like all programs of the canvas that write to buffers. Without one, llvmpipe (Mesa
+// 22.3.6) drops all earlier work on a tile, buffer writes included, when a triangle covers it.
 ProbeResult draws(const ProbeOptions& options) {
   constexpr int kSide = 512;
   constexpr std::uint32_t kPixels = kSide * kSide;
@@ -182,7 +182,7 @@ ProbeResult draws(const ProbeOptions& options) {
     bind_zeros(counts, 2, kPixels);
     target.start();
     target.use(count);
-    // The twin's dispatch goes before the draw that it should follow.
+    // The deliberate defect: the dispatch comes before the draw that it should follow.
     if (options.unordered_reads) run(copy, counts, copied, kPixels);
     glUseProgram(count);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, counts);
@@ -207,7 +207,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Memory that a driver damages cannot be seen from outside; its threads are one known cause.
+// Damage to memory cannot be seen from outside; the driver's threads are one known cause of it.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

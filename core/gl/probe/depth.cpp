@@ -14,8 +14,8 @@ constexpr int kSide = 160;
 constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
 // Random depths of a layer, one for each pixel: in the range of the canvas's depth map, at its
-// ends, at depths of control items (core/gl/canvas/state.h), any others, and some that equal those
-// of the layer `beside` or are next to them.
+// ends, at depths of control items (core/gl/canvas/state.h), or anywhere; also depths that equal
+// those of the layer `beside` or are next to them.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -87,7 +87,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
   const bool floats = format == DepthBuffer::float32;
   Random random(options.seed + 7);
   DepthLayers layers(random, format);
-  // Drawn alone, each layer shows how the buffer rounds it; of all together the least must stay.
+  // A layer drawn alone shows how the buffer rounds it. When all are drawn, the least must stay.
   std::vector<std::uint32_t> least(kPixels, 0xffffffff);
   std::vector<float> nearest(kPixels, 1);
   Worst wrong;
@@ -105,7 +105,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
 
   std::uint64_t extra = 0;
   for (std::size_t k = 0; k < kLayers + 1; ++k) {
-    // In the last round each pixel asks at the depth that it stores, and equal depths must pass.
+    // In the last round each pixel asks at its stored depth: GEQUAL must pass equal depths.
     std::vector<float> asked = k < kLayers ? layers.depths(k) : nearest;
     if (k < kLayers) {
       for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
@@ -137,7 +137,7 @@ ProbeResult texels(const ProbeOptions& options) {
   std::vector<Proxy> proxies = pixel_proxies(kSide);
   std::vector<float> depths;
   for (std::uint32_t i = 0; i < kPixels; ++i) {
-    // Depths in the range of the depth map, near its ends, of control items, and small ones.
+    // Depths in the range of the depth map, near its ends, anywhere in [0, 1), and 0 or 1.
     float d = random.in_float(0.25, 0.75);
     if (i % 4 == 1) d = neighbour(random.below(2) ? 0.25f : 0.75f, random.below(9) - 4);
     if (i % 4 == 2) d = random.in_float(0, 1);
@@ -172,8 +172,8 @@ ProbeResult texels(const ProbeOptions& options) {
                 "a shader reads what a draw stored, to the bit");
 }
 
-// The canvas from store to answer, on one proxy per pixel: a far and a near one stored, one asked
-// at a depth around the near one.
+// Tests the canvas from store to answer. In each pixel a far and a near proxy are stored, and one
+// is asked at the depth of the near one or close to it.
 ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
                               const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 64;
@@ -222,8 +222,7 @@ ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
       "depths say so");
 }
 
-// Queries on single pixels, all in flight before the first is read. Every other one is at a depth
-// where nothing passes.
+// Single-pixel queries, all in flight before the first is read. In every other one nothing passes.
 ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& options) {
   Random random(options.seed + 9);
   constexpr std::size_t kQueries = 3000;
@@ -237,7 +236,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
     std::vector<Proxy> proxies;
     for (std::size_t i = 0; i < kQueries; ++i) {
       const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;
-      // At least 1/16 px around the centre; sometimes the whole pixel.
+      // A square of 1/4 to 1 px around the pixel's centre; mostly the whole pixel.
       const double d = random.below(2) ? 0 : random.below(7) / 16.0;
       proxies.push_back(box(x + d, y + d, x + 1 - d, y + 1 - d));
       proxies.back().solid[4][1] = 1;
@@ -273,7 +272,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
                     std::to_string(hidden));
 }
 
-// Areas of 1 to 400 px of which few pixels pass or none, asked through the canvas.
+// Asks areas of 1 to 400 px through the canvas; few pixels of an area pass, or none.
 ProbeResult area_queries(const std::string& name, const GlContext& context,
                          const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 256;

@@ -1,9 +1,11 @@
 // Fragments of proxies that canvas.vert placed.
-// FAR_COVERAGE: counts the fragments of each pixel at the pixel that gl_FragCoord names, and writes that pixel into the one that
-// the rasterizer chose, so that the two can be compared. FAR_DISCARD: may discard, and never does.
-// FAR_DEPTH: writes a given depth, and marks the pixel if the depth test let it pass: by a colour, since buffer writes also happen
-// for fragments that fail a late depth test.
-// FAR_TRANSPORT: returns the bits that reached a fragment by flat varyings (20 words a slot) and by uniforms (256 words in all).
+// FAR_COVERAGE: counts the fragments of the pixel that gl_FragCoord names, and writes that pixel's
+// number to the pixel that the rasterizer chose, so that both can be compared. FAR_DISCARD: has a
+// discard, which never happens.
+// FAR_DEPTH: writes a given depth, and a colour that marks the pixel if the depth test passes.
+// (Buffer writes would also happen for fragments that fail a late depth test.)
+// Otherwise: returns the bits that reach a fragment in flat varyings (20 words a slot) and in
+// uniforms (256 words in all).
 #if defined(FAR_COVERAGE)
 layout(std430, binding = 2) buffer Counts { uint counts[]; };
 layout(location = 0) out uint place;
@@ -12,7 +14,7 @@ layout(location = 0) out uint place;
 flat in uint v_slot;
 #endif
 uniform uint u_width;   // of the target, px
-uniform float u_shift;  // px; other than 0 only in the twin of the probe
+uniform float u_shift;  // px; not 0 only with ProbeOptions::shifted_pixel
 
 void main() {
 #ifdef FAR_DISCARD

@@ -1,5 +1,5 @@
-// Probes of the device assumptions A1 to A10. Each tries to catch this device breaking one, and
-// reports the worst measured value with the bound that the proofs rely on (docs/budget.md). A
+// Probes of the device assumptions A1 to A10. Each probe tries to catch the device breaking one of
+// them, and reports the worst measured value and the bound that the proofs need (docs/budget.md). A
 // probe can refute an assumption, never prove it.
 #pragma once
 
@@ -22,18 +22,17 @@ struct ProbeResult {
   std::string unit;
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
-  std::string note;           // details of the probe; or the text of the Error that ended it
-  bool broke_off = false;     // an Error ended it: nothing was found out
+  std::string note;           // details, or the text of the Error that ended the probe
+  bool broke_off = false;     // an Error ended the probe: nothing is known
 };
 
-/// All but the first four are deliberate defects, one for each probe, so that tests can see
-/// every probe fail.
+/// The options from snap_bits on are for tests, which make every probe fail with them.
 struct ProbeOptions {
   std::uint64_t seed = 1;
-  std::string only = {};  // an assumption, as in "A3"; empty: all of them
+  std::string only = {};  // one assumption, as in "A3"; empty: all
   bool brief = false;     // about a third of the samples
 
-  int snap_bits = 0;                // A2: demand 2^-snap_bits px instead of what the device says
+  int snap_bits = 0;                // A2: demand 2^-snap_bits px; 0: what the device says
   bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
   bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
   bool fat_zero_area = false;       // A3: the triangles without area get an area
@@ -52,14 +51,14 @@ struct ProbeOptions {
 
 /// Runs the probes in the order of the assumptions. If `started` is given, it is called with the
 /// assumption before each group. The same device and options give the same results. A probe that
-/// ends with an Error fails; the others go on. GL state is not kept.
+/// ends with an Error fails; the others go on. The state of GL is not restored.
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
-// The functions below run farcull's kernels on a device as its methods do, by the canvas's own
+// The functions below run farcull's kernels on a device as its methods do, with the canvas's own
 // fragment program. verify/kernel_check.h decides whether the answers are right.
 
-/// px: solids are asked on a window of this side, one in each pixel.
+/// Side (px) of the square window on which solids are asked, one in each pixel.
 constexpr int kSolidSide = 128;
 constexpr std::size_t kSolidCases = std::size_t{kSolidSide} * kSolidSide;
 /// The pixel centre at which case i is asked.
@@ -71,14 +70,14 @@ inline SolidCase solid_case_at(std::size_t i) {
 }
 
 /// The answers of `solid` for kSolidCases cases, each with the centre of solid_case_at. This
-/// function and those below make the context current while they run. Throws Error as GlCanvas
+/// function and the next one make the context current while they run, and throw Error as GlCanvas
 /// does.
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
-/// For each of kSolidCases solids, whether it is seen behind the stored one in its pixel, by the
-/// programs of the method, in a window this deep (px). 1: it is seen with flags, with queries and
-/// with queries on 24 bits. If both are the same solid and the line hits it, it must be seen.
+/// Stores one solid and asks another in each of kSolidCases pixels, by the programs of the method,
+/// in a window of this depth (px). Per pixel 1 if the asked one is seen with flags, with queries
+/// and with queries on 24 bits. If both are the same solid and the line hits it, it must be seen.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

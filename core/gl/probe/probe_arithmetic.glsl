@@ -1,6 +1,6 @@
-// The operations that kernels use, on given operands; results leave as bits, so that nothing touches them on the way.
+// The operations that kernels use, on given operands. Results are stored as bits, unchanged.
 layout(std430, binding = 2) readonly buffer Operands { vec4 operands[]; };  // a, b, c, -
-layout(std430, binding = 3) writeonly buffer Results { uvec4 results[]; };  // three a case
+layout(std430, binding = 3) writeonly buffer Results { uvec4 results[]; };  // three for each case
 
 void probe_case(uint i) {
   float a = operands[i].x;
@@ -10,8 +10,8 @@ void probe_case(uint i) {
   FAR_PRECISE float difference = a - b;
   FAR_PRECISE float product = a * b;
   FAR_PRECISE float quotient = a / b;
-  FAR_PRECISE float chain = difference + b;    // a, if simplified
-  FAR_PRECISE float remainder = product - c;   // the product's rounding error, if fused
+  FAR_PRECISE float chain = difference + b;    // would be a if simplified
+  FAR_PRECISE float remainder = product - c;   // would be the product's rounding error if fused
   float least = min(a, b);
   float most = max(a, b);
   float size = abs(a);

@@ -1,10 +1,11 @@
-// Values that shaders write and other shaders read, and atomics. FAR_STEP 0: every invocation takes a ticket of each kind of atomic
-// that the product uses; 1: a link of a chain, which reads what another invocation of the link before wrote; 2: copies what a draw
-// counted; 3: copies the texels of a depth texture that a draw has written. FAR_PLAIN: for the twin, plain reads and writes instead
+// Atomics, and values that one shader writes and another reads. FAR_STEP 0: every invocation uses
+// each kind of atomic that farcull uses. 1: a link of a chain; each invocation reads what another
+// one wrote in the link before. 2: copies what a draw counted. 3: copies the texels of a depth
+// texture that a draw has written. FAR_PLAIN (a deliberate defect): plain reads and writes instead
 // of atomics.
 layout(local_size_x = 64) in;
 layout(location = 0) uniform uint u_count;  // invocations
-layout(location = 1) uniform uint u_salt;   // 3: width, px
+layout(location = 1) uniform uint u_salt;   // in step 3: the texture's width, px
 #if FAR_STEP == 3
 layout(location = 2) uniform sampler2D u_depth;
 #else
@@ -13,7 +14,8 @@ layout(std430, binding = 0) buffer From { uint from[]; };
 layout(std430, binding = 1) buffer To { uint to[]; };
 
 #if FAR_STEP == 0
-// from: kSpread counters that count up, as many that count down from u_salt, one bit for each invocation, and a mark for each two.
+// from: kSpread counters that count up from 0, kSpread that count down from u_count / kSpread, a
+// bit for each invocation, and a mark for every two of them.
 const uint kSpread = 16u;
 uint take(uint at, uint n) {
 #ifdef FAR_PLAIN
@@ -43,7 +45,8 @@ void main() {
 void main() {
   uint w = gl_GlobalInvocationID.x;
   if (w >= u_count) return;
-  // u_count is a power of two and the factor odd, so each is read once, mostly from another group.
+  // u_count is a power of two and the factor odd, so each word is read once, mostly by another
+  // group.
   uint other = (w * 40503u + u_salt) & (u_count - 1u);
   to[w] = from[other] * 1664525u + (w ^ u_salt);
 }

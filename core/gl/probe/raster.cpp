@@ -12,7 +12,7 @@ namespace {
 
 // A convex quadrilateral as four half-planes a x + b y + c >= 0 with |a| + |b| = 1. Moving every
 // corner by at most d per axis moves no side by more than d in this measure, so a pixel centre that
-// is `inside` by more than d stays inside, and one outside by more than d outside.
+// is inside by more than d stays inside, and one that is outside by more than d stays outside.
 struct Sides {
   std::array<std::array<double, 3>, 4> half{};
 
@@ -162,7 +162,7 @@ void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst,
   }
 }
 
-// Keeps the measurement that is worst relative to its own bound; its `samples` count those of all.
+// Keeps the measurement that is worst relative to its own bound; `samples` is the sum over all.
 struct Tightest {
   Worst worst;
   double bound = 0;
@@ -187,8 +187,8 @@ std::string size(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
-// Quadrilaterals in cells of their own: each pixel that is inside by more than the displacement is
-// covered once, whichever of the two triangles it falls to and where it falls on the diagonal.
+// Draws quadrilaterals, each in a cell of its own. Each pixel that is inside by more than the
+// displacement must be covered once, also if it lies on the diagonal between the two triangles.
 Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds) {
   constexpr int kCell = 32;
   const int side = coverage.target().width();
@@ -200,7 +200,8 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
       const double x = (column + 0.5) * kCell - 0.5 * side, y = (row + 0.5) * kCell - 0.5 * side;
       Proxy q = random_quad(random, x, y, 15, 15);
       if (round % 2 == 1) {
-        // A square on its corner or upright, with corners on centres: centres lie on its diagonal.
+        // A square, upright or on a corner, with corners at pixel centres: its diagonal has
+        // centres.
         const int r = 1 + random.below(14);
         const double cx = x + 0.5, cy = y + 0.5;
         std::array<double, 8> at = {cx - r, cy - r, cx + r, cy - r, cx + r, cy + r, cx - r, cy + r};
@@ -227,7 +228,7 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
   return wrong;
 }
 
-// A mesh of jittered cells whose triangles share their corners: covers every pixel inside once.
+// A mesh of jittered cells whose triangles share corners. It must cover every pixel inside once.
 Worst abutting_mesh(Coverage& coverage, Random& random) {
   const int side = coverage.target().width();
   Worst wrong;
@@ -237,7 +238,7 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         const bool border = i == 0 || j == 0 || i == n || j == n;
-        // In cells of one pixel every other corner stays on a pixel centre.
+        // If cells have the size of a pixel, every other corner stays on a pixel centre.
         const double shake = border || (cell == 1 && (i + j) % 2 == 0) ? 0 : 0.2 * cell;
         points[static_cast<std::size_t>(j) * (n + 1) + i] = {
             (i - middle) * cell + 0.5 + random.in(-shake, shake),
@@ -267,8 +268,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
   return wrong;
 }
 
-// Points and segments, through pixel centres and elsewhere. Snapping does not change multiples of
-// 1/16 px, and vertical or horizontal segments stay so, so all of them have no area when snapped.
+// Points and segments, through pixel centres and elsewhere. Snapping keeps multiples of 1/16 px,
+// and vertical and horizontal segments remain segments. So the snapped triangles have no area.
 Worst zero_area(Coverage& coverage, Random& random, bool fat) {
   const int side = coverage.target().width();
   std::vector<Proxy> proxies;
@@ -335,7 +336,7 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     for (int round = 0; round < rounds(options, 4); ++round)
       large_quad(coverage, random, 0, &whole, nullptr);
     displacement = std::max(displacement, edge.value);
-    // The vertex arithmetic causes the part beyond the snapping seen near the centre.
+    // What exceeds the snapping measured near the centre is due to the vertex arithmetic.
     edge.value = std::max(0.0, edge.value - near.value);
     far.add(edge, vertex);
     large.add(whole, snap + vertex);

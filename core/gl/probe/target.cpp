@@ -49,7 +49,7 @@ float Random::normal(int lowest, int highest) {
   const std::uint64_t r = bits();
   const int exponent = lowest + below(highest - lowest + 1);
   std::uint32_t mantissa = static_cast<std::uint32_t>(r) & 0x7fffff;
-  // Mantissas at the ends of a binade and with few bits are where roundings go wrong.
+  // Roundings go wrong most easily at the ends of a binade and at mantissas with few bits.
   const std::uint64_t way = r >> 40 & 7;
   if (way == 0) mantissa &= 3;
   if (way == 1) mantissa |= 0x7ffffc;
@@ -268,7 +268,7 @@ double snap_bound(const GlContext& context, const ProbeOptions& options) {
 }
 
 double vertex_bound(const ProbeOptions& options, int viewport) {
-  // The budget's term is for both axes together.
+  // The budget's term is the length of a displacement on both axes.
   return options.no_vertex_term ? 0 : budget_for({}, viewport).vertex / std::numbers::sqrt2;
 }
 

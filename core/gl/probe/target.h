@@ -47,10 +47,10 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// `steps` floats above x (below where negative).
+/// The float that is `steps` floats above x (below x if negative).
 float neighbour(float x, int steps);
 
-/// The worst of what was measured; not-a-number counts as infinite.
+/// The worst measured value, where NaN counts as infinite; or the number of wrong results.
 struct Worst {
   double value = 0;
   std::uint64_t samples = 0;
@@ -68,7 +68,7 @@ struct Worst {
 ProbeResult result(const std::string& assumption, const std::string& name, const Worst& measured,
                    double bound, const std::string& unit, const std::string& note);
 
-/// A failed probe that an Error ended.
+/// The result of a probe that an Error ended: it failed.
 ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error);
 
 /// The ways in which a canvas may ask.
@@ -82,16 +82,16 @@ inline constexpr Configuration kConfigurations[] = {
     {"occlusion queries, 24 bits",
      {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}}};
 
-/// Appends the results of a probe for each configuration. If a canvas refuses (its control items
-/// depend on the depth test and the queries, too), this probe fails and the next one runs.
+/// Appends a result for each configuration. If a canvas throws an Error (its control items depend
+/// on the depth test and the queries, too), the probe fails and the next configuration is tried.
 using CanvasProbe = ProbeResult(const std::string& name, const GlContext& context,
                                 const ProbeOptions& options, const GlCanvasOptions& canvas);
 void on_canvases(const std::string& assumption, const std::string& kind, CanvasProbe run,
                  const GlContext& context, const ProbeOptions& options,
                  std::vector<ProbeResult>& out);
 
-/// Corners (px about the target's centre). The solid is 0 except s0 = (-, -, entry, exit) and s4 =
-/// (-, fixed, depth, -).
+/// A proxy with these corners (px from the target's centre) and a solid of zeros. Callers may set
+/// numbers of the solid: s0 = (-, -, entry, exit), s4 = (-, fixed, depth, -).
 Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);
 /// Pixel i, counted in rows, of a square target of this side (px, even).
@@ -101,9 +101,8 @@ std::vector<Proxy> pixel_proxies(int side);
 
 enum class DepthBuffer { none, float32, fixed24 };
 
-/// A render target that places proxies as GlCanvas does: its vertex program, viewport and scale to
-/// normalized device coordinates, at a size of the probe's choosing (px, even). Colour: one uint a
-/// pixel.
+/// A render target of any even size (px) on which proxies are placed as by GlCanvas: with its
+/// vertex program, viewport and scale to normalized device coordinates. Colour: one uint a pixel.
 class Target {
  public:
   Target(int width, int height, DepthBuffer depth = DepthBuffer::none);
@@ -115,9 +114,9 @@ class Target {
 
   /// Binds the target with its viewport, clears colour to 0 and depth to `clear`.
   void start(double clear = 1) const;
-  /// LESS and stored, or GEQUAL and not stored.
+  /// Sets the depth function, and whether draws store their depths.
   static void depth_test(GLenum function, bool store);
-  /// The program's uniforms, those of canvas.vert and canvas.frag and u_width; leaves it in use.
+  /// Sets the uniforms of canvas.vert and canvas.frag, and u_width; leaves the program in use.
   void use(GLuint program, float depth_scale = 1) const;
   /// Makes `proxies` the elements 0, 1, ..., each with its number as slot.
   void upload(const std::vector<Proxy>& proxies);
@@ -139,7 +138,7 @@ class Target {
   GlBuffer elements_, draws_;
 };
 
-/// The program of canvas.vert with proxies and of this source of the fragment stage.
+/// Links canvas.vert for proxies with this source of a fragment stage.
 GlProgram proxy_program(const std::string& name, const std::vector<std::string>& fragment,
                         std::vector<std::string> defines = {});
 
@@ -147,7 +146,7 @@ GlProgram proxy_program(const std::string& name, const std::vector<std::string>&
 void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
 std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
-/// A window of this size and depth (px), seen along z at 1 px for each world unit.
+/// A window of this size and depth (px), seen along z, with 1 px per world unit.
 Window window(int width, int height, double depth = 100);
 /// A solid without a shape, hit everywhere, with the entry and exit depths of `quad`: s0 = (-, -,
 /// entry, exit).
@@ -166,7 +165,7 @@ inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (
 
 /// Largest target side (px) that a canvas on this device could have.
 int largest_side(const GlContext& context);
-/// Bounds of displacement per axis (px), as the budget of this viewport has them.
+/// Bounds of the displacement per axis (px), from the budget: by snapping; by vertex arithmetic.
 double snap_bound(const GlContext& context, const ProbeOptions& options);
 double vertex_bound(const ProbeOptions& options, int viewport);
 

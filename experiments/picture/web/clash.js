@@ -70,9 +70,9 @@ const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object
 const larger = (row) => (sizeOf(row.a) > sizeOf(row.b) ? row.a : row.b);
 const outerOf = (row) => (row.inner === null ? larger(row) : row.inner === row.a ? row.b : row.a);
 
-// Without a chosen pair the parts that clash with another one, or lie in one, have the first colour.
-// The parts of a chosen pair are solid. The outer one of two is a ghost, so that the inner one is seen;
-// of others the larger one is, if the reader wants to see through it.
+// If no pair is chosen, parts that clash or may contain each other have the first colour. The parts
+// of a chosen pair are solid; but if one contains the other, the outer one is a ghost, and else the
+// larger one is a ghost if the reader wants to see through it.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
@@ -108,8 +108,8 @@ function showCurve(row) {
   view.scene.add(curves);
 }
 
-// Moves and zooms the view to the place of a row; the direction of sight stays. A part that holds the
-// other one stays in sight.
+// Moves and zooms the view to the place of a row, without turning it. If one part contains the
+// other, the outer part stays in sight.
 function flyTo(row) {
   const lo = pointOf(row.box, 0), hi = pointOf(row.box, 1), middle = lo.clone().add(hi).multiplyScalar(0.5);
   const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * (row.inner === null ? Math.min(sizeOf(row.a), sizeOf(row.b)) : sizeOf(outerOf(row))));

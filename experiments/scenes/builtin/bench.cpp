@@ -1,7 +1,7 @@
 // Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Blobs
 // of the field are drawn one after the other, so a part needs only the state of the random numbers
-// from earlier parts. Also scenes that one number takes to an extreme: slivers of any aspect, gaps
-// of any number of ulps, stacks of sheets at any distance, triangles of any ratio of sizes.
+// that earlier parts left. Also scenes that one number takes to an extreme: slivers of any aspect,
+// gaps of any number of ulps, stacks of sheets at any distance, triangles of any ratio of sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -27,8 +27,8 @@ constexpr double kJitter = 0.3;            // largest shift of a blob in its cel
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Makes blobs of kFieldBlob triangles. Their number comes nearest to the wanted number of
-// triangles, but is at least one.
+// Makes blobs of kFieldBlob triangles each: the number of blobs, at least one, that comes nearest
+// to the wanted number of triangles.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -102,8 +102,8 @@ Vec3 in_layer(const Frame& frame, int object, Random& random) {
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// The frames are used for the needles of both objects in turn. Every eighth needle of the second
-// object is moved so that it crosses a needle of the first.
+// The needles of each object take the frames in turn. Every eighth needle of the second object is
+// moved so that it crosses a needle of the first.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -214,7 +214,7 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three in four cross the sliver of the first object; the fourth is moved by twice its height.
+    // Three in four cross the first object's sliver; the fourth is off it by twice its height.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -241,8 +241,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// The sheets have the slope z = x/4 + y/8. Their places and tilts are multiples of an eighth of the
-// gap, a power of two from 2^-47 to 2^-3: with at most 2^10 sheets every sum is exact in double.
+// The sheets have the slope z = x/4 + y/8. Their places and tilts are multiples of gap / 8, and the
+// gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
   constexpr std::uint32_t kCells = 8;  // of a sheet, along a side
@@ -275,7 +275,7 @@ BuiltScene make_gap(const SceneParameters& parameters) {
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
     // u and v count eighths of the cell along two axes, rise counts quarters along the third axis.
-    // The slope u / 32 + v / 64 avoids triangles that a view sees edge-on, without an image.
+    // Without the slope u / 32 + v / 64 a view would see some triangles edge-on, with no image.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

@@ -62,9 +62,9 @@ void keep_distance(Vec3& a, Vec3& b, double least, double most) {
 }
 
 // Position based dynamics (Müller et al. 2007): moves neighbours in the lattice to their distance
-// in the flat sheet, and limits bends by the distance of every second point.
+// in the flat sheet. A least distance of points that are two apart limits bending.
 void relax(Lattice& sheet, int rounds) {
-  constexpr double kBend = 1.5;  // least distance of every second point, over that of neighbours
+  constexpr double kBend = 1.5;  // least distance of points that are two apart / of neighbours
   const double h = 1.0 / sheet.spans;
   const double across = h * std::sqrt(2.0);
   const std::uint32_t n = sheet.side;
@@ -132,7 +132,7 @@ struct Ball {
   double radius;
 };
 
-// Pairs of balls whose distance is below the sum of their radii plus a margin.
+// Pairs of balls whose centres are nearer than the sum of their radii plus a margin.
 std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& balls,
                                                      double margin) {
   const double cell = 2 + margin;  // a radius is at most 1
@@ -164,8 +164,8 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
   return out;
 }
 
-// Balls of radius 0.5 to 1, settled in a box without a lid. Balls in contact are nearer than the
-// sum of their radii, by the fraction kDeep of that sum, because their meshes lie inside them.
+// Balls of radius 0.5 to 1, settled in a box without a lid. The centres of balls in contact are
+// nearer than the sum of their radii, by the fraction kDeep: the meshes lie inside the balls.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;

@@ -51,8 +51,8 @@ class Part {
       quad({from[i], from[next], to[next], to[i]});
     }
   }
-  // Fills the region between a loop and a round hole in it; all of the loop is visible from the
-  // middle of the hole. Each side of the hole is joined to the corner of the loop nearest in angle.
+  // Fills the region between a loop and a round hole in it, whose middle must see all of the loop.
+  // Each side of the hole is joined to the corner of the loop nearest in angle.
   void holed(const Loop& outer, const Loop& hole) {
     Vec3 middle = Vec3::Zero();
     for (const std::uint32_t v : hole) middle += at(v) / static_cast<double>(hole.size());
@@ -99,14 +99,14 @@ struct Bore {
   std::uint32_t sides;
 };
 
-// A plane over x and y.
+// The plane z = height + along_x x + along_y y.
 struct Slope {
   double height, along_x, along_y;
   Vec3 over(double x, double y) const { return {x, y, height + along_x * x + along_y * y}; }
 };
 
-// A block, 1 x 1, between two planes, with a bore from one to the other. Each face is a fan of
-// slivers around its end of the bore.
+// A block over a square of side 1, between two planes, with a bore from one to the other. Each face
+// is a fan of slivers around its end of the bore.
 Part bored_block(const Bore& bore, const Slope& below, const Slope& above) {
   const auto rim = [&](Part& part, const Slope& face) {
     return part.circle({face.over(bore.middle.x(), bore.middle.y()),
@@ -132,8 +132,8 @@ Part bored_block(const Bore& bore, const Slope& below, const Slope& above) {
 
 }  // namespace
 
-// The upper half is tilted a little about the middle of the cut, so that the two meet on one side
-// of it and have a gap on the other.
+// The upper half is tilted a little about the middle of the cut, so that the halves meet on one
+// side of the cut and have a gap on the other.
 BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kLength = 3;    // of either half
   constexpr double kTilt = 0.012;  // radians
@@ -149,7 +149,7 @@ BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed) {
   const Vec3 x = across(z, 1, random);
   const Vec3 y = z.cross(x);
   const Mesh lower = bored_block(bore, {-kLength, 0, 0}, cut).placed(x, y, z);
-  // About the diagonal x + y; small enough for the sine to be the angle.
+  // Tilts about the diagonal x + y; the angle is so small that it can replace its tangent.
   const Vec3 tilted = (z + kTilt * (x - y) / std::sqrt(2.0)).normalized();
   const Vec3 along = (x - x.dot(tilted) * tilted).normalized();
   Mesh upper = bored_block(bore, cut, {kLength, 0, 0}).placed(along, tilted.cross(along), tilted);

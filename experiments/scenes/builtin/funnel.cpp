@@ -1,5 +1,5 @@
-// A cloth that hangs in a funnel in pleats. More triangles sample its smooth surface more finely;
-// the triangles of the funnel beside it stay large.
+// A cloth that hangs in a funnel in pleats. More triangles sample the smooth surface of the cloth
+// more finely; the triangles of the funnel around it stay large.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -21,21 +21,21 @@ std::uint32_t cells_for(std::uint64_t triangles) {
 
 // The funnel stands upright: a pipe below, a cone above. The cloth hangs in it, a square whose
 // middle was pulled down the pipe. The unit of length is half the side of the cloth.
-constexpr double kCap = 0.22;    // pleats begin at 0.3 to 1.3 times this from the cloth's middle
+constexpr double kCap = 0.22;    // pleats grow from 0.3 to 1.3 times this from the cloth's middle
 constexpr double kPipe = 0.62;   // distance from the cloth's middle at which the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
 
-// Mean radius and height of the cloth at each distance from its middle, and the pleats there. The
-// pleats are a sine-generated curve: its direction swings by `swing` radians, and its length is
-// that of the cloth while it advances as far as the mean radius allows.
+// Mean radius and height of the cloth at each distance from its middle, and the pleats there. Seen
+// from above, they are a sine-generated curve: its direction swings by +-`swing` radians, so that
+// it is as long as the cloth there but advances only as far as the mean radius allows.
 struct Ring {
   double radius = 0, height = 0;
-  std::vector<std::array<double, 2>> pleat;  // (along, outward) at steps of one pleat, length 1
+  std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of length 1
 };
 
-constexpr std::uint32_t kSteps = 64;  // steps of a pleat in the table
+constexpr std::uint32_t kSteps = 64;  // steps of a pleat in Ring::pleat
 constexpr std::uint32_t kRings = 600;
 constexpr double kReachOfCloth = 1.5;  // last ring; the corners of the square are at sqrt(2)
 
@@ -57,7 +57,7 @@ std::vector<std::array<double, 2>> pleat_of(double wanted) {
     const double turned = lo * std::sin(kTurn * (k + 0.5) / kSteps);
     out[k + 1] = {out[k][0] + std::cos(turned) / kSteps, out[k][1] + std::sin(turned) / kSteps};
   }
-  // Moves the curve so that its mean lies at 0. The curve goes outward first.
+  // Moves the curve so that its mean distance outward is 0. The curve goes outward first.
   double mean = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) mean += out[k][1] / kSteps;
   for (auto& [along, outward] : out) outward -= mean;
@@ -172,7 +172,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   Mesh mesh = grid(cells);
   const std::vector<Ring> table = rings();
   for (Vec3& p : mesh.vertices) {
-    // The middle lies off every grid line.
+    // Shifted, so that the middle of the cloth lies on no grid line.
     const double x = 2 * p.x() - 1 + 0.013, y = 2 * p.y() - 1 + 0.007;
     const double s = std::sqrt(x * x + y * y);
     const double angle = std::atan2(y, x) / kTurn + 0.5;

@@ -114,7 +114,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     second.push_back(shifted(other, to - from));
   }
   // Along the axes: each sliver of one object lies along x, y or z. One sliver of the other object
-  // crosses it; that sliver, too, lies along x, y or z, in all nine combinations in turn.
+  // crosses it, and also lies along x, y or z; all nine combinations occur in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;

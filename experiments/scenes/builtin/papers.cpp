@@ -91,7 +91,7 @@ Mesh tube(std::uint32_t around, std::uint32_t along) {
   return finished(std::move(vertices), std::move(triangles));
 }
 
-// Steps along and around a torus: as close to `triangles` as a grid of nearly square cells gets.
+// Steps along and around a torus with about this many triangles, in nearly square cells.
 std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
   const std::uint64_t cells = triangles / 2;
   const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
@@ -309,7 +309,7 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
         if (s < stacked) {
           lift += static_cast<double>(s) * kShellGap;
         } else {
-          // The sheet leads from below the stack to above it; its direction turns with time.
+          // The sheet rises from below the stack to above it, in a direction that turns with time.
           const double turn = kTurn * (now.time + phases[s]);
           const double across =
               0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);

@@ -228,7 +228,7 @@ const BuiltinScene* find_builtin_scene(const std::string& name) {
 }
 
 namespace {
-// The fewest letters to insert, delete or replace that make one word of the other.
+// The least number of letters to insert, delete or replace to turn one word into the other.
 std::size_t letters_apart(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -1,5 +1,5 @@
-// Scenes that need no file of the user: generated ones, the same on every run, and scenes made of
-// the packaged meshes; still, and in motion.
+// Scenes that need no file of the user: generated ones, which are the same on every run, and scenes
+// made of the packaged meshes. Some of them move.
 #pragma once
 
 #include <array>
@@ -47,20 +47,20 @@ struct Instant {
   double time = 0;  // 0 to 1, for a path
 };
 
-/// The notes of a motion on a frame.
+/// The numbers and the warning that a motion gives for a frame.
 struct FrameNotes {
   std::vector<std::pair<std::string, double>> values;  // in the same order in every frame
   std::string warning;                                 // empty: none
 };
 
 /// Moves the scene to an instant. The scene is the built one or the result of an earlier call. If
-/// the topology stays, only Scene::vertices is written, in place. The result depends on the time of
-/// a path, or the frame of a simulation, and not on earlier calls; an earlier frame of a simulation
-/// is computed from the start. Throws Error if the scene cannot be computed.
+/// the topology stays, only Scene::vertices is written, in place. The result depends only on the
+/// time of a path, or on the frame of a simulation, not on earlier calls; an earlier frame of a
+/// simulation is computed from frame 0 on. Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {
-  Scene scene;    // without frames
+  Scene scene;    // the scene "without frames": used if no frames are asked for
   Motion motion;  // empty: nothing moves
 };
 
@@ -76,15 +76,15 @@ struct BuiltinScene {
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random
-  std::function<BuiltScene(const SceneParameters&)> build = {};  // Scene::name is name
+  std::function<BuiltScene(const SceneParameters&)> build = {};  // sets Scene::name to name
 
   SceneParameters usual() const;
   Scene make() const { return build(usual()).scene; }
 };
 
 /// The change of a scene by a suffix. Every vertex is multiplied by scale and moved by translate,
-/// in double. Then an object "ground" of two triangles with the corners `ground`, counterclockwise
-/// seen from above, is added, if there are any.
+/// in double. Then, if `ground` is given, an object "ground" is added: two triangles with these
+/// corners, counterclockwise seen from above.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
@@ -113,22 +113,22 @@ const std::vector<BuiltinScene>& builtin_scenes();
 std::vector<BuiltinScene> generated_scenes();
 /// For benchmarks; docs/results/bench.md has the same counts.
 std::vector<BuiltinScene> bench_scenes();
-/// Also for benchmarks, of common kinds: cloth, balls and parts in contact.
+/// Also for benchmarks: scenes of common kinds, with cloth, balls and parts in contact.
 std::vector<BuiltinScene> contact_scenes();
-/// Scenes that move, most of them of the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST 2004).
-/// Without frames they are halfway through their motion, except the cloth.
+/// Scenes that move, most of them from the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST
+/// 2004). Without frames they are halfway through their motion, except the cloth.
 std::vector<BuiltinScene> paper_scenes();
 /// Scenes whose second number goes to an extreme, for the study "stability".
 std::vector<BuiltinScene> extreme_scenes();
 /// Scenes made of the packaged meshes. Building one throws Error if a mesh cannot be read.
 std::vector<BuiltinScene> packaged_scenes();
 
-/// The scene of this name up to its first ':' or '@'; null if no scene has it.
+/// The scene with this name, which is read up to its first ':' or '@'; null if there is none.
 const BuiltinScene* find_builtin_scene(const std::string& name);
 /// Whether the name up to its first ':' or '@' is that of a built-in scene.
 bool is_builtin_scene(const std::string& name);
-/// "did you mean two-spheres? " for a name that differs little from that of a built-in scene; else
-/// "correct the name; ".
+/// A remedy: "did you mean two-spheres? " if the name differs little from that of a built-in scene;
+/// else "correct the name; ".
 std::string likely_name(const std::string& name);
 
 /// The parts of a name: NAME[:SIZE[:SECOND]][@SUFFIX...], as in crowd:3000:0.2@far. The suffix
@@ -168,10 +168,10 @@ class MovingScene {
   /// The same for a scene that is not built in. Precondition: it has a motion.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
-  /// The scene at a frame of the range, validated. Returns the same object each time, and the same
-  /// memory of triangles and vertices if the topology is that of the previous call. The changes of
-  /// suffixes are computed once, from the scene without frames; a ground does not move. Throws
-  /// Error as Motion does.
+  /// The scene at a frame of the range, validated. Returns the same Scene object each time. Its
+  /// triangles and vertices stay in the same memory if the topology did not change since the
+  /// previous call. The changes of suffixes are computed once, from the scene without frames; a
+  /// ground does not move. Throws Error as Motion does.
   const Scene& at(long frame);
 
   /// The notes of the motion on the last frame from at(), such as energies; most motions have none.
@@ -195,20 +195,20 @@ inline constexpr const char* kDragon = "ChineseDragon-10kv.off";
 /// empty, else the folder given when farcull was built.
 std::string mesh_folder();
 
-/// A file of mesh_folder(). Throws Error where it cannot be read.
+/// Reads a file of mesh_folder(). Throws Error if that fails.
 Mesh packaged(const char* file);
 
 /// Calls take() with the parts of the scene "field" one after the other. The scene has about
-/// parameters.size triangles and is made object by object, so that memory does not grow with it. A
-/// part is some consecutive objects, whole, as a scene called `name` that take() may change.
-/// Together the parts are the scene, bit by bit.
+/// parameters.size triangles and is made object by object, so that memory does not grow with the
+/// scene. A part is some consecutive whole objects, as a scene called `name`, which take() may
+/// change. Together the parts are the scene, bit for bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
 // The generators of built-in scenes: each file gives the entries of its scenes. Generated scenes
 // are drawn with core/base/random.h and fixed seeds, so that every platform makes the same doubles.
 
-/// The distance between neighbours in the stack of the scene "shells", everywhere on their surface.
+/// The distance between neighbouring sheets in the stack of "shells", everywhere on them.
 inline constexpr double kShellGap = 0x1p-34;
 
 /// size: slivers of each object; second: aspect, the longest side over the height above it.
@@ -221,7 +221,7 @@ double stack_gap(double wanted);
 /// size: large triangles, with eight small ones at each; second: ratio of their sides.
 BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
 /// size: pairs; second: height of a vertex above a face, or of an edge above an edge, in ulps of
-/// their coordinates, rounded to a whole number. They collide if it is 0 or less.
+/// their coordinates, rounded to a whole number. The pairs collide if it is 0 or less.
 BuiltScene make_gap(const SceneParameters& parameters);
 
 /// The scenes of the same names in contact_scenes(). size: number of triangles.
@@ -233,7 +233,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 /// A scene of two objects, the second one placed.
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement = {});
-/// The scene halfway through its motion.
+/// Moves the scene to the middle of its motion.
 BuiltScene halfway(BuiltScene built);
 
 /// Makes a scene from a function that takes nothing, the seed, the parameters, or both, and returns
@@ -272,7 +272,7 @@ BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
                    const SceneSecond& second = {}, bool costly = false,
                    bool topology_changes = false);
 
-/// `rest` is the scene without frames, whose objects share no vertex. The second object approaches
+/// `rest` is the scene without frames; its objects share no vertex. The second object approaches
 /// from the side, passes through the first and leaves on the other side.
 Motion pass_through(const Scene& rest);
 /// All objects swell and shrink, out of phase, while waves run along them.

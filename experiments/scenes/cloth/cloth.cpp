@@ -9,7 +9,7 @@
 namespace farcull {
 namespace {
 
-// The finest sphere with at most half as many triangles as the cloth: about as fine as the cloth.
+// The level of the finest sphere that has at most half as many triangles as the cloth.
 int sphere_level(std::uint64_t triangles) {
   int level = 0;
   while (20 * (std::uint64_t{4} << (2 * level)) <= triangles / 2) ++level;

@@ -15,8 +15,8 @@
 namespace farcull::cloth {
 namespace {
 
-// Model::crimp in units of the weight of a cell times its side: an edge that is slack by a
-// ten-thousandth of its length pulls with a ten-thousandth of that weight.
+// Model::crimp, over the weight of a cell times the side of the cell. With this value an edge that
+// is slack by 1e-4 of its length pulls with 1e-4 of the weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {
@@ -95,10 +95,10 @@ void place(Model& model) {
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // Each cell has one edge per direction of the grid. At curvature kappa across such an edge, w is
-  // kappa cell^2 / 2, so rigidity = stiffness cell^2 / 4. Each cell has one diagonal. A twist kappa
-  // gives its hinge the same w; a plate then has the energy 2 rigidity kappa^2 / 2 per area, so the
-  // stiffness is doubled.
+  // A hinge has the energy stiffness / 2 * |w|^2. Edges along the grid: one per cell and direction.
+  // At curvature kappa across them |w| = kappa cell^2 / 2, and a plate has the energy rigidity
+  // kappa^2 / 2 per area, so rigidity = stiffness cell^2 / 4. Diagonals: one per cell. A twist
+  // kappa gives its hinge the same |w|, but a plate twice the energy, so the stiffness is doubled.
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
@@ -130,7 +130,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Energy of the convex spring minus the thrust T l^2/2; 0 at rest.
+// Energy of the convex spring, minus that of the thrust, T l^2/2; 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;

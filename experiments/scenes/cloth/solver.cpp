@@ -12,8 +12,8 @@ namespace farcull::cloth {
 
 namespace {
 
-constexpr double kWidth = 1e-2;          // initial distance inside the cone, over a spring's length
-constexpr double kToTheBoundary = 0.95;  // fraction of the way to the boundary
+constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
+constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
 
 }  // namespace
 
@@ -171,13 +171,13 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
 
 namespace {
 
-constexpr int kTrials = 60;  // at most, along one direction; a double allows no more halvings
-// These change the time of a step, not its result.
+constexpr int kTrials = 60;  // lengths tried in one direction; a double allows no more halvings
+// The constants below change the time of a step, not its result.
 constexpr int kPatience = 40;      // Newton's iterations before interior points take over
-constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's is short
-constexpr int kCreepsAtMost = 3;   // short steps before interior points; 1 if was_stiff_
-constexpr double kStart = 1;       // initial complementarity, over weight * length
-constexpr double kEnd = 2;         // final one, over crimp: from there Newton's method is quick
+constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's counts as short
+constexpr int kCreepsAtMost = 3;   // short steps until interior points take over; 1 if was_stiff_
+constexpr double kStart = 1;       // initial complementarity / (weight * length)
+constexpr double kEnd = 2;         // final complementarity / crimp; from there Newton's is quick
 
 // The lower triangle of the matrix, with the values that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model) {
@@ -280,8 +280,8 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   return true;
 }
 
-// Each iteration searches along Newton's direction until |slope| is a tenth of the first one or
-// less. The slope begins below 0 and never falls, as the function is convex, so the value falls.
+// Each iteration searches along Newton's direction until |slope| is at most a tenth of its initial
+// value. The function is convex, so the slope begins below 0 and never falls, and the value falls.
 // Stops after `iterations` iterations or `creeps` short steps. Returns false if a force is not
 // finite, the matrix has no Cholesky factor, or the setting max_iterations is used up.
 bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best) {
@@ -341,7 +341,7 @@ void Solver::interior(const Step& step, Minimum& best) {
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // next complementarity over this one; smaller after a longer step
+  double aim = 0.1;  // next complementarity / this one; smaller after a longer step
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;

@@ -1,6 +1,6 @@
 // Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
-// meshes by their real paths. Compressed contents are decompressed first. Extensions of formats
-// that are not read are known, to name a converter.
+// meshes by their real paths. Compressed contents are decompressed first. Knows the extensions of
+// formats that are not read, to name a converter.
 #include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip; OFF is written as
 // well. Coordinates are the doubles of the file, never rounded through float: text is converted
-// with correct rounding, binary floats widen exactly. Indices, finiteness and sizes are checked,
-// whatever the file claims; nothing is allocated because a header says so.
+// with correct rounding, binary floats widen exactly. Indices, finiteness and sizes are checked
+// against the contents; no memory is allocated just because a header claims a size.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct Mesh {
   std::vector<std::uint32_t> source_face;               // per triangle: 0-based face of the file
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
-  std::vector<std::uint32_t> folded = {};  // faces of the file that are folded (below), ascending
-  std::vector<std::string> notes = {};     // things that the reader passed over, a sentence each
+  std::vector<std::uint32_t> folded = {};  // faces that are Triangulation::folded, ascending
+  std::vector<std::string> notes = {};     // what the reader passed over, one sentence each
 };
 
 /// Triangles with vertices of their own.
@@ -42,34 +42,34 @@ struct MeshPart {
 
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
-/// The format of a path by its extension (before ".gz", if it ends so), in upper or lower case.
-/// Throws Error naming the path for any other extension: the one of foreign_mesh(path), if any.
+/// The format that the extension of a path names, in upper or lower case; ".gz" after it is passed
+/// over. Throws Error naming the path for any other extension: foreign_mesh(path), if that exists.
 MeshFormat mesh_format(const std::string& path);
 /// The format of "obj", "off", "ply" or "stl". Throws Error naming --format.
 MeshFormat named_format(const std::string& name);
 /// True iff mesh_format(path) would not throw.
 bool has_mesh_extension(const std::string& path);
-/// The Error for a path whose extension is that of a format that is not read, compressed or not; it
-/// names what converts the file. Empty for other extensions.
+/// The Error for a path with the extension of a known format that is not read, compressed or not.
+/// It says what converts the file. Empty for other extensions.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// What load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that are not
-/// finite and that no face uses are passed over"; at most the first 100 sentences. Any thread.
+/// finite and that no face uses are passed over"; at most the first 100 sentences. Thread-safe.
 std::vector<std::string> take_reading_notes();
 
 /// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place, as triangulate()
-/// (below) says: a planar simple polygon keeps its area exactly, convex or not; one that is
-/// folded gets some triangulation of its corners, and is named in Mesh::folded. Vertices that are
-/// not finite and that no face uses become 0, 0, 0, and Mesh::notes says how many. OBJ: `o` and `g`
-/// name the group of the faces that follow, whichever came last; a `g` is one within its `o`. Other
-/// formats: one group, "default". ASCII STL: each solid is a group, also if its name is another's.
-/// STL: corners at one exact position become one vertex (0.0 and -0.0 are one position), the first
-/// one read. Contents compressed by gzip are decompressed, whatever their name; lines count in the
-/// decompressed text. Throws Error (where = path, line if the format has lines) if it is missing,
-/// is not a regular file, cannot be read, is malformed or shorter or longer than it claims, has a
-/// face with a corner that is NaN, infinite or beyond double, an index out of range, a polygon of
-/// fewer than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip data that are cut,
-/// damaged or suspiciously small (text.h).
+/// (below) says: a planar simple polygon keeps its area exactly, convex or not; a folded polygon
+/// gets some triangulation of its corners, and is listed in Mesh::folded. Vertices that are not
+/// finite and that no face uses become 0, 0, 0, and Mesh::notes says how many. OBJ: the last `o` or
+/// `g` names the group of the faces that follow; equal `g` of different `o` are different groups.
+/// ASCII STL: each solid is a group, even if two have one name. Other formats: one group,
+/// "default". STL: corners at one exact position become one vertex (0.0 and -0.0 are one position),
+/// the first one read. Contents compressed by gzip are decompressed, whatever their name; lines
+/// count in the decompressed text. Throws Error (where = path, line if the format has lines) if the
+/// file is missing, is not a regular file, cannot be read, is malformed or shorter or longer than
+/// it claims, has a face with a corner that is NaN, infinite or beyond double, an index out of
+/// range, a polygon of fewer than 3 vertices, more than 2^32 - 1 triangles, no triangle, or gzip
+/// data that are cut, damaged or suspiciously small (text.h).
 Mesh load_mesh(const std::string& path);
 
 /// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
@@ -77,8 +77,8 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
 
 /// The part as OFF, each number with 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
-/// Whether a name holds one place for a number: %d, or %0Nd for N digits (1 to 9) with leading
-/// zeros.
+/// Whether a name holds exactly one place for a number: %d, or %0Nd for N digits (1 to 9) with
+/// leading zeros.
 bool is_numbered(const std::string& name);
 /// The name with the number in its place. Precondition: is_numbered(name), number >= 0.
 std::string numbered(const std::string& name, long number);
@@ -101,7 +101,7 @@ class MeshCache {
 
   /// How meshes are read from now on.
   void read_as(MeshReading reading) { reading_ = std::move(reading); }
-  /// ", welded at 1e-7*size", which the name of the scene ends with; empty if nothing is welded.
+  /// The end of the scene's name, such as ", welded at 1e-7*size"; empty if nothing is welded.
   std::string note() const { return reading_.weld.empty() ? "" : ", welded at " + reading_.weld; }
   /// Frees the meshes of names without numbers.
   void clear() { meshes_.clear(); }
@@ -145,11 +145,11 @@ class MeshBuilder {
   explicit MeshBuilder(std::string name);
 
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
-  /// p may be infinite or NaN where no face uses it. Throws Error beyond 2^32 - 1 vertices.
+  /// p may be infinite or NaN if no face uses it. Throws Error beyond 2^32 - 1 vertices.
   void add_vertex(const Vec3& p, long line);
   /// The faces added from now on belong to the group of this name within `within`, such as an
-  /// object of OBJ; an empty name is "default". A group of another `within` gets the name with #2,
-  /// #3 and so on if the name is taken.
+  /// object of OBJ; an empty name is "default". If a group of another `within` has the name, #2, #3
+  /// .. is added to the name.
   void set_group(std::string_view group_name, std::string_view within = {});
   /// One polygon, corners in order as 0-based vertex indices. Throws Error if there are fewer than
   /// 3, if one is not a vertex added before or is not finite, if the triangles exceed 2^32 - 1, or
@@ -176,7 +176,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// True if the length of the bytes is the one that the header of a binary STL file gives.
+/// True if the bytes have exactly the length that their header, as of a binary STL file, gives.
 bool is_binary_stl(std::string_view bytes);
 
 /// The sign of the area of the triangle a, b, c in the plane of the coordinates u and v: 1 if it
@@ -197,29 +197,29 @@ enum class Triangulation {
 
 /// Triangles of a polygon, as positions in `corners`: always size - 2 of them (none if too_large),
 /// in the orientation of the polygon; some may be degenerate if corners are collinear. The polygon
-/// is projected along an axis and cut there; the projection only drops a coordinate. The normal's
-/// component on that axis is its largest, or at least half as large. The result is `whole` for a
-/// simple planar polygon, for a nonplanar one with a simple projection, for collinear corners, and,
-/// if possible, for a polygon that touches itself along a seam. `by` lets tests replace turn().
-/// Precondition: 3 corners or more, finite.
+/// is projected along a coordinate axis (a coordinate is dropped) and cut there. The normal's
+/// component on that axis is the largest, or at least half as large as the largest. The result is
+/// `whole` for a simple planar polygon, for a nonplanar one with a simple projection, for collinear
+/// corners, and, if possible, for a polygon that touches itself along a seam. `by` lets tests
+/// replace turn(). Precondition: 3 corners or more, finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 
 // Vertices of a mesh that nearly coincide become one (--weld; weld_vertices.cpp). CAD programs
 // write a corner once for each face, and the copies may differ in the last digits.
 
-/// How far apart vertices may be that become one.
+/// The largest distance at which two vertices become one.
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
-  bool relative = false;  // to the diagonal of the mesh's box
+  bool relative = false;  // a fraction of the diagonal of the mesh's box
 };
 /// "0.001" in the units of the mesh, or "1e-7*size". Throws Error naming the option.
 WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");
 
-/// Merges vertices that triangles use: each becomes the nearest earlier one that is kept, if its
-/// distance (in double) is at most the tolerance, of equal ones the first. So no vertex moves
-/// farther, and the answer does not depend on anything else. Returns how many were merged.
-/// Triangles stay in their order, those that become segments or points too.
+/// Merges vertices that triangles use. Each vertex, in order, becomes the nearest one that was kept
+/// before, if the distance (in double) is at most the tolerance; of equally near ones, the first.
+/// Otherwise it is kept. So no vertex moves farther than the tolerance. Returns how many were
+/// merged. Triangles stay in order, even those that become segments or points.
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance);
 
 }  // namespace farcull

@@ -1,6 +1,5 @@
-// Looks for near points in the 27 cells around a point of a grid whose cells are twice as wide as
-// the tolerance, so that rounding moves no near point beyond them. Each cell keeps the points in it
-// that no earlier one replaced.
+// Keeps points in a grid, and looks for near ones in the 27 cells around a point. The cells are
+// twice as wide as the tolerance, so that rounding moves no near point beyond these 27.
 #include "experiments/scenes/mesh/near_points.h"
 
 #include <algorithm>
@@ -40,7 +39,7 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // no -0.0
-    // Beyond 2^53 a neighbouring cell is the same double, and doubles are more than one cell apart.
+    // From 2^53 on cells may share a number, but two doubles are then a cell or more apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
@@ -51,7 +50,7 @@ namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-// The edges that are there an odd number of times. Those between equal numbers do not count.
+// The edges that occur an odd number of times. Edges between equal numbers do not count.
 std::vector<Edge> odd_edges(std::vector<Edge> edges) {
   std::ranges::sort(edges);
   std::vector<Edge> out;
@@ -94,7 +93,7 @@ std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
   for (int power = -13; power <= -5; ++power) {
     const double tolerance = std::pow(10.0, power);
     NearPoints near(tolerance * size);
-    std::map<std::uint32_t, std::uint32_t> now;  // ordered, as weld() goes through the vertices
+    std::map<std::uint32_t, std::uint32_t> now;  // in order, as weld() goes through the vertices
     for (const Edge& edge : open) now[edge[0]] = now[edge[1]] = 0;
     for (auto& [of, to] : now) to = near.number(place[of], of);
     std::vector<Edge> after;

@@ -15,7 +15,7 @@
 
 namespace farcull {
 
-/// For maps of positions. Equal positions need equal bits: add 0.0, which makes -0.0 0.0.
+/// For maps of positions. Equal positions must have equal bits: add 0.0, which turns -0.0 into 0.0.
 struct PositionHash {
   std::size_t operator()(const std::array<double, 3>& at) const {
     std::uint64_t hash = 0;
@@ -34,8 +34,8 @@ class NearPoints {
   /// tolerance: finite, >= 0.
   explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
 
-  /// The number of the nearest point that is kept, if it is at most the tolerance away (in double);
-  /// of equally near ones the lowest. Else the point is kept, with the number `own`.
+  /// Returns the number of the nearest kept point if it is at most the tolerance away (in double);
+  /// of equally near ones, the lowest number. Otherwise keeps p as number `own`.
   std::uint32_t number(const Vec3& p, std::uint32_t own);
 
  private:
@@ -48,11 +48,11 @@ class NearPoints {
 
 struct WeldHint {
   std::uint64_t open_edges = 0;  // edges that belong to an odd number of triangles
-  double tolerance = 0;          // of the diagonal; merging corners so far apart closes it
+  double tolerance = 0;          // part of the diagonal; merging corners this near closes the mesh
   Vec3 place;                    // the end of an open edge
 };
-/// If the object has open edges, and merging their ends within some power of 10, from 1e-13 to 1e-5
-/// of the object's size, would leave none: the least such tolerance.
+/// The least tolerance among 1e-13, 1e-12, .. 1e-5 of the object's size at which merging the ends
+/// of its open edges would leave none open. Empty if there is none, or no open edge.
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object);
 
 }  // namespace farcull

@@ -3,9 +3,9 @@
 // OBJ: polygons, groups and objects. Materials, normals, texture coordinates, points and lines are
 // skipped; free-form surfaces are refused, since skipping them would lose geometry.
 //
-// OFF, as written by Geomview and its followers: a header, the counts, one vertex and one face per
-// line; or, without colours, the same numbers on any lines. A vertex line begins with the position,
-// so normals, colours and texture coordinates that the header declares (NOFF, COFF, STOFF and their
+// OFF, as written by Geomview and its followers: a header, the counts (on the header's line or the
+// next one), then a line for each vertex and each face. A vertex line begins with the position, so
+// normals, colours and texture coordinates that the header declares (NOFF, COFF, STOFF and their
 // combinations) are skipped, and so is the colour at the end of a face line.
 //
 // STL, ASCII and binary. A binary file may begin with "solid" too, so its length decides first,
@@ -67,8 +67,8 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
-// If lines end with LF, a lone CR would be a blank, and the text after it would belong to the same
-// line: a comment or a vertex would swallow that text.
+// Refuses a lone CR if lines end with LF. It would be a blank, so that the text after it would be
+// in the same line and would be lost in a comment or after a vertex.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -355,8 +355,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line, but stops before the word `stop` if `after` is among the few words
-// behind it: the whole file is then on one line.
+// Reads the rest of the line. If the whole file is on one line, stops before the word `stop`: the
+// first one that has `after` among the next few words.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

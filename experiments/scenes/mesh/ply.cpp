@@ -135,7 +135,7 @@ Header read_header(TextReader& in) {
   }
 }
 
-// Read the values of the body of a file. AsciiBody and BinaryBody have the same functions: they
+// AsciiBody and BinaryBody read the values of a file's body. They have the same functions: they
 // begin and end an element, read or skip a value of a type, and give the fewest bytes that a value
 // can take and the number of bytes that are left.
 class AsciiBody {
@@ -209,7 +209,7 @@ class BinaryBody {
   std::string name_;
 };
 
-// The length of a list, checked against the bytes that are left before it is used.
+// Reads the length of a list, and checks it against the bytes that are left.
 template <class Body>
 std::uint64_t list_length(Body& body, const Property& list) {
   const std::int64_t length = body.integer(*list.count, "the length of a list");
@@ -261,9 +261,9 @@ struct Faces {
   std::vector<long> lines;
 };
 
-/// The triangles of strips: each vertex makes one with the two before it, and every other one is
-/// turned, so that all face the same way. -1 begins a new strip. Triangles that name a vertex twice
-/// only lead to the next part of a strip.
+/// Turns strips into triangles. Each vertex makes a triangle with the two before it; every second
+/// triangle is reversed, so that all face the same way. -1 begins a new strip. Triangles that name
+/// a vertex twice are left out: they only join parts of a strip.
 class Strip {
  public:
   void add(std::int64_t index, long line, Faces& faces) {

@@ -16,7 +16,7 @@ constexpr double kUnit = 0x1p-53;  // roundoff of one operation, relative
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 
 // A sum of products of finite doubles without rounding, in fixed point: bit 0 is 2^-2148, the
-// square of the least double. 2^32 products are below 2^(2148 + 2048 + 32).
+// square of the least double. The sum of 2^32 products has at most 2148 + 2048 + 32 bits.
 class ExactSum {
  public:
   // Adds the product a b, or subtracts it if `minus`.
@@ -87,7 +87,7 @@ class ExactSum {
   std::array<Words, 2> sums_{};  // sum of the added products, sum of the subtracted ones
 };
 
-// The plane of two coordinates in which the polygon is counterclockwise.
+// A plane of two coordinates, u and v, in which the polygon is counterclockwise.
 struct Plane {
   int u = 1, v = 2;
   bool has_area = true;
@@ -260,12 +260,11 @@ struct Ring {
 
 // The corners times a power of two that brings the largest coordinate to [2^499, 2^500). At that
 // size certain_turn() neither overflows nor underflows: a product of two differences is below
-// 2^1002. It rounds to a multiple of the least double only below 2^-1022, and certain_turn() allows
-// for that.
-// Returns the corners unchanged if they are large enough, or if the scaling would round one of
-// them, which requires that a bit of one coordinate is 2^-1573 of another coordinate or less.
-// Otherwise every sum of products of two coordinates is scaled exactly, by the square of the power
-// of two, so every sign and every comparison stays.
+// 2^1002. Only a product below 2^-1022 is rounded to a multiple of the least double, and
+// certain_turn() allows for that. Returns the corners unchanged if they are large enough, or if the
+// scaling would round one of them; that happens only if a bit of one coordinate is 2^-1573 of
+// another coordinate or less. Otherwise every sum of products of two coordinates is scaled exactly,
+// by the square of the power of two, so no sign and no comparison changes.
 std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& store) {
   double largest = 0;
   for (const Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());

@@ -62,7 +62,7 @@ class SceneBuilder {
   /// Takes out everything added since the last part, as a validated scene of its own. Names stay in
   /// use.
   Scene take_part();
-  /// The scene, validated; the builder is spent.
+  /// Returns the scene, validated. Nothing may be added afterwards.
   Scene finish() { return take_part(); }
 
  private:
@@ -74,12 +74,12 @@ class SceneBuilder {
       names_;  // names in use, each with the last suffix tried for it
 };
 
-/// Cuts parts out of a mesh or a scene, whose vertices must outlive it.
+/// Cuts parts out of a mesh or a scene. The vertices given to the constructor must outlive it.
 class PartMaker {
  public:
   explicit PartMaker(std::span<const Vec3> vertices)
       : vertices_(vertices), number_(vertices.size(), kNone) {}
-  /// Adds a triangle to the current part, whose vertices come in order of first mention.
+  /// Adds a triangle to the current part. Vertices are in order of first use.
   void add(std::array<std::uint32_t, 3> corners);
   /// Returns the part and begins the next one.
   MeshPart take();
@@ -114,8 +114,8 @@ double diagonal(const Box& box);
 /// two on a closed surface. New vertices are midpoints, so the surface is unchanged up to their
 /// rounding, and a closed one stays closed. A triangle that names a vertex twice is left unchanged.
 /// Edges of equal length are taken in the order of their vertices, so every run gives the same
-/// mesh. The parts of a triangle keep its source face and its group. Returns a mesh that has enough
-/// triangles unchanged. Precondition: mesh has a triangle.
+/// mesh. The parts of a triangle keep its source face and its group. A mesh with enough triangles
+/// is returned unchanged. Precondition: mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {

@@ -1,5 +1,5 @@
 // Reads files and tokens. std::from_chars converts numbers, with correct rounding. zlib is fed
-// piece by piece, and no length that the data claim is allocated.
+// piece by piece, so that memory grows with the data, not with a length that they claim.
 #include "experiments/scenes/mesh/text.h"
 
 #include <fmt/format.h>

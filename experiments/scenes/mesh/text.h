@@ -24,8 +24,8 @@ std::string quote_token(std::string_view token);
 /// The text with A to Z in lower case.
 std::string lower_case(std::string_view text);
 
-/// Valid UTF-8 without control characters, each offending byte replaced by '?', so that a name can
-/// go into JSON.
+/// The bytes as UTF-8 without control characters: each offending byte is replaced by '?'. So a name
+/// can go into JSON.
 std::string clean_name(std::string_view bytes);
 
 enum class Number { kOk, kMalformed, kNotFinite };
@@ -35,7 +35,7 @@ enum class Number { kOk, kMalformed, kNotFinite };
 /// kNotFinite. value is set only with kOk.
 Number parse_number(std::string_view token, double& value);
 
-/// A cursor over the lines and tokens of a text that outlives it, as does the name. Tokens are
+/// A cursor over the lines and tokens of a text. The text and the name must outlive it. Tokens are
 /// separated by blanks (space, tab, CR, VT, FF). Lines end with LF; in a text that has CR and no
 /// LF, with CR. Lines without a token are passed over but counted. A byte order mark at the start
 /// is passed over.
@@ -48,7 +48,7 @@ class TextReader {
 
   TextReader(std::string_view text, std::string_view name, Rules rules);
 
-  /// Leaves the current line for the next one that holds a token; false at the end of the text.
+  /// Moves to the next line that holds a token; false at the end of the text.
   bool next_line();
   /// Moves to the next token, on this line or a later one; false at the end of the text.
   bool seek();
