@@ -1,4 +1,4 @@
-"""Writes three rough sheets that pass through each other, rough0.ply to rough2.ply (docs/bench.md, "Scale").
+"""Writes three rough sheets that pass through each other, rough0.ply to rough2.ply (docs/results/bench.md, "Scale").
    rough.py N    of N x N cells; 14,008,704 triangles for 1528"""
 import array
 import math
