@@ -554,7 +554,8 @@ Definition check (l : list named) (b : tile) (clearance reach : double) (less : 
   then judge_all d c (pairs (is_of f b) (fun _ => r) (items_of f l)) es (Tally [] None None 0 0 0 0 0)
   else Bad_reach.
 
-(** * The lists of tiles make a whole: each tile begins where the one before it ends *)
+(** * The lists of tiles make a whole: each tile begins where the one before it ends, and none runs
+      backwards. Tiles that do could cover a place twice. *)
 Definition same_axis (k k' : axis) : bool :=
   match k, k' with
   | Along_x, Along_x | Along_y, Along_y | Along_z, Along_z => true
@@ -566,13 +567,15 @@ Definition same_place (p q : option double) : bool :=
   | None, None => true
   | _, _ => false
   end.
+Definition is_backwards (b : tile) : bool :=
+  match tile_begin b, tile_end b with Some p, Some q => is_below q p | _, _ => false end.
 Fixpoint join (k : axis) (place : option double) (l : list (tile * list row)) (done : list row)
   : option (list row) :=
   match l with
   | [] => None
   | (b, rows) :: rest =>
       let all := rev_append rows done in
-      if same_axis (tile_axis b) k && same_place (tile_begin b) place then
+      if same_axis (tile_axis b) k && same_place (tile_begin b) place && negb (is_backwards b) then
         match tile_end b, rest with
         | None, [] => Some all
         | Some _, _ :: _ => join k (tile_end b) rest all
@@ -580,6 +583,6 @@ Fixpoint join (k : axis) (place : option double) (l : list (tile * list row)) (d
         end
       else None
   end.
-(** The rows of all tiles, in no order; None if they leave something out. *)
+(** The rows of all tiles, in no order; None if they leave something out, or cover it twice. *)
 Definition merge_tiles (l : list (tile * list row)) : option (list row) :=
   match l with [] => None | (b, _) :: _ => join (tile_axis b) None l [] end.

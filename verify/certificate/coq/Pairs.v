@@ -61,38 +61,36 @@ Proof.
   intros b B. apply in_app_or in B. unfold within, down, up in *. cbn [low high last x y z].
   destruct B as [B | B]; [specialize (S' b B) | specialize (T' b B)]; lia.
 Qed.
-Lemma divide_all f l : forall yes no yes' no', divide f l yes no = (yes', no') ->
-  forall b, In b yes' \/ In b no' <-> In b l \/ In b yes \/ In b no.
+Lemma divide_permutation f l : forall yes no yes' no', divide f l yes no = (yes', no') ->
+  Permutation (yes' ++ no') (l ++ yes ++ no).
 Proof.
-  induction l as [|a l IH]; intros yes no yes' no' E b; cbn [divide] in E.
-  - injection E as <- <-. simpl. tauto.
-  - destruct (f a); rewrite (IH _ _ _ _ E b); simpl; tauto.
+  induction l as [|a l IH]; intros yes no yes' no' E; cbn [divide] in E.
+  - injection E as <- <-. reflexivity.
+  - destruct (f a); rewrite (IH _ _ _ _ E); cbn [app]; rewrite !app_assoc.
+    + rewrite <- !app_assoc. cbn [app]. symmetry. apply Permutation_middle.
+    + symmetry. apply Permutation_middle.
 Qed.
-Lemma build_sound n : forall l, sound_tree (build n l) /\
-  forall b, In b (leaves (build n l)) <-> In b l.
+Lemma build_sound n : forall l, sound_tree (build n l) /\ Permutation (leaves (build n l)) l.
 Proof.
-  assert (L : forall l, sound_tree (leaf l) /\ forall b, In b (leaves (leaf l)) <-> In b l).
-  { intros l. destruct (leaf_sound l) as [S E]. rewrite E. tauto. }
+  assert (L : forall l, sound_tree (leaf l) /\ Permutation (leaves (leaf l)) l).
+  { intros l. destruct (leaf_sound l) as [S E]. rewrite E. auto. }
   induction n as [|n IH]; intros l; [apply L|]. cbn [build].
   destruct l as [|a [|a2 [|a3 [|a4 [|a5 l]]]]]; try apply L.
   set (m := a :: a2 :: a3 :: a4 :: a5 :: l).
   destruct (divide (halve a m) m [] []) as [yes no] eqn:D.
-  pose proof (divide_all _ _ _ _ _ _ D) as A. clearbody m.
+  pose proof (divide_permutation _ _ _ _ _ _ D) as A. clearbody m.
   destruct yes as [|u yes]; [apply L|]. destruct no as [|v no]; [apply L|].
   destruct (IH (u :: yes)) as [S1 E1], (IH (v :: no)) as [S2 E2].
-  split; [now apply node_sound|]. intros b. unfold node. cbn [leaves].
-  rewrite in_app_iff, E1, E2, A. simpl. tauto.
+  split; [now apply node_sound|]. unfold node. cbn [leaves].
+  rewrite E1, E2, A, app_nil_r. reflexivity.
 Qed.
 
-
 (** * The search for partners *)
-Lemma pick_all a l : forall found b,
-  In b (pick a l found) <-> In b found \/ (In b l /\ candidate a b = true).
+Lemma pick_permutation a l : forall found,
+  Permutation (pick a l found) (filter (candidate a) l ++ found).
 Proof.
-  induction l as [|c l IH]; intros found b; cbn [pick]; [simpl; tauto|].
-  rewrite IH. destruct (candidate a c) eqn:C; simpl.
-  - split; [intuition (subst; auto) | intuition (subst; auto)].
-  - split; [intuition | intros [F | [[<- | F] E]]; [auto | congruence | auto]].
+  induction l as [|b l IH]; intros found; cbn [pick filter]; [reflexivity|].
+  rewrite IH. destruct (candidate a b); [|reflexivity]. symmetry. apply Permutation_middle.
 Qed.
 Lemma candidate_may_ask a r b : within r b -> candidate a b = true -> may_ask a r = true.
 Proof.
@@ -100,24 +98,36 @@ Proof.
   rewrite !andb_true_iff, !orb_true_iff, !andb_true_iff, !overlap_true, !Z.ltb_lt, !Z.eqb_eq.
   intros W [[A | [[A O] N]] V]; (split; [|lia]); destruct (Z.eq_dec (obj a) (last r)); tauto || lia.
 Qed.
-Lemma query_all a t : sound_tree t -> forall found b,
-  In b (query a t found) <-> In b found \/ (In b (leaves t) /\ candidate a b = true).
+Lemma none_filtered {A} (f : A -> bool) l : (forall b, In b l -> f b = false) -> filter f l = [].
 Proof.
-  assert (Q : forall t found b, sound_tree t -> may_ask a (around t) = false ->
-    (In b found <-> In b found \/ (In b (leaves t) /\ candidate a b = true))).
-  { clear. intros t found b S O. split; [auto|]. intros [F | [F C]]; [assumption|]. exfalso.
+  induction l as [|b l IH]; intros H; cbn [filter]; [reflexivity|].
+  rewrite (H b) by now left. apply IH. intros c C. apply H. now right.
+Qed.
+Lemma query_permutation a t : sound_tree t -> forall found,
+  Permutation (query a t found) (filter (candidate a) (leaves t) ++ found).
+Proof.
+  assert (Q : forall t, sound_tree t -> may_ask a (around t) = false ->
+              filter (candidate a) (leaves t) = []).
+  { clear. intros t S O. apply none_filtered. intros b B.
     assert (W : within (around t) b) by (destruct t; now apply S).
+    destruct (candidate a b) eqn:C; [|reflexivity].
     apply (candidate_may_ask _ _ _ W) in C. congruence. }
-  induction t as [r held | r one IH1 other IH2]; intros S found b; cbn [query];
-    destruct (may_ask a (around _)) eqn:O; try (apply Q; assumption).
-  - apply pick_all.
-  - destruct S as (_ & S1 & S2). rewrite (IH1 S1), (IH2 S2). cbn [leaves]. rewrite in_app_iff. tauto.
+  induction t as [r held | r one IH1 other IH2]; intros S found; cbn [query];
+    destruct (may_ask a (around _)) eqn:O; try (rewrite (Q _ S O); reflexivity).
+  - apply pick_permutation.
+  - destruct S as (_ & S1 & S2). cbn [leaves].
+    rewrite (IH1 S1), (IH2 S2), filter_app, app_assoc. reflexivity.
 Qed.
-Lemma sort_all l b : In b (Sorting.sort l) <-> In b l.
+Lemma query_all a t : sound_tree t -> forall b,
+  In b (query a t []) <-> In b (leaves t) /\ candidate a b = true.
 Proof.
-  pose proof (Sorting.Permuted_sort l) as P.
-  split; apply Permutation_in; [now symmetry | assumption].
+  intros S b. rewrite <- filter_In. pose proof (query_permutation a t S []) as P.
+  rewrite app_nil_r in P. split; apply Permutation_in; [exact P | now symmetry].
 Qed.
+Lemma sort_permutation l : Permutation (Sorting.sort l) l.
+Proof. symmetry. apply Sorting.Permuted_sort. Qed.
+Lemma sort_all l b : In b (Sorting.sort l) <-> In b l.
+Proof. split; apply Permutation_in; [|symmetry]; apply sort_permutation. Qed.
 Lemma put_all mine a l : forall done p, In p (put mine a l done) <->
   In p done \/ exists b, In b l /\ mine a b = true /\ p = (a, b).
 Proof.
@@ -137,15 +147,17 @@ Proof.
   intros S. induction l as [|c l IH]; intros done a b; cbn [collect]; [simpl; tauto|].
   rewrite IH, put_all. split.
   - intros [[D | (b' & B & M & E)] | H]; [auto | | simpl; tauto]. injection E as -> ->.
-    apply sort_all, query_all in B; [|assumption]. destruct B as [[] | B]. simpl. tauto.
+    apply sort_all, query_all in B; [|assumption]. simpl. tauto.
   - intros [D | ([<- | A] & L & C & M)]; [auto | | tauto]. left. right. exists b.
-    split; [|auto]. apply sort_all, query_all; [assumption | auto].
+    split; [|auto]. apply sort_all, query_all; auto.
 Qed.
 Theorem pairs_all mine r l a b : In (a, b) (pairs mine r l) <->
   In a l /\ In b l /\ candidate (grow (r a) a) b = true /\ mine a b = true.
 Proof.
   unfold pairs. destruct (build_sound 64 l) as [S L].
-  rewrite (collect_all _ _ _ _ S), L. simpl. tauto.
+  assert (E : In b (leaves (build 64 l)) <-> In b l)
+    by (split; apply Permutation_in; auto using Permutation_sym).
+  rewrite (collect_all _ _ _ _ S), E. simpl. tauto.
 Qed.
 Lemma grow_candidate r a b : candidate (grow r a) b = true <->
   comes_before a b = true /\
@@ -154,6 +166,34 @@ Proof.
   unfold candidate, grow. rewrite andb_true_iff. destruct (Z.eqb_spec r 0) as [-> | _].
   - rewrite !overlap_true. unfold sub, add. cbn [x y z]. rewrite !Z.sub_0_r, !Z.add_0_r. tauto.
   - reflexivity.
+Qed.
+
+(** * No pair is there twice *)
+Lemma put_once mine a l : NoDup l -> forall done, NoDup done ->
+  (forall b, In b l -> ~ In (a, b) done) -> NoDup (put mine a l done).
+Proof.
+  induction 1 as [|c l C N IH]; intros done D E; cbn [put]; [exact D|].
+  apply IH; destruct (mine a c); try (constructor; [apply E; now left | exact D]); try exact D.
+  - intros b B [H | H]; [injection H as <-; contradiction | now apply (E b); [right|]].
+  - intros b B. apply E. now right.
+Qed.
+Lemma collect_once mine r t l : sound_tree t -> NoDup (leaves t) -> NoDup l -> forall done,
+  NoDup done -> (forall a b, In a l -> ~ In (a, b) done) -> NoDup (collect mine r t l done).
+Proof.
+  intros S L. induction 1 as [|c l C N IH]; intros done D E; cbn [collect]; [exact D|]. apply IH.
+  - apply put_once; [|exact D | intros b _; apply E; now left].
+    eapply Permutation_NoDup; [symmetry; apply sort_permutation|].
+    eapply Permutation_NoDup; [symmetry; now apply query_permutation|].
+    rewrite app_nil_r. now apply NoDup_filter.
+  - intros a b A H. apply put_all in H. destruct H as [H | (b' & _ & _ & H)].
+    + now apply (E a b); [right|].
+    + injection H as -> _. contradiction.
+Qed.
+Theorem pairs_once mine r l : NoDup l -> NoDup (pairs mine r l).
+Proof.
+  intros N. unfold pairs. destruct (build_sound 64 l) as [S P]. apply collect_once; auto.
+  - eapply Permutation_NoDup; [symmetry; exact P | exact N].
+  - constructor.
 Qed.
 
 (** * The triangles *)
@@ -199,18 +239,47 @@ Theorem gathered_all b r s n : In n (gathered b r s) <->
 Proof.
   unfold gathered. rewrite keep_objects_all. simpl. split; [intros [[] | H] | intros H; right]; exact H.
 Qed.
+Lemma keep_triangles_once b r o inner l : forall i done, NoDup done ->
+  (forall n, In n done -> of_object n <> o \/ number n < i) ->
+  NoDup (keep_triangles b r o i inner l done).
+Proof.
+  induction l as [|t l IH]; intros i done D E; cbn [keep_triangles]; [exact D|].
+  unfold keep. apply IH; destruct (is_needed b r t).
+  - constructor; [|exact D]. intros H. apply E in H. cbn [of_object number] in H. lia.
+  - exact D.
+  - intros n [<- | H]; cbn [of_object number]; [lia|]. apply E in H. lia.
+  - intros n H. apply E in H. lia.
+Qed.
+Lemma keep_objects_once b r s : forall o done, NoDup done ->
+  (forall n, In n done -> of_object n < o) -> NoDup (keep_objects b r o s done).
+Proof.
+  induction s as [|ob s IH]; intros o done D E; cbn [keep_objects]; [exact D|]. apply IH.
+  - apply keep_triangles_once; [exact D|]. intros n H. apply E in H. lia.
+  - intros n H. apply keep_triangles_all in H. destruct H as [H | (k & t & _ & _ & ->)].
+    + apply E in H. lia.
+    + cbn [of_object]. lia.
+Qed.
+Theorem gathered_once b r s : NoDup (gathered b r s).
+Proof. apply keep_objects_once; [constructor | intros n []]. Qed.
+Lemma items_map e l : items_of e l = map (make_item e) l.
+Proof.
+  assert (F : forall l done, fold_left (fun done n => make_item e n :: done) l done =
+                        rev (map (make_item e) l) ++ done).
+  { clear l. induction l as [|n l IH]; intros done; cbn [fold_left map rev app]; [reflexivity|].
+    rewrite IH, <- app_assoc. reflexivity. }
+  unfold items_of. rewrite F, rev_append_rev, !app_nil_r, map_rev, rev_involutive. reflexivity.
+Qed.
 Lemma items_all e l it : In it (items_of e l) <-> exists n, In n l /\ it = make_item e n.
 Proof.
-  assert (F : forall l done, In it (fold_left (fun done n => make_item e n :: done) l done) <->
-              In it done \/ exists n, In n l /\ it = make_item e n).
-  { clear l. induction l as [|n l IH]; intros done; cbn [fold_left].
-    - split; [auto | intros [D | (n & [] & _)]; assumption].
-    - rewrite IH. simpl. split.
-      + intros [[<- | D] | (m & M & ->)]; eauto.
-      + intros [D | (m & [<- | M] & ->)]; eauto. }
-  unfold items_of. rewrite F, rev_append_rev, app_nil_r. simpl. split.
-  - intros [[] | (n & N & ->)]. apply in_rev in N. eauto.
-  - intros (n & N & ->). right. exists n. rewrite <- in_rev. auto.
+  rewrite items_map, in_map_iff. split; intros (n & A & B); exists n; auto.
+Qed.
+Lemma map_once {A B} (f : A -> B) l : (forall x y, In x l -> In y l -> f x = f y -> x = y) ->
+  NoDup l -> NoDup (map f l).
+Proof.
+  intros I. induction 1 as [|a l H N IH]; cbn [map]; constructor.
+  - intros M. apply in_map_iff in M. destruct M as (b & E & M).
+    apply I in E; [subst b; contradiction | now right | now left].
+  - apply IH. intros x y X Y. apply I; now right.
 Qed.
 
 (** * The common power of two *)

@@ -101,6 +101,26 @@ Proof.
     + intros [R | (a' & b' & [E | P] & -> & M)]; [auto | | right; eauto].
       injection E as -> ->. apply K in M. discriminate.
 Qed.
+Lemma judge_all_once D c l : forall es t rs, judge_all D c l es t = Proved rs ->
+  NoDup (rows t) -> NoDup l ->
+  (forall a b a' b', In (a, b) l -> In (a', b') l -> name_of a b = name_of a' b' ->
+                     (a, b) = (a', b')) ->
+  (forall a b, In (a, b) l -> ~ In (name_of a b) (rows t)) -> NoDup rs.
+Proof.
+  induction l as [|[a b] l IH]; intros es t rs H T L I E; destruct es as [|e es];
+    cbn [judge_all] in H; try discriminate.
+  - destruct (refuting t) as [[? ?]|]; [discriminate|].
+    destruct (weak t) as [[? ?]|]; [discriminate|].
+    destruct (counts_are c t); [|discriminate]. injection H as <-.
+    rewrite rev_append_rev, app_nil_r. now apply NoDup_rev.
+  - destruct (judge D a b e) as [[k f]|]; [|discriminate]. inversion_clear L as [|? ? N L'].
+    apply (IH _ _ _ H); unfold enter; cbn [rows]; auto.
+    + destruct (is_kind k Meeting); [|exact T]. constructor; [apply E; now left | exact T].
+    + intros a' b' a'' b'' A B. apply I; now right.
+    + intros a' b' A. destruct (is_kind k Meeting); [|apply E; now right].
+      intros [M | M]; [|revert M; apply E; now right].
+      apply I in M; [congruence | now left | now right].
+Qed.
 Lemma judge_all_refuted D c l : forall es t r f, judge_all D c l es t = Refuted r f ->
   refuting t = Some (r, f) \/ exists a b, In (a, b) l /\ r = name_of a b /\
     (f = Said_to_meet /\ ~ items_count D a b \/
@@ -310,9 +330,37 @@ Proof.
   apply Nat2Z.inj in N1, N2, N3, N4. subst m n m' n'.
   apply is_of_belongs in W; [|assumption|assumption]. exists t, t'. auto.
 Qed.
+(** The checker decides no pair twice. *)
+Lemma decided_once : NoDup decided.
+Proof.
+  apply pairs_once. rewrite items_map. apply map_once; [|apply gathered_once].
+  intros n n' N N' E. apply gathered_all in N, N'.
+  destruct N as (o & ob & i & t & O & T & _ & ->), N' as (o' & ob' & i' & t' & O' & T' & _ & ->).
+  apply (f_equal (fun it => (obj it, num it))) in E. cbn in E. injection E as E F.
+  apply Nat2Z.inj in E, F. congruence.
+Qed.
+Lemma decided_name a b a' b' : In (a, b) decided -> In (a', b') decided ->
+  name_of a b = name_of a' b' -> (a, b) = (a', b').
+Proof.
+  intros P P' E. apply pairs_all in P, P'. destruct P as (A & B & _), P' as (A' & B' & _).
+  unfold name_of, row_of in E. injection E as E1 E2 E3 E4 _. f_equal; now apply one_item.
+Qed.
+Lemma decided_names a b : In (a, b) decided -> exists o i o' i', names (name_of a b) o i o' i'.
+Proof.
+  intros P. apply pairs_all in P. destruct P as (A & B & _). apply of_item in A, B.
+  destruct A as (o & ob & i & t & _ & _ & _ & ->), B as (o' & ob' & i' & t' & _ & _ & _ & ->).
+  exists o, i, o', i'. now repeat split.
+Qed.
 End Scene.
 
 (** * Tiles that make a whole *)
+Lemma NoDup_app_disjoint {A} (l m : list A) : NoDup l -> NoDup m ->
+  (forall a, In a l -> ~ In a m) -> NoDup (l ++ m).
+Proof.
+  induction 1 as [|a l H N IH]; intros M E; cbn [app]; [exact M|]. constructor.
+  - rewrite in_app_iff. intros [I | I]; [contradiction | now apply (E a); [left|]].
+  - apply IH; [exact M|]. intros b B. apply E. now right.
+Qed.
 Lemma before_dec k p t : before k p t \/ ~ before k p t.
 Proof.
   rewrite before_corner.
@@ -320,6 +368,19 @@ Proof.
   destruct (Qlt_le_dec (value (coordinate k (p2 t))) (value p)) as [B | B]; [tauto|].
   destruct (Qlt_le_dec (value (coordinate k (p3 t))) (value p)) as [C | C]; [tauto|].
   right. intros [D | [D | D]]; lra.
+Qed.
+Lemma join_step b k place :
+  (same_axis (tile_axis b) k && same_place (tile_begin b) place &&
+   negb (is_backwards b))%bool = true ->
+  tile_axis b = k /\ tile_begin b = place /\
+  forall p q, tile_begin b = Some p -> tile_end b = Some q -> value p <= value q.
+Proof.
+  rewrite !andb_true_iff. intros [[K P] B]. split; [|split].
+  - destruct (tile_axis b), k; congruence || discriminate.
+  - destruct (tile_begin b) as [[m x]|], place as [[m' x']|]; try discriminate; [|reflexivity].
+    unfold same_place in P. cbn [mantissa exponent] in P. tests. congruence.
+  - intros p q E F. unfold is_backwards in B. rewrite E, F in B. apply Qnot_lt_le.
+    rewrite <- is_below_sound. now destruct (is_below q p).
 Qed.
 Lemma join_all k rest : forall place done all, join k place rest done = Some all -> forall r,
   In r all <-> In r done \/ exists b rows, In (b, rows) rest /\ In r rows.
@@ -343,11 +404,8 @@ Lemma join_covers k t t' rest : forall place done all, join k place rest done = 
   exists b rows, In (b, rows) rest /\ belongs b t t'.
 Proof.
   induction rest as [|[b rows] rest IH]; intros place done all J N; cbn [join] in J; [discriminate|].
-  destruct (_ && _)%bool eqn:S in J; [|discriminate]. apply andb_prop in S. destruct S as [K P].
-  assert (tile_axis b = k) as AK by (destruct (tile_axis b), k; congruence || discriminate). clear K.
-  assert (tile_begin b = place) as AP.
-  { destruct (tile_begin b) as [[m x]|], place as [[m' x']|]; try discriminate; [|reflexivity].
-    unfold same_place in P. cbn [mantissa exponent] in P. tests. congruence. }
+  destruct (_ && _)%bool eqn:S in J; [|discriminate].
+  apply join_step in S. destruct S as (AK & AP & _).
   assert (B : (forall e, tile_end b = Some e -> before k e t /\ before k e t') ->
               exists b' rows', In (b', rows') ((b, rows) :: rest) /\ belongs b' t t').
   { intros E. exists b, rows. split; [now left|]. unfold belongs. rewrite AK, AP. auto. }
@@ -357,6 +415,42 @@ Proof.
     (destruct rest as [|c rest]; [discriminate|];
      destruct (IH _ _ _ J) as (b' & rows' & I & W);
      [intros p' E; injection E as <-; tauto | exists b', rows'; simpl in *; tauto]).
+Qed.
+Lemma before_less k p q t : value p <= value q -> before k p t -> before k q t.
+Proof. intros L (c & C & B). exists c. split; [exact C|]. eapply Qlt_le_trans; eassumption. Qed.
+Lemma names_unique r o i o' i' m n m' n' : names r o i o' i' -> names r m n m' n' ->
+  o = m /\ i = n /\ o' = m' /\ i' = n'.
+Proof. unfold names. lia. Qed.
+(** No pair belongs to two of the tiles. *)
+Lemma join_once s right k rest : forall place done all, join k place rest done = Some all ->
+  (forall b rows, In (b, rows) rest ->
+    lists (fun o i o' i' => right o i o' i' /\ in_tile b s o i o' i') s rows) ->
+  NoDup done ->
+  (forall r, In r done -> exists p o i o' i' t t', place = Some p /\ names r o i o' i' /\
+    is_triangle s o i t /\ is_triangle s o' i' t' /\ before k p t /\ before k p t') ->
+  NoDup all.
+Proof.
+  induction rest as [|[b rows] rest IH]; intros place done all J T N E; cbn [join] in J;
+    [discriminate|].
+  destruct (_ && _)%bool eqn:S in J; [|discriminate].
+  apply join_step in S. destruct S as (AK & AP & O).
+  destruct (T b rows) as (R & W & _); [now left|].
+  assert (U : NoDup (rev_append rows done)).
+  { rewrite rev_append_rev. apply NoDup_app_disjoint; [now apply NoDup_rev | exact N|].
+    intros r I D. apply in_rev, W in I.
+    destruct I as (o & i & o' & i' & M & (_ & t & t' & A & A' & _ & B) & _).
+    apply E in D. destruct D as (p & m & n & m' & n' & u & u' & P & M' & V & V' & C).
+    destruct (names_unique _ _ _ _ _ _ _ _ _ M M') as (<- & <- & <- & <-).
+    rewrite (is_triangle_unique _ _ _ _ _ A V), (is_triangle_unique _ _ _ _ _ A' V'), AK in B.
+    now apply (B p); [congruence|]. }
+  destruct (tile_end b) as [q|] eqn:F, rest as [|c rest]; try discriminate; [|congruence].
+  apply (IH _ _ _ J); [intros; apply T; now right | exact U|].
+  intros r I. rewrite rev_append_rev, in_app_iff, <- in_rev in I. exists q. destruct I as [I | I].
+  - apply W in I. destruct I as (o & i & o' & i' & M & (_ & t & t' & A & A' & B & _) & _).
+    rewrite AK in B. exists o, i, o', i', t, t'. specialize (B q F). tauto.
+  - apply E in I. destruct I as (p & o & i & o' & i' & t & t' & P & M & A & A' & B & B').
+    exists o, i, o', i', t, t'. assert (L : value p <= value q) by (apply O; congruence).
+    repeat split; auto; try apply M; eapply before_less; eauto.
 Qed.
 Lemma triangles_of_answer s clearance o i o' i' : answer s clearance o i o' i' ->
   exists t t', is_triangle s o i t /\ is_triangle s o' i' t'.
@@ -368,14 +462,17 @@ Theorem accepted_tile_is_right_and_complete s piece clearance reach less c es l 
   check (gathered piece reach s) piece clearance reach less c es = Proved l ->
   right_and_complete_in piece s clearance l.
 Proof.
-  unfold check. intros H o i o' i'. destruct (_ && _)%bool eqn:R in H; [|discriminate]. tests.
-  pose proof (judge_all_proved _ _ _ _ _ _ H) as L. cbn [rows] in L.
-  rewrite (answer_pairs s piece clearance reach less) by assumption. split; [split|].
-  - intros (a & b & P & N & M). exists (name_of a b). split; [|exact N].
+  unfold check. intros H. destruct (_ && _)%bool eqn:R in H; [|discriminate]. tests.
+  pose proof (judge_all_proved _ _ _ _ _ _ H) as L. cbn [rows] in L. split; [|split].
+  - apply (judge_all_once _ _ _ _ _ _ H); cbn [rows]; [constructor | apply decided_once | | auto].
+    intros a b a' b'. apply decided_name.
+  - intros r In_l. apply L in In_l. destruct In_l as [[] | (a & b & P & -> & M)].
+    destruct (decided_names _ _ _ _ _ _ _ P) as (o & i & o' & i' & N). exists o, i, o', i'.
+    split; [exact N|]. split; [|eapply neighbours_pairs; eauto].
+    apply (answer_pairs s piece clearance reach less); eauto.
+  - intros o i o' i' W. apply (answer_pairs s piece clearance reach less) in W; try assumption.
+    destruct W as (a & b & P & N & M). exists (name_of a b). split; [|exact N].
     apply L. right. exists a, b. auto.
-  - intros (r & In_l & N). apply L in In_l. destruct In_l as [[] | (a & b & P & -> & M)]. eauto.
-  - intros r In_l N. apply L in In_l. destruct In_l as [[] | (a & b & P & -> & M)].
-    eapply neighbours_pairs; eauto.
 Qed.
 
 (** The lists of tiles that leave nothing out together are the list of the whole scene. *)
@@ -384,18 +481,16 @@ Theorem merged_list_is_right_and_complete s clearance tiles l :
   (forall piece rows, In (piece, rows) tiles -> right_and_complete_in piece s clearance rows) ->
   right_and_complete s clearance l.
 Proof.
-  unfold merge_tiles. destruct tiles as [|[b0 rows0] tiles]; [discriminate|]. intros J T o i o' i'.
-  pose proof (join_all _ _ _ _ _ J) as A. simpl (In _ []) in A.
-  split; [split|].
-  - intros W. destruct (triangles_of_answer _ _ _ _ _ _ W) as (t & t' & U & U').
+  unfold merge_tiles. destruct tiles as [|[b0 rows0] tiles]; [discriminate|]. intros J T.
+  pose proof (join_all _ _ _ _ _ J) as A. simpl (In _ []) in A. split; [|split].
+  - apply (join_once _ _ _ _ _ _ _ J T); [constructor | intros r []].
+  - intros r R. apply A in R. destruct R as [[] | (b & rows & I & R)].
+    apply (T b rows I) in R. destruct R as (o & i & o' & i' & N & [W _] & F). eauto 8.
+  - intros o i o' i' W. destruct (triangles_of_answer _ _ _ _ _ _ W) as (t & t' & U & U').
     destruct (join_covers _ t t' _ _ _ _ J) as (b & rows & I & B); [discriminate|].
-    destruct (proj1 (proj1 (T b rows I o i o' i'))) as (r & R & N).
+    destruct (proj2 (proj2 (T b rows I)) o i o' i') as (r & R & N).
     { split; [assumption|]. exists t, t'. auto. }
     exists r. split; [|assumption]. apply A. right. eauto.
-  - intros (r & R & N). apply A in R. destruct R as [[] | (b & rows & I & R)].
-    apply (proj1 (T b rows I o i o' i')). eauto.
-  - intros r R N. apply A in R. destruct R as [[] | (b & rows & I & R)].
-    now apply (proj2 (T b rows I o i o' i')).
 Qed.
 
 (** A scene in one piece. *)
@@ -403,13 +498,24 @@ Theorem accepted_list_is_right_and_complete s clearance reach less c es l :
   check (gathered everything reach s) everything clearance reach less c es = Proved l ->
   right_and_complete s clearance l.
 Proof.
-  intros H. apply accepted_tile_is_right_and_complete in H.
-  assert (R : right_and_complete s clearance (rev_append l [])).
-  { apply (merged_list_is_right_and_complete s clearance [(everything, l)]); [reflexivity|].
-    intros piece rows [E | []]. injection E as <- <-. exact H. }
-  intros o i o' i'. specialize (R o i o' i'). rewrite rev_append_rev, app_nil_r in R.
-  destruct R as [R F]. split; [|intros r I; apply F; now apply -> in_rev].
-  rewrite R. split; intros (r & I & N); exists r; (split; [|exact N]); [now apply in_rev | now apply -> in_rev].
+  intros H. apply accepted_tile_is_right_and_complete in H. destruct H as (N & R & C).
+  split; [exact N|]. split.
+  - intros r I. apply R in I. destruct I as (o & i & o' & i' & M & [W _] & F). eauto 8.
+  - intros o i o' i' W. apply C. split; [exact W|].
+    destruct (triangles_of_answer _ _ _ _ _ _ W) as (t & t' & U & U'). exists t, t'.
+    repeat split; auto; discriminate.
+Qed.
+
+(** No pair has two rows in a list that is right and complete, whatever their last columns say. *)
+Theorem pair_has_one_row s clearance l r r' o i o' i' : right_and_complete s clearance l ->
+  In r l -> In r' l -> names r o i o' i' -> names r' o i o' i' -> r = r'.
+Proof.
+  intros (_ & R & _) I I' N N'. apply R in I, I'.
+  destruct I as (a & b & a' & b' & M & _ & F), I' as (d & e & d' & e' & M' & _ & F').
+  destruct (names_unique _ _ _ _ _ _ _ _ _ N M) as (<- & <- & <- & <-).
+  destruct (names_unique _ _ _ _ _ _ _ _ _ N' M') as (<- & <- & <- & <-).
+  rewrite <- F' in F. destruct r as [p q p' q' n], r' as [u v u' v' n'].
+  unfold names in *. cbn in *. f_equal; try lia. destruct n, n'; intuition congruence.
 Qed.
 
 (** A refuted certificate says something false of the pair that is named. *)
@@ -439,5 +545,7 @@ Check accepted_tile_is_right_and_complete.
 Print Assumptions accepted_tile_is_right_and_complete.
 Check merged_list_is_right_and_complete.
 Print Assumptions merged_list_is_right_and_complete.
+Check pair_has_one_row.
+Print Assumptions pair_has_one_row.
 Check refuted_pair_is_claimed_wrongly.
 Print Assumptions refuted_pair_is_claimed_wrongly.

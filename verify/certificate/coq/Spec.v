@@ -53,16 +53,18 @@ Definition asked (s : scene) (o i o' i' : nat) : Prop := (o < o')%nat \/
 Definition answer (s : scene) (clearance : double) (o i o' i' : nat) : Prop :=
   asked s o i o' i' /\ exists t t', is_triangle s o i t /\ is_triangle s o' i' t' /\
                                     count (value clearance) (o = o') (exact t) (exact t').
-(** A row of a list of pairs, and lists that are right and complete. The last column says whether
-    the two triangles are of one object and have a common corner. *)
+(** A row of a list of pairs. The last column says whether the two triangles are of one object and
+    have a common corner. A list is right and complete if no row is there twice ([NoDup]), each row
+    names a pair that is right, and each pair that is right has a row. *)
 Record row := Row { object_a : Z; triangle_a : Z; object_b : Z; triangle_b : Z; neighbours : bool }.
 Definition names (r : row) (o i o' i' : nat) : Prop := object_a r = Z.of_nat o /\
   triangle_a r = Z.of_nat i /\ object_b r = Z.of_nat o' /\ triangle_b r = Z.of_nat i'.
 Definition are_neighbours (s : scene) (o i o' i' : nat) : Prop := o = o' /\ exists t t' c,
   is_triangle s o i t /\ is_triangle s o' i' t' /\ is_shared (exact t) (exact t') c.
 Definition lists (right : nat -> nat -> nat -> nat -> Prop) (s : scene) (l : list row) : Prop :=
-  forall o i o' i', (right o i o' i' <-> exists r, In r l /\ names r o i o' i') /\
-    forall r, In r l -> names r o i o' i' -> (neighbours r = true <-> are_neighbours s o i o' i').
+  NoDup l /\ (forall r, In r l -> exists o i o' i', names r o i o' i' /\ right o i o' i' /\
+                                  (neighbours r = true <-> are_neighbours s o i o' i')) /\
+  (forall o i o' i', right o i o' i' -> exists r, In r l /\ names r o i o' i').
 Definition right_and_complete (s : scene) (clearance : double) := lists (answer s clearance) s.
 (** A tile is the part of space between two places on an axis; None: no end. A pair belongs to the
     tile before whose end both triangles have a corner, and before whose beginning not both have. *)
