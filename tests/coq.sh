@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What Coq proves. The checker of certificates (docs/verified.md): lets Coq check its proof, extracts the program
-# build/farcull-check-verified, and compares its verdicts with those of `farcull check`. Culling (docs/model.md and docs/proofs.md):
+# What Coq proves. The checker of certificates (docs/verified.md): its build, verify/certificate/coq/build.sh, lets Coq check the
+# proof and then makes build/farcull-check-verified, unless the build of farcull has just done so. Here its verdicts are compared
+# with those of `farcull check`. Culling (docs/model.md and docs/proofs.md):
 # the passes for any number of items, whose model is extracted and replays runs of core/cull, and the heart of lemmas 1, 3 and 16
 # over the reals. Prints the theorems and the axioms that they need: none but, for the last three, those of Coq's reals. Changes one
 # rule or inequality at a time, which must break the proof.
@@ -31,14 +32,21 @@ for tool in coqc ocamlfind ocamlopt python3; do
 done
 if ! ocamlfind query zarith >/dev/null 2>&1; then echo "coq: NOT RUN, zarith is missing" && exit 77; fi
 
-work=$build/coq culling=$build/coq/culling
+work=$build/coq culling=$build/coq/culling checker=$build/verify/verified
 rm -rf "${work:?}"
 mkdir -p "$culling"
-cp verify/certificate/coq/*.v verify/certificate/coq/*.ml "$work"
 cp tests/proofs/coq/*.v tests/proofs/coq/*.ml "$culling"
 echo "coq: $(coqc --version | head -n 1)"
-wc -l "$work"/{Spec,Checker,Geometry,Points,Descent,Pairs,Scaling,Proofs}.v "$culling"/*.v | sed "s|$work/||"
-if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' "$work"/*.v "$culling"/*.v; then
+if ! sh verify/certificate/coq/build.sh "$checker" >"$work/build.log" 2>&1; then
+  cat "$work/build.log"
+  echo "coq: the proved checker is not built" && exit 1
+fi
+cp "$checker/farcull-check-verified" "$build/farcull-check-verified.new"
+mv "$build/farcull-check-verified.new" "$build/farcull-check-verified"
+wc -l "$checker"/{Spec,Checker,Geometry,Points,Descent,Pairs,Scaling,Proofs}.v "$culling"/*.v | sed "s|$build/||"
+cat "$checker/Proofs.log"
+echo "coq: $build/farcull-check-verified is built, and its proof holds"
+if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' "$culling"/*.v; then
   echo "coq: the proof assumes something" && exit 1
 fi
 # Lets Coq check the files of a folder in this order: check FOLDER AXIOMS FILES. Prints the theorems; AXIOMS is a pattern for the
@@ -61,16 +69,8 @@ check() {
     fi
   done
 }
-check "$work" none Spec Checker Geometry Points Descent Pairs Scaling Proofs
 check "$culling" none Passes PassProofs PassExtract
 check "$culling" 'ClassicalDedekindReals\.sig_(forall|not)_dec|FunctionalExtensionality\.functional_extensionality_dep' Fan View
-if ! sh verify/certificate/coq/build.sh "$work/program" >"$work/ocaml.log" 2>&1; then
-  cat "$work/ocaml.log"
-  exit 2
-fi
-cp "$work/program/farcull-check-verified" "$build/farcull-check-verified.new"
-mv "$build/farcull-check-verified.new" "$build/farcull-check-verified"
-echo "coq: built $build/farcull-check-verified"
 
 # Runs of core/cull, replayed by the model of the passes.
 if [[ -x $build/tests/farcull_tests ]]; then
@@ -85,6 +85,19 @@ fi
 
 python3 -B tests/verify/certificate/verified_test.py compare "$build/farcull" "$build/farcull-check-verified" "$work/scenes" "$scenes"
 if [[ $mutants == yes ]]; then
-  for folder in "$work" "$culling"; do python3 -B tests/verify/certificate/verified_test.py mutants "$folder" "$folder/mutants"; done
+  # A checker whose proof does not hold is not built, and one that was there before is gone.
+  for twin in 's/(0 <? total w)/(0 <=? total w)/' 's/^Proof. symmetry. apply Sorting.Permuted_sort. Qed.$/Admitted./'; do
+    rm -rf "$work/twin"
+    mkdir -p "$work/twin/made"
+    cp verify/certificate/coq/* "$work/twin"
+    cp "$build/farcull-check-verified" "$work/twin/made"
+    sed -i "$twin" "$work/twin"/*.v
+    if sh "$work/twin/build.sh" "$work/twin/made" >"$work/twin/log" 2>&1 || [[ -e $work/twin/made/farcull-check-verified ]]; then
+      echo "coq: a checker without a proof was built: $twin" && exit 1
+    fi
+    if grep -q 'not found\|Syntax error' "$work/twin/log"; then cat "$work/twin/log" && exit 1; fi
+  done
+  python3 -B tests/verify/certificate/verified_test.py mutants "$checker" "$work/mutants"
+  python3 -B tests/verify/certificate/verified_test.py mutants "$culling" "$culling/mutants"
 fi
 if [[ $gappa == yes ]]; then python3 -B tests/proofs/coq/gappa.py "$build/tests/farcull_proofs" "$work/gappa"; fi
