@@ -4,6 +4,7 @@ inequalities of the proved checker, or rules of the passes (tests/proofs/coq), w
                                                            with 20 or fewer also without those that take long
   verified_test.py mutants SOURCES FOLDER"""
 import base64
+import hashlib
 import json
 import os
 import random
@@ -132,6 +133,32 @@ def forged(text, number):
     yield made(lambda other, _: other['scene'].update(hash='0' * 16))
 
 
+def forged_lists(text, rows, counts):
+    """Certificates of lists that are not right: one row is there twice, names nothing, is out of range, is the other way round, or
+    is about a triangle and itself. Of each one with the old evidence, and one with a byte more. rows: the list that is right;
+    counts: how many triangles each object has."""
+    root = json.loads(text)
+    data = base64.b64decode(root['evidence'])
+    lines = rows.splitlines(keepends=True)
+    if len(lines) == 1:
+        return
+    at = len(lines) // 2 + 1
+    meeting = [k for k, byte in enumerate(data) if byte & 0xbf == 38]
+    cells = lines[at - 1].rstrip('\n').split(',')
+    one, other, rest = cells[:2], cells[2:4], cells[4:]
+    for row in (cells, ['', '', '', '', *rest], ['-1', *cells[1:]], [str(len(counts)), *cells[1:]],
+                [one[0], str(counts[int(one[0])]), *cells[2:]], [*other, *one, *rest], [*one, *one, *rest]):
+        changed = ''.join(lines[:at] + [','.join(row) + '\n'] + lines[at:]).encode()
+        made = json.loads(text)
+        made['list_sha256'] = hashlib.sha256(changed).hexdigest()
+        yield json.dumps(made)
+        place = meeting[at - 2]
+        bytes_ = data[:place] + data[place:place + 1] + data[place:]
+        made['evidence'] = base64.b64encode(bytes_).decode()
+        recount(made, bytes_)
+        yield json.dumps(made)
+
+
 def spoiled(text):
     """Files that are no certificates, and unusual ones that are."""
     root = json.loads(text)
@@ -203,8 +230,8 @@ class Comparison:
         os.remove(program)
 
     def tiles(self, name, folder, objects, number, clearance):
-        """Certificates of tiles, one by one and together; and forged ones: one is missing or there twice, a border is moved, a
-        pair is left out, one is of another scene."""
+        """Certificates of tiles, one by one and together; and forged ones: one is missing or there twice, a border is moved, one
+        runs backwards, a pair is left out, one is of another scene."""
         scene, words, file, draw = f'{folder}/scene.json', f'{folder}/words', f'{folder}/t%d.json', random.Random(number)
         write_words(words, objects)
         count = draw.randrange(2, 5)
@@ -237,6 +264,11 @@ class Comparison:
         moved = roots[border]['tile']['to'] + draw.choice([-1, 1]) * 2.0 ** -20 * (abs(roots[border]['tile']['to']) + 1)
         roots[border]['tile']['to'] = moved
         together([json.dumps(root) for root in roots], 'a border is moved')
+        backwards = json.loads(texts[which])
+        tile = backwards['tile']
+        if None not in (tile['from'], tile['to']):
+            tile['from'], tile['to'] = tile['to'], tile['from']
+            together(texts[:which] + [json.dumps(backwards)] + texts[which + 1:], 'one runs backwards')
         data = base64.b64decode(roots[which]['evidence'])
         if data:
             at = draw.randrange(len(data))
@@ -308,17 +340,23 @@ class Comparison:
         self.both(file, scene, words, why)
 
     def scene(self, name, folder, objects, number, spoil=False, clearance=None):
-        scene, words, certificate = f'{folder}/scene.json', f'{folder}/words', f'{folder}/certificate.json'
+        scene, words, certificate, pairs = (f'{folder}/{file}' for file in ('scene.json', 'words', 'certificate.json', 'pairs.csv'))
         write_words(words, objects)
-        status, text = output([self.farcull, 'run', scene, '--method', 'exact', '--certificate', certificate]
-                              if clearance is None else
-                              [self.farcull, 'run', scene, '--method', 'boxes', '--clearance', repr(clearance),
-                               '--certificate', certificate])
+        how = ['--method', 'exact'] if clearance is None else ['--method', 'boxes', '--clearance', repr(clearance)]
+        status, text = output([self.farcull, 'run', scene, *how, '--certificate', certificate, '--pairs', pairs])
         if status:
             self.wrong.append(f'{name}: no certificate: {text[:300]}')
             return
         text = open(certificate, encoding='utf-8').read()
         self.both(certificate, scene, words, name)
+        lists = list(forged_lists(text, open(pairs, encoding='utf-8').read(), [len(triangles) for _, triangles in objects]))
+        for index, other in enumerate(lists if spoil else random.Random(number).sample(lists, min(2, len(lists)))):
+            with open(certificate, 'w', encoding='utf-8') as file:
+                file.write(other)
+            if (seen := self.both(certificate, scene, words, f'{name}, list {index}')) != 'not proved':
+                self.wrong.append(f'{name}, list {index}: {seen}')
+        with open(certificate, 'w', encoding='utf-8') as file:
+            file.write(text)
         if spoil:
             self.called(certificate, scene, folder)
         changed = list(forged(text, number))
@@ -384,7 +422,12 @@ MUTANTS = [
     ('scaled e place <=? scaled e d + scaled e reach', 'scaled e place <? scaled e d + scaled e reach'),
     ('(coordinate k (lo a) <? p)', '(coordinate k (lo a) <=? p)'),
     ('negb (both_before e (tile_axis t) p a b)', 'both_before e (tile_axis t) p a b'),
-    ('m * dot w w <=? n * (r * r)', 'n * (r * r) <=? m * dot w w')]
+    ('m * dot w w <=? n * (r * r)', 'n * (r * r) <=? m * dot w w'),
+    # A row twice, a row that names nothing, a pair in two tiles.
+    ('if mine a b then (a, b) :: done else done', 'if mine a b then (a, b) :: (a, b) :: done else done'),
+    ('if is_kind k Meeting then r :: rows t else rows t', 'if is_kind k Meeting then r :: r :: rows t else rows t'),
+    ('(Tally [] None None', '(Tally [Row (-1) 0 0 0 false] None None'),
+    (' && negb (is_backwards b) then', ' then')]
 FILES = ['Checker', 'Geometry', 'Points', 'Descent', 'Pairs', 'Scaling', 'Proofs']
 
 # Of the passes, and of the statements about one view. Each file, and the files that prove things of it.
