@@ -1,5 +1,9 @@
-// Asks about a terminal by POSIX, or by the C runtime and the console of Windows.
+// Finds misspelt words by their edit distance. Asks about a terminal by POSIX, or by the C runtime
+// and the console of Windows.
 #include "core/base/text.h"
+
+#include <algorithm>
+#include <cctype>
 
 #ifdef _WIN32
 #include <io.h>
@@ -12,6 +16,42 @@
 #endif
 
 namespace farcull {
+namespace {
+
+// The least number of letters to insert, delete, replace or swap with the next to turn one word
+// into the other (optimal string alignment). apart[i][k]: of the first i letters and the first k.
+std::size_t letters_apart(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> apart(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  const auto same = [&](std::size_t i, std::size_t k) {
+    return std::tolower(static_cast<unsigned char>(a[i])) ==
+           std::tolower(static_cast<unsigned char>(b[k]));
+  };
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t k = 0; k <= b.size(); ++k) {
+      std::size_t& least = apart[i][k] = std::max(i, k);
+      if (i == 0 || k == 0) continue;
+      least = std::min(
+          {apart[i - 1][k] + 1, apart[i][k - 1] + 1, apart[i - 1][k - 1] + !same(i - 1, k - 1)});
+      if (i > 1 && k > 1 && same(i - 1, k - 2) && same(i - 2, k - 1))
+        least = std::min(least, apart[i - 2][k - 2] + 1);
+    }
+  }
+  return apart[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string likely_word(const std::string& word, const std::vector<std::string>& known) {
+  constexpr std::size_t kLongest = 40, kFew = 2;
+  std::string best;
+  std::size_t least = kFew + 1;
+  for (const std::string& name : known) {
+    if (word.size() > kLongest || name.size() > kLongest) continue;
+    const std::size_t apart = letters_apart(word, name);
+    if (apart < least && 2 * apart < word.size()) least = apart, best = name;
+  }
+  return best;
+}
 
 #ifdef _WIN32
 

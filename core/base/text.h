@@ -1,5 +1,5 @@
-// Reads numbers from text, writes numbers as people read them, and tells whether a stream is a
-// terminal and how wide it is.
+// Reads numbers from text, writes numbers as people read them, guesses words that were misspelt,
+// and tells whether a stream is a terminal and how wide it is.
 #pragma once
 
 #include <charconv>
@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace farcull {
 
@@ -29,6 +30,15 @@ template <class T>
 std::optional<T> parse_number(std::string_view text) {
   const std::optional<T> value = take_number<T>(text);
   return text.empty() ? value : std::nullopt;
+}
+
+/// The one of `known` that `word` was probably meant to be: apart from case, at most two letters
+/// are inserted, deleted, replaced or swapped with the next, and fewer than half of its letters.
+/// Empty if there is none.
+std::string likely_word(const std::string& word, const std::vector<std::string>& known);
+/// "did you mean NAME? ", or nothing if the name is empty.
+inline std::string did_you_mean(const std::string& name) {
+  return name.empty() ? "" : "did you mean " + name + "? ";
 }
 
 /// 1234567 as 1,234,567.

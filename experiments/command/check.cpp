@@ -349,11 +349,19 @@ int CheckCommand::run() {
                 "leave it out, or name the certificates of the tiles");
   }
   require_number(to.certificate, to.frames || to.tiles);
-  if (to.verified && (to.certificate.empty() || to.frames || (pairs_ && !tiles_) || clearance_)) {
-    throw Error("--verified",
-                "is for certificates of one scene, without --frames and --clearance, and with "
-                "--pairs only beside --tiles",
-                "leave it out, or check each frame by its own certificate");
+  if (to.verified) {
+    const auto refuse = [](const char* reason, const char* remedy) {
+      throw Error("--verified", reason, remedy);
+    };
+    if (to.certificate.empty())
+      refuse("needs a certificate, which has what it proves a list by",
+             "make one with farcull run SCENE --certificate FILE");
+    if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
+    if (clearance_)
+      refuse("does not take --clearance", "leave --clearance out: the certificate has it");
+    if (pairs_ && !tiles_)
+      refuse("does not read the list of --pairs",
+             "check twice: with --pairs, then with --verified, which proves the same list");
   }
   std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
   if (!to.certificate.empty()) {

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <numeric>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -80,11 +79,12 @@ class HelpCommand {
     }
     const std::string text = help_of(*app_, words_);
     if (text.empty()) {
-      std::string topics;
-      for (const HelpTopic& topic : help_topics())
-        topics += (topics.empty() ? "" : ", ") + std::string(topic.name);
-      throw Error(fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
-                  "give one of the topics " + topics + ", or a command that farcull help lists");
+      std::vector<std::string> topics;
+      for (const HelpTopic& topic : help_topics()) topics.emplace_back(topic.name);
+      throw Error(
+          fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
+          fmt::format("{}give one of the topics {}, or a command that farcull help lists",
+                      did_you_mean(likely_word(words_[0], topics)), fmt::join(topics, ", ")));
     }
     write_help(text);
     return kExitDone;
@@ -110,21 +110,6 @@ constexpr const char* kOutOfMemory =
 std::string fault(const std::exception& error) {
   return std::string("a fault of farcull itself: ") + error.what() +
          "; report it with the command line";
-}
-
-// Whether the word is at most two letters off: each letter changed, added or left out counts.
-bool is_misspelt(const std::string& word, const std::string& name) {
-  std::vector<std::size_t> row(name.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < word.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t k = 0; k < name.size(); ++k) {
-      const std::size_t changed = diagonal + (word[i] != name[k]);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({changed, diagonal + 1, row[k] + 1});
-    }
-  }
-  return row.back() <= 2 && row.back() < name.size() - 1;
 }
 
 bool is_scene(const std::string& word) {
@@ -156,14 +141,17 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
     if (word == "--boxes" || word.starts_with("--boxes="))
       return Error("--boxes", "is now called --broad-phase",
                    "give that, with objects or triangles");
-    if (word.starts_with("-")) return Error(word, name + " has no such option", help);
-    if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
-    std::string known, meant;
-    for (const CLI::App* subcommand : subcommands) {
-      known += (known.empty() ? "" : ", ") + subcommand->get_name();
-      if (is_misspelt(word, subcommand->get_name())) meant = subcommand->get_name();
+    if (word.starts_with("-")) {
+      std::vector<std::string> known;
+      for (const CLI::Option* option : command->get_options()) known.push_back(option->get_name());
+      const std::string only = word.substr(0, word.find('='));
+      return Error(word, name + " has no such option",
+                   did_you_mean(likely_word(only, known)) + help);
     }
-    if (!meant.empty()) {
+    if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
+    std::vector<std::string> known;
+    for (const CLI::App* subcommand : subcommands) known.push_back(subcommand->get_name());
+    if (const std::string meant = likely_word(word, known); !meant.empty()) {
       return Error(
           word, "no such command",
           "try " + command_with(name + " " + meant, std::vector(words.begin() + 1, words.end())));
@@ -173,7 +161,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
       return Error(word, "stands where a command should",
                    "try " + command_with(name + " " + act, words));
     }
-    return Error(word, "no such command", "give one of " + known);
+    return Error(word, "no such command", fmt::format("give one of {}", fmt::join(known, ", ")));
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     return Error("SCENE", "none is named",

@@ -69,14 +69,14 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
 
 // Throws Error naming an option that none of the listed methods has.
 void CompareCommand::require_meaning() const {
-  if (!arguments_.methods) return;
   std::vector<Method> methods;
-  for (const std::string& name : split_list(*arguments_.methods))
+  const std::string usual = usual_methods(options_.has("clearance"), options_.has("self"));
+  for (const std::string& name : split_list(arguments_.methods.value_or(usual)))
     methods.push_back(parse_method(name, "--methods"));
   const auto require = [&](const std::string& word, bool (*serves)(const Traits&)) {
     if (std::ranges::any_of(methods, [&](Method m) { return serves(traits(m)); })) return;
     throw Error(word, "has no meaning for any of the methods",
-                "leave it out, or add one of " + method_names(serves) + " to --methods");
+                "leave it out, or add to --methods: " + method_names(serves));
   };
   if (arguments_.resolutions) require("--resolutions", [](const Traits& t) { return t.draws; });
   if (offsets_) require("--offsets", [](const Traits& t) { return t.fattens; });
@@ -131,7 +131,13 @@ int CompareCommand::run() const {
   const std::string csv = comparison_csv(scene, rows);
   if (outputs.json) write_json(to_json(scene, comparison), *outputs.json);
   if (outputs.csv) write_output(*outputs.csv, csv);
-  if (!outputs.to_stdout()) print(comparison_table(scene, rows));
+  if (!outputs.to_stdout()) {
+    print(comparison_table(scene, rows));
+    if (!arguments.methods && options.clearance > 0)
+      print("left out   far, cullide: they take no --clearance\n");
+    else if (!arguments.methods && has_self(scene))
+      print("left out   cullide: it tests no object against itself (--methods s-cullide does)\n");
+  }
   int status = kExitDone;
   for (const auto& [record, least, most, runs] : rows) {
     if (status != kExitDone || !broken(record, false)) continue;

@@ -22,9 +22,6 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kAllMethods = "far,cullide,boxes,exact";
-constexpr const char* kSelfMethods = "far,boxes,exact";
-constexpr const char* kClearanceMethods = "boxes,exact";
 constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
 
 // The resolutions of a method; only 0 for a method that does not draw.
@@ -41,10 +38,9 @@ using Words = std::vector<std::string>;
 // self: whether an object is tested against itself.
 std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
-  const char* usual = arguments.options.clearance > 0 ? kClearanceMethods
-                      : self                          ? kSelfMethods
-                                                      : kAllMethods;
-  for (const std::string& method : split_list(arguments.methods.value_or(usual))) {
+  const std::string methods =
+      arguments.methods.value_or(usual_methods(arguments.options.clearance > 0, self));
+  for (const std::string& method : split_list(methods)) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
     options = with_fitting_form(options);
@@ -89,6 +85,10 @@ void require_room(const std::vector<RunOptions>& cells, Session& session) {
 }
 
 }  // namespace
+
+std::string usual_methods(bool clearance, bool self) {
+  return clearance ? "boxes,exact" : self ? "far,boxes,exact" : "far,cullide,boxes,exact";
+}
 
 std::vector<Compared> Comparison::rows() const {
   std::vector<Compared> out;

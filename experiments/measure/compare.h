@@ -37,6 +37,9 @@ struct Comparison {
 inline constexpr int kUsualRepeats = 3;
 inline constexpr double kLongMs = 10'000;
 
+/// The methods that are compared if none are named: those that serve the question.
+std::string usual_methods(bool clearance, bool self);
+
 /// Throws Error naming the option for bad arguments, before a scene is read.
 void validate(const CompareArguments& arguments);
 

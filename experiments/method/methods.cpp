@@ -99,8 +99,12 @@ Method parse_method(const std::string& name, const std::string& option) {
     if (name == to_string(method)) return method;
   }
   const bool renamed = name == "far-pairs";
-  throw Error(option, "'" + name + "' is no method",
-              (renamed ? "far-pairs is now called boxes; " : "") + ("give " + method_names()));
+  std::vector<std::string> known;
+  for (const Method method : all_methods()) known.push_back(to_string(method));
+  throw Error(
+      option, "'" + name + "' is no method",
+      (renamed ? "far-pairs is now called boxes; " : did_you_mean(likely_word(name, known))) +
+          "give " + method_names());
 }
 
 std::string method_names(const std::function<bool(const Traits&)>& can) {

@@ -352,7 +352,7 @@ const Option kOptions[] = {
              "{pairs}; the exact tests stop there. Of more than 4\n"
              "million candidates that boxes finds by a tree the\n"
              "search stops too, and nothing accounts for the pairs;\n"
-             "other methods and {frames} list all candidates",
+             "other methods, and scenes that move, list all",
      .serves = any,
      .take = [](Given text,
                 RunOptions& o) { return take_number_from<std::uint64_t>(1, text, o.limit); },

@@ -60,7 +60,7 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
                     counted(differ.wrong, "row", "rows"), differ.wrong_line, differ.wrong_reason);
   }
   if (differ.missing > 0) {
-    out += fmt::format("           missing: {}, the first {}\n",
+    out += fmt::format("           missing: {}, the first of them: {}\n",
                        counted(differ.missing, "pair", "pairs"),
                        pair_text(scene, *differ.missing_pair));
   }

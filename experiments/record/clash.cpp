@@ -101,7 +101,7 @@ std::string place_text(const ClashRow& row) {
 
 std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
-  Table out("lllrrrll");
+  Table out("lllrrrll", 3);  // verdict and both names
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
   const bool touches = std::ranges::count(table.failing, ClashVerdict::touch) > 0;

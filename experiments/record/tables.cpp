@@ -102,6 +102,8 @@ std::string method_text(const Record& record) {
   const bool drew = record.found.drew();
   std::string text = describe(o, not_drawn_text(record));
   if (fattens(o.method) && drew) text += fmt::format(", {} offsets", o.offset);
+  if (fattens(o.method) && drew && radius_text(o.radius) != "budget")
+    text += fmt::format(", radius {}", radius_text(o.radius));
   if (drew) {
     text += depth_of(o) == DepthMode::fragment ? ", fragment depth" : ", fixed-function depth";
     // The native canvas has no query modes.

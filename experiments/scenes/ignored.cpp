@@ -103,7 +103,7 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
   return in_order(std::move(out));
 }
 
-constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
+constexpr const char* kOneObject = "names one object, and a pair has two";
 
 /// Appends the pairs of objects that names.text stands for.
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,

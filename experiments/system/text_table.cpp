@@ -75,7 +75,7 @@ std::string Table::text(std::size_t columns) const {
     for (std::size_t k = 0; k < height; ++k) {
       std::string line;
       for (std::size_t i = 0; i < row.size(); ++i) {
-        if (widths[i] == 0 || (i > 0 && (i < from || i >= to))) continue;
+        if (widths[i] == 0 || (i >= keys_ && (i < from || i >= to))) continue;
         const std::string cell = k < cells[i].size() ? cells[i][k] : "";
         const std::string pad(widths[i] - std::min(widths[i], width_of(cell)), ' ');
         line += (line.empty() ? "" : std::string(kGap, ' ')) +
@@ -85,15 +85,17 @@ std::string Table::text(std::size_t columns) const {
       out += line + "\n";
     }
   };
-  for (std::size_t from = std::min<std::size_t>(count, 1), to = from;; from = to) {
-    std::size_t used = count > 0 ? widths[0] : 0;
+  for (std::size_t from = keys_, to = from;; from = to) {
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < keys_; ++i)
+      used += widths[i] == 0 ? 0 : widths[i] + (i > 0 ? kGap : 0);
     for (; to < count && (to == from || used + kGap + widths[to] <= columns || widths[to] == 0);
          ++to)
       used += widths[to] == 0 ? 0 : kGap + widths[to];
-    if (from > 1) out += "\n";
+    if (from > keys_) out += "\n";
     for (const auto& row : rows_) {
       if (!is_note(row)) add_row(row, from, to);
-      if (is_note(row) && from <= 1)
+      if (is_note(row) && from == keys_)
         out += wrapped(std::string(kNoteIndent, ' ') + row[0], columns);
     }
     if (to >= count) return out;

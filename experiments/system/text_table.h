@@ -27,11 +27,13 @@ std::string wrapped(const std::string& text, std::size_t columns = text_columns(
 
 /// Rows of cells. Each column is as wide as its widest cell. If the table is then wider than
 /// `columns`, its widest left-aligned column is wrapped. If that would not be enough, the columns
-/// that do not fit stand in further tables below; each repeats the first column.
+/// that do not fit stand in further tables below; each repeats the columns that name a row.
 class Table {
  public:
-  /// One letter per column: 'l' aligns to the left, 'r' to the right.
-  explicit Table(std::string_view alignment) : alignment_(alignment) {}
+  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: so many columns, the
+  /// first ones, name a row.
+  explicit Table(std::string_view alignment, std::size_t keys = 1)
+      : alignment_(alignment), keys_(std::min(keys, alignment.size())) {}
   /// In a table of several columns, a row of one cell is a note on the row above it.
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   /// Two blanks between columns, none at the ends of lines.
@@ -39,6 +41,7 @@ class Table {
 
  private:
   std::string alignment_;
+  std::size_t keys_;
   std::vector<std::vector<std::string>> rows_;
 };
 

@@ -8,7 +8,6 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -227,40 +226,12 @@ const BuiltinScene* find_builtin_scene(const std::string& name) {
   return found == scenes.end() ? nullptr : &*found;
 }
 
-namespace {
-// The least number of letters to insert, delete or replace to turn one word into the other.
-std::size_t letters_apart(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t before = std::exchange(row[0], i + 1);
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t changed = before + (a[i] != b[k]);
-      before = row[k + 1];
-      row[k + 1] = std::min({changed, before + 1, row[k] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
-
 std::string likely_name(const std::string& name) {
-  constexpr std::size_t kLongest = 40, kFew = 2;
-  std::string best;
-  std::size_t least = kFew + 1;
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    if (name.size() > kLongest) break;
-    const std::size_t apart = letters_apart(name, scene.name);
-    if (apart < least && apart < name.size() / 2) {
-      least = apart;
-      best = scene.name;
-    }
-  }
-  return best.empty() ? "correct the name; " : "did you mean " + best + "? ";
+  std::vector<std::string> known;
+  for (const BuiltinScene& scene : builtin_scenes()) known.push_back(scene.name);
+  const std::string best = likely_word(name, known);
+  return best.empty() ? "correct the name; " : did_you_mean(best);
 }
-
-bool is_builtin_scene(const std::string& name) { return find_builtin_scene(name) != nullptr; }
 
 std::optional<std::uint64_t> builtin_seed(const std::string& name) {
   const BuiltinScene* const entry = find_builtin_scene(name);

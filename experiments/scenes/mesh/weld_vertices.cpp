@@ -19,7 +19,8 @@ WeldTolerance parse_weld(const std::string& text, const char* option) {
   const std::optional<double> value = parse_number<double>(number);
   if (!value || !std::isfinite(*value) || *value < 0) {
     throw Error(option, "'" + text + "' is no tolerance",
-                "give a length in the units of the meshes, or one relative to the diagonal of the "
+                "give a length of 0 or more in the units of the meshes, or one relative to the "
+                "diagonal of the "
                 "box around them, as in 1e-7*size");
   }
   out.value = *value;
