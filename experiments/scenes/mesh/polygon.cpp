@@ -108,9 +108,10 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
 // least half as large. The normal is rounded. With n corners a product of two differences has three
 // roundings and is in at most 2 n sums. So the relative error of each product is at most (2 n + 3)
 // kUnit to first order, and less than (4 n + 8) kUnit of the computed product with all higher
-// orders (n < 2^32). Each of the 2 n products errs by kTiny / 2 more if it underflows. `bound` adds
-// these errors of all three components. If the largest computed component exceeds `bound`, its sign
-// is right, and no other component is twice as large.
+// orders (n < 2^32). Each of the 2 n products errs by kTiny / 2 more if it underflows. Let m be the
+// largest computed component, e its error, and f that of another one. `bound` is at least 2 e + f:
+// the first term is twice the rounding of all three, and 4 n kTiny covers 2 n + n. So if m exceeds
+// `bound`, its sign is right, and the other component is at most m + f, less than 2 (m - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
