@@ -15,9 +15,6 @@
 
 namespace farcull {
 
-// Counts the answers. Each class is counted by its own answers, never as the total minus the other
-// classes: a candidate that nobody decided must not count as decided.
-
 std::vector<TrianglePair> Collisions::all() const {
   std::vector<TrianglePair> both;
   both.reserve(pairs.size() + neighbour_pairs.size());
@@ -35,6 +32,8 @@ void Collisions::append(const Collisions& next) {
   neighbours_apart += next.neighbours_apart;
 }
 
+// Each class is counted by its own answers, never as the total minus the other classes: a candidate
+// that nobody decided must not count as decided.
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers) {
   if (answers.size() != candidates.size())

@@ -1,5 +1,6 @@
-// Draws cases by seed and index, and counts answers that do not contain what they must: the exact
-// interval of a box, or points of the solid of an exact offset.
+// Draws cases by seed and index, and counts answers of kernels that are too small. An answer is an
+// interval of a line. It must contain the part of the line in the box; for an exact offset, the
+// points of the line that were found to lie in it.
 #include "verify/kernel_check.h"
 
 #include <algorithm>

@@ -383,7 +383,8 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   }
 }
 
-/// Tries translations of the limit's length along its ways; shortens one as long as it separates.
+/// Tries translations of the length limit.most along limit.ways, forwards and backwards. While one
+/// separates, notes it and tries a quarter of its length. Ends when out.hi is at most limit.most.
 void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimit& limit,
                    Penetration& out) {
   for (const Vec3& way : limit.ways) {

@@ -207,7 +207,8 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // Lanes without a triangle repeat the last one; their boxes are empty, so they meet nothing.
+    // A lane without a triangle gets the corners of the last triangle. It meets nothing, since its
+    // box, which is stored elsewhere, is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;

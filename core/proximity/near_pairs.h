@@ -48,8 +48,8 @@ struct NearPairs {
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite if
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
-  /// If the least distance is at most the limit, all pairs at that distance are here. (If triangles
-  /// meet, or if the trees settle ties: at least the first of these pairs.) Sorted, each once.
+  /// If the least distance is at most the limit: all pairs at that distance. But if triangles meet,
+  /// or if the trees have exact arithmetic, only the first one is sure to be here. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 

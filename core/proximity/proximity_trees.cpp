@@ -1,10 +1,10 @@
 // ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
-// Searches run in parallel; a long one is divided. For the nearest objects, each object is searched
-// with the others in the order of the gaps of their parts, until a gap is above the k-th least
-// upper bound so far. If many parts overlap, each small object is first searched with all triangles
-// at once, and then with the few others that this search leaves. For all pairs within a distance,
-// each object is searched with those that follow it. The bound of these searches stays the limit,
-// and they pause often so that the pairs of all of them can be counted.
+// Searches run in parallel; a long one is divided. For the nearest objects of an object, it is
+// compared with the others in the order of the gaps of their parts, until a gap is above the k-th
+// least upper bound so far. If many parts overlap, each small object is first compared with all
+// triangles at once, and then only with the few objects that this leaves. For all pairs within a
+// distance, each object is compared with those that follow it. The bound of these searches is the
+// given limit and does not shrink. They pause often, so that the pairs of all can be counted.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>

@@ -257,9 +257,9 @@ struct Search {
   Others* others = nullptr;  // of objects.a; if set, objects.b is the object of Others::all
   double limit = 0;          // scaled: pairs farther apart are not searched for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
-  /// The first pair so far that certainly meets. Pairs after it are not the answer.
+  /// The first pair, in the order of pairs, that is known to meet. Later ones are not the answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
-  /// The first of the nearest pairs when pairs were settled last; it is kept.
+  /// The pair that the latest settle() chose, the first of the nearest ones; one of the kept pairs.
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
   std::shared_ptr<const Planes> planes;  // of this pair, or of an earlier, no nearer one
   bool is_part = false;                  // of a search that was divided; makes no planes

@@ -75,10 +75,10 @@ class DistanceFinder {
   DistanceFinder(DistanceFinder&&) noexcept;
   DistanceFinder& operator=(DistanceFinder&&) noexcept;
 
-  /// The answers, sorted by objects, then by triangles. Throws Error as Collider::find(), and if
-  /// `all` has more than 4,194,304 answers, or `objects` more pairs of objects than that (four
-  /// times as many if `within` is finite). Sets and restores the floating-point environment as
-  /// Collider::find() does.
+  /// The answers, sorted by objects, then by triangles. Throws Error as Collider::find() does.
+  /// Also throws Error if kind is `all` and there are more than 4,194,304 answers, or if kind is
+  /// `objects` and there are more than 4,194,304 pairs of objects (16,777,216 if `within` is
+  /// finite). Sets and restores the floating-point environment as Collider::find() does.
   std::vector<DistanceAnswer> find(const Input& input);
 
  private:

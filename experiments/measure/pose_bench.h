@@ -33,8 +33,8 @@ struct PoseBenchResult {
 };
 
 /// Turns the first object a little in each frame, and finds the colliding pairs of different
-/// objects. Throws Error naming the option for unknown peers and a repeat below 1, and as
-/// Collider::find().
+/// objects. Throws Error that names the option if a peer is unknown or `repeat` is below 1. Also
+/// throws as Collider::find() does.
 PoseBenchResult bench_poses(const Scene& scene, const PoseBenchOptions& options,
                             const Progress& progress = {});
 

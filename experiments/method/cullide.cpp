@@ -164,7 +164,7 @@ Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool fu
   return stage;
 }
 
-// Puts back triangles that drawing culled but that are in a pair inside their patch.
+// Puts back triangles that were culled by drawing, but belong to a candidate pair of one patch.
 void add_members(const Scene& scene, Candidates& out) {
   const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
   std::vector<std::uint32_t> all;

@@ -462,7 +462,8 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // A smaller scene has the same answer: at most two objects with triangles, and one without.
+  // Asks about a smaller scene with the same answer. It keeps at most two objects that have
+  // triangles, and one that has none.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

@@ -228,9 +228,9 @@ class PointSearch {
   }
 
   /// Let p be the point constructed last and q the last point of another search. True iff
-  /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners: p cannot move into a
-  /// towards q, nor q into b towards p. If p lies in a and q in b, no two points of a and b are
-  /// then nearer (docs/certificate.md).
+  /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners: no corner of a lies
+  /// beyond p in the direction from p to q, and no corner of b beyond q in the opposite one. So if
+  /// p lies in a and q in b, they are nearest points of a and b (docs/certificate.md).
   bool is_nearest(const PointSearch& other, const BigCorners& a, const BigCorners& b) {
     from_to(other);
     for (int i = 0; i < 3; ++i) {

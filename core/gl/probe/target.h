@@ -71,7 +71,7 @@ ProbeResult result(const std::string& assumption, const std::string& name, const
 /// The result of a probe that an Error ended: it failed.
 ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error);
 
-/// The ways in which a canvas may ask.
+/// A form of canvas to probe: how it asks what is visible, and its depth format.
 struct Configuration {
   const char* name;
   GlCanvasOptions options;

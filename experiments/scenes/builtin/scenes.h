@@ -111,7 +111,7 @@ const std::vector<BuiltinScene>& builtin_scenes();
 
 // The parts of the list, one per file.
 std::vector<BuiltinScene> generated_scenes();
-/// For benchmarks; docs/results/bench.md has the same counts.
+/// Scenes for benchmarks (docs/results/bench.md).
 std::vector<BuiltinScene> bench_scenes();
 /// Also for benchmarks: scenes of common kinds, with cloth, balls and parts in contact.
 std::vector<BuiltinScene> contact_scenes();
