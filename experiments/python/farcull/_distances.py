@@ -175,7 +175,8 @@ def distances(
         "all": every pair of triangles at the distance ``within`` or less.
     k: how many others, 1 or more; with "nearest" alone.
     within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
-    self: as in :func:`collide`, but not with "nearest".
+    self: True: triangles of one object as well, without those that share a vertex position, its neighbours; or one
+        truth value for each object. Not with "nearest".
     inside: whether an object lies inside another, by winding numbers.
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
