@@ -196,8 +196,7 @@ int ClashCommand::run() const {
   Scene scene = read_parts(files);
   if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
     scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
-  const Box box = bounds(scene);
-  options.tolerance = tolerance.value * (tolerance.relative ? (box.hi - box.lo).stableNorm() : 1);
+  options.tolerance = tolerance.length(bounds(scene));
   for (Object& object : scene.objects) object.self = false;
   options.ignored =
       in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_)), scene.ignored);

@@ -362,14 +362,15 @@ struct KeptClash {
   ClashRecord record;
 };
 
-KeptClash clash_of(const KeptScene& kept, double clearance, double tolerance, const Ignored& ignore,
-                   bool depth, unsigned threads) {
+// tolerance: as parse_weld() takes it.
+KeptClash clash_of(const KeptScene& kept, double clearance, const std::string& tolerance,
+                   const Ignored& ignore, bool depth, unsigned threads) {
   return without_gil([&] {
     auto scene = std::make_shared<Scene>(*kept.scene);
     for (Object& object : scene->objects) object.self = false;
     ClashOptions options{.clearance = clearance,
                          .ignored = scene->ignored,
-                         .tolerance = tolerance,
+                         .tolerance = parse_weld(tolerance, "tolerance").length(bounds(*scene)),
                          .depth = depth,
                          .threads = threads};
     for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});

@@ -327,6 +327,11 @@ def weld(given: Any) -> str:
     return text
 
 
+def tolerance(given: Any) -> str:
+    """A tolerance of :func:`farcull.clash` as the library reads it."""
+    return _text_of("tolerance", given if isinstance(given, str) else number("tolerance", given))
+
+
 def texts(**options: Any) -> Dict[str, str]:
     """Options as texts, a flag as an empty one. None and False are left out."""
     out = {}

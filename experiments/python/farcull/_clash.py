@@ -55,7 +55,7 @@ class Clash:
 
 def clash(
     scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False,
-    tolerance: float = 0.0,
+    tolerance: Union[float, str] = 0.0,
 ) -> Clash:
     """Which objects of a scene clash, touch, lie inside each other or are near, for every two of them.
 
@@ -68,13 +68,13 @@ def clash(
     depth: also how deep objects are in each other, as bounds. Takes longer than all else where objects have many
         triangles.
     tolerance: an overlap whose depth is proved to be at most this is a touch, and so is a gap of at most this. World
-        units, finite, 0 or more.
+        units, finite, 0 or more; or relative to the diagonal of the box around the scene, as in "1e-9*size".
 
     Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
     """
     given = scene_of(scene)
     made = _farcull.clash(
-        given, _arguments.number("clearance", clearance), _arguments.number("tolerance", tolerance),
+        given, _arguments.number("clearance", clearance), _arguments.tolerance(tolerance),
         _arguments.ignored(ignore, given),
         _arguments.flag("depth", depth), _arguments.threads(threads),
     )

@@ -212,6 +212,10 @@ Triangulation triangulate(std::span<const Vec3> corners,
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // a fraction of the diagonal of the mesh's box
+  /// The distance where `box` is around the coordinates.
+  double length(const Box& box) const {
+    return value * (relative ? (box.hi - box.lo).stableNorm() : 1);
+  }
 };
 /// "0.001" in the units of the mesh, or "1e-7*size". Throws Error naming the option.
 WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");

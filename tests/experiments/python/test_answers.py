@@ -252,6 +252,7 @@ def test_clashes_are_those_of_the_program(scene, tmp_path):
     files = sorted(scene[2].folder.glob("*.off"))
     read = farcull.Scene(*files, self=True)
     for words, options in (([], {}), (["--clearance", "2"], dict(clearance=2)), (["--tolerance", "2"], dict(tolerance=2)),
+                           (["--tolerance", "0.25*size"], dict(tolerance="0.25*size")),
                            (["--ignore", "o0:o2"], dict(ignore=[("o0", "o2")])), (["--ignore", "o0:o2"], dict(ignore=[(2, 0)]))):
         theirs = json.loads(asked("clash", *files, *words, "--json", "-"))
         ours = farcull.clash(read, **options)
@@ -260,7 +261,8 @@ def test_clashes_are_those_of_the_program(scene, tmp_path):
         assert str(ours).splitlines()[1] in asked("clash", *files, *words)
     # Twin: another question has another answer.
     assert without_times(farcull.clash(read, clearance=2).json()) != without_times(theirs)
-    for wrong in (dict(clearance=-1), dict(tolerance=-1), dict(clearance="1"), dict(ignore=[(0, 9)]), dict(threads=-1), dict(scene=None)):
+    for wrong in (dict(clearance=-1), dict(tolerance=-1), dict(tolerance="1e-9*sizes"), dict(tolerance=""), dict(tolerance=None),
+                  dict(clearance="1"), dict(ignore=[(0, 9)]), dict(threads=-1), dict(scene=None)):
         assert refused(farcull.clash, **{"scene": read, **wrong}) in wrong
     assert error_of(farcull.clash, farcull.Scene(files[0])).where == "scene"
     page = tmp_path / "clash.html"
