@@ -15,12 +15,17 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
+
+/// The Error for more than `most` pairs of triangles or of objects (`what`) within a distance.
+Error too_many_within(std::size_t most, const std::string& what);
 
 /// Two triangles, of objects.a and of objects.b, that are probably near, such as the nearest ones
 /// of the frame before.
@@ -110,10 +115,11 @@ class ProximityTrees {
   /// All pairs of triangles at most `within` apart, of different objects, or of one `self` object
   /// if they are no neighbours; and a few that are farther only by rounding errors. Sorted,
   /// distinct. Precondition: within is finite. Throws std::logic_error for an invalid limit, and
-  /// Error if there are more than `most` pairs. Memory: at most some tens of bytes for each pair,
-  /// and for some thousands of other pairs.
+  /// Error, which names `most`, if there are more than `most` + `spare` pairs. Memory: at most some
+  /// tens of bytes for each pair, and for some thousands of other pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
-                                         const Progress& progress = {}) const;
+                                         const Progress& progress = {},
+                                         std::size_t spare = 0) const;
 
   /// The sums over all calls so far.
   ProximityCounts counts() const;

@@ -298,22 +298,17 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
 // Pairs of leaves examined between two counts: at most 16,384 pairs of triangles.
 constexpr std::size_t kBetweenCounts = 64;
 
-// Counts the pairs of all threads. Throws if they are too many.
+// Counts the pairs of all threads. Throws `error` if they are more than `most`.
 class Count {
  public:
-  Count(std::size_t most, std::string what) : most_(most), what_(std::move(what)) {}
+  Count(std::size_t most, Error error) : most_(most), error_(std::move(error)) {}
   void add(std::size_t pairs) {
-    if (found_.fetch_add(pairs) + pairs <= most_) return;
-    throw Error("within",
-                "has more than " + std::to_string(most_) + " pairs of " + what_ +
-                    ", which are too many to list",
-                "give a smaller distance, or ask for the pairs without their distances: {run} "
-                "{clearance}");
+    if (found_.fetch_add(pairs) + pairs > most_) throw error_;
   }
 
  private:
   std::size_t most_;
-  std::string what_;
+  Error error_;
   std::atomic<std::size_t> found_ = 0;
 };
 
@@ -331,12 +326,11 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.add_work(search.counts);
 }
 
-// Does ProximityTrees::pairs_within(). limit: scaled. Adds to counts.
-std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, std::size_t most,
+// Does ProximityTrees::pairs_within(). limit: scaled. Adds to count and counts.
+std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, Count& count,
                                        unsigned threads, ProximityCounts& counts) {
   const Scene& scene = trees.scene();
   const std::size_t objects = scene.objects.size();
-  Count count(most, "triangles");
   std::vector<std::vector<TrianglePair>> found(objects);
   std::vector<ProximityCounts> parts(objects);
   for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
@@ -364,7 +358,7 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
 std::vector<ObjectPair> objects_within(const SceneTrees& trees, double limit, std::size_t most,
                                        unsigned threads) {
   const Scene& scene = trees.scene();
-  Count count(most, "objects");
+  Count count(most, too_many_within(most, "objects"));
   std::vector<std::vector<ObjectPair>> found(scene.objects.size());
   for_each_shared(found.size(), threads, [&](std::size_t o) {
     const auto object = static_cast<std::uint32_t>(o);
@@ -384,6 +378,14 @@ std::vector<ObjectPair> objects_within(const SceneTrees& trees, double limit, st
 }
 
 }  // namespace
+
+Error too_many_within(std::size_t most, const std::string& what) {
+  return Error("within",
+               "has more than " + std::to_string(most) + " pairs of " + what +
+                   ", which are too many to list",
+               "give a smaller distance, or ask for the pairs without their distances, by "
+               "{clearance} of {collide}");
+}
 
 struct ProximityTrees::State {
   State(const Scene& scene, unsigned thread_count, Settle settle)
@@ -506,13 +508,15 @@ std::vector<ObjectPair> ProximityTrees::objects_within(double within, std::size_
 }
 
 std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_t most,
-                                                       const Progress& progress) const {
+                                                       const Progress& progress,
+                                                       std::size_t spare) const {
   if (!(within >= 0) || !std::isfinite(within))
     throw std::logic_error("pairs_within: within is not a distance");
   if (progress) progress(StageKind::near);
   ProximityCounts counts;
+  Count count(most + spare, too_many_within(most, "triangles"));
   std::vector<TrianglePair> out = farcull::pairs_within(
-      state_->trees, scaled_limit(state_->trees, within), most, state_->threads, counts);
+      state_->trees, scaled_limit(state_->trees, within), count, state_->threads, counts);
   state_->add(counts);
   return out;
 }

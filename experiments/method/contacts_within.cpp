@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <string>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/proximity/near_pairs.h"
@@ -22,7 +20,7 @@ std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, do
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, threads);
   // Allows a quarter more, since some pairs turn out to be a little too far apart.
-  std::vector<TrianglePair> near = trees.pairs_within(within, most + most / 4, progress);
+  std::vector<TrianglePair> near = trees.pairs_within(within, most, progress, most / 4);
   remove_ignored(scene, scene.ignored, near);
   const std::vector<std::uint32_t> owner = owners(scene);
   const auto in_order = [&](const TrianglePair& pair) {
@@ -48,12 +46,7 @@ std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, do
   });
   std::size_t count = 0;
   for (const auto& part : out) count += part.size();
-  if (count > most)
-    throw Error("within",
-                "has " + std::to_string(count) + " pairs of triangles, and at most " +
-                    std::to_string(most) + " are answered",
-                "give a smaller distance, or ask for the pairs without their distances "
-                "({clearance})");
+  if (count > most) throw too_many_within(most, "triangles");
   return out;
 }
 

@@ -327,10 +327,10 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   const DistanceOptions& options = record.options;
   Stopwatch watch;
   if (progress) progress(StageKind::boxes);
-  // Room for pairs that exact arithmetic finds to be a little too far apart.
-  const std::size_t room = options.most_pairs + options.most_pairs / 4;
   const ProximityTrees trees(scene, options.threads);
-  const std::vector<TrianglePair> near = trees.pairs_within(options.within, room, progress);
+  // Allows a quarter more, since exact arithmetic finds some pairs to be a little too far apart.
+  const std::vector<TrianglePair> near =
+      trees.pairs_within(options.within, options.most_pairs, progress, options.most_pairs / 4);
   record.counts = trees.counts();
   add_near_stage(count_of_questions(scene), near.size(), watch.ms(), record);
   watch = Stopwatch();
@@ -348,14 +348,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
                           .in = near.size(),
                           .out = pairs.size(),
                           .unit = Unit::pairs});
-  if (pairs.size() > options.most_pairs) {
-    throw Error(
-        "within",
-        "has " + std::to_string(pairs.size()) + " pairs of triangles, and at most " +
-            std::to_string(options.most_pairs) + " are answered",
-        "give a smaller distance, or ask for the pairs without their distances: farcull run "
-        "{clearance}");
-  }
+  if (pairs.size() > options.most_pairs) throw too_many_within(options.most_pairs, "triangles");
   watch = Stopwatch();
   if (progress) progress(StageKind::closest);
   const std::vector<std::uint32_t> owner = owners(scene);

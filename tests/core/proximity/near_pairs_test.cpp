@@ -472,6 +472,9 @@ TEST(PairsWithin, MoreThanAskedForIsAnError) {
     EXPECT_THROW(trees.pairs_within(0, 20'000), Error);
     EXPECT_THROW(trees.pairs_within(0, 2'249'999), Error);
     EXPECT_EQ(trees.pairs_within(0, 2'250'000).size(), 2'250'000u);
+    EXPECT_EQ(trees.pairs_within(0, 2'000'000, {}, 250'000).size(), 2'250'000u);
+    const Error error = error_of([&] { trees.pairs_within(0, 2'000'000, {}, 249'999); });
+    EXPECT_TRUE(has_text(error.reason, "more than 2000000 pairs of triangles")) << error.what();
     EXPECT_THROW(trees.pairs_within(kInfinite, 1), std::logic_error);
     EXPECT_THROW(trees.pairs_within(-1, 1), std::logic_error);
   }

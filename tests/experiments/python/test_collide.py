@@ -237,3 +237,6 @@ def test_distances():
         where = error_of(farcull.distances, **arguments).where
         named = next(iter(change))
         assert where == {"kind": "within"}.get(named, named) or where == named
+    error = error_of(farcull.distances, np.zeros((1, 3)), np.zeros((4600, 3), int), [0, 2300], kind="all", within=0)
+    assert error.where == "within" and "more than 4194304 pairs of triangles" in error.reason
+    assert error.remedy.endswith("by clearance of farcull.collide")
