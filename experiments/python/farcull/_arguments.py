@@ -3,7 +3,7 @@
 import math
 import numbers
 import operator
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -41,9 +41,14 @@ def array(name: str, given: Any) -> np.ndarray:
     kind, size = out.dtype.kind, out.dtype.itemsize
     if size > 8 or kind not in ("iu" if indices else "iuf"):
         remedy = "give whole numbers, as in numpy.int64" if indices else "give doubles"
+        if indices and kind == "f":
+            remedy += "; V and F may be swapped"
         raise InputError(name, f"are of type {out.dtype}", remedy)
     if out.ndim != 2 or out.shape[1] != 3:
-        raise InputError(name, "have no three columns", "give an array of shape (n, 3)")
+        remedy = f"give an array of shape ({'m' if indices else 'n'}, 3)"
+        if indices and out.ndim == 2 and out.shape[1] > 3:
+            remedy = "triangulate polygons, and " + remedy
+        raise InputError(name, "have no three columns", remedy)
     if indices:
         if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy compares in doubles
             row = int(np.argmax((out >= np.uint64(2**63)).any(axis=1)))
@@ -168,20 +173,22 @@ Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def arrays(
-    V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Optional[Grouped] = None
+    V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Union[Grouped, None, bool] = False
 ) -> Tuple[Grouped, Arrays]:
-    """The input of a call. ``before``: of the call whose arrays poses move where they are given alone."""
+    """The input of a call. ``before``: of the call whose arrays poses move where they are given alone; False: poses
+    are never alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
     if alone and isinstance(before, Grouped) and len(matrices):
         return before, (np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices)
     for name, given in (("V", V), ("F", F)):
         if given is None:
-            remedy = "give V and F; poses alone move those of the call before, if it had an answer"
-            raise InputError(name, "is not given", remedy)
+            more = "" if before is False else "; poses alone move those of the call before, if it had an answer"
+            raise InputError(name, "is not given", "give V and F" + more)
     grouped = Grouped(F, object_starts, labels)
     if matrices.size and not grouped.triangles.size:
-        raise InputError("F", "has no triangles", "give some, or poses alone to move those of the call before")
+        more = "" if before is False else ", or poses alone to move those of the call before"
+        raise InputError("F", "has no triangles", "give some" + more)
     return grouped, (array("V", V), grouped.triangles, grouped.starts, matrices)
 
 

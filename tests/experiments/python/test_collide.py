@@ -123,6 +123,21 @@ def test_what_is_misunderstood_is_an_error_with_a_remedy(name):
             assert error.where == case["where"] and case["reason"] in error.reason
 
 
+def test_a_remedy_fits_the_call():
+    quads, mixed = np.array([[0, 1, 2, 3]]), "may be swapped"
+    for call in (farcull.collide, farcull.distances):
+        assert error_of(call, None, F).remedy == error_of(call, V, None).remedy == "give V and F"
+        assert error_of(call, V, F[:0], poses=[np.eye(4)]).remedy == "give some"
+        assert error_of(call, V, quads).remedy == "triangulate polygons, and give an array of shape (m, 3)"
+        assert error_of(call, V[:, :2], F).remedy == "give an array of shape (n, 3)"
+        assert mixed in error_of(call, F, V).remedy and mixed not in error_of(call, V, F.astype(bool)).remedy
+        assert "label" in error_of(call, V, F, [0, 0, 2]).remedy
+        assert error_of(call, V, F, [0, 1, 3]).remedy.endswith("without the end of the last object")
+        assert error_of(call, V, F, [0, 1, 4]).remedy.endswith("below the number of triangles")
+    for again in (farcull.Collider(), farcull.DistanceFinder()):
+        assert "poses alone" in error_of(again.find, poses=[np.eye(4)]).remedy
+
+
 def test_labels_group_triangles_in_any_order():
     scene = farcull.Scene("two-tori")
     V, F, starts = scene.vertices, scene.triangles, scene.object_starts
