@@ -54,7 +54,7 @@ struct NearPairs {
   /// there is no pair, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
   /// If the least distance is at most the limit: all pairs at that distance. But if triangles meet,
-  /// or if the trees have exact arithmetic, only the first one is sure to be here. Sorted, each once.
+  /// or if the trees have exact arithmetic, only the first is sure to be here. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 

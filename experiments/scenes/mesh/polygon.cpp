@@ -262,8 +262,8 @@ struct Ring {
 // The corners times a power of two that brings the largest coordinate to [2^499, 2^500). At that
 // size certain_turn() neither overflows nor underflows: a product of two differences is below
 // 2^1002. Only a product below 2^-1022 is rounded to a multiple of the least double, and
-// certain_turn() allows for that. Returns the corners unchanged if the largest coordinate is 0 or in
-// [2^-200, 2^500), or if scaling would round one; then the largest is at least 2^1573 times the
+// certain_turn() allows for that. Returns the corners unchanged if the largest coordinate is 0 or
+// in [2^-200, 2^500), or if scaling would round one; then the largest is at least 2^1573 times the
 // lowest bit of another. Otherwise every sum of products of two coordinates is scaled exactly, by
 // the square of the power of two, so no sign and no comparison changes.
 std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& store) {
