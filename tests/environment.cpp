@@ -16,7 +16,6 @@ namespace {
 [[maybe_unused]] const int kSpelled = [] {
   farcull::spell_parameters([](const std::string& name) {
     if (name == "doctor" || name == "run") return "farcull " + name;
-    if (name == "collide") return std::string("farcull run");
     std::string out = "--" + name;
     std::replace(out.begin(), out.end(), '_', '-');
     return out;

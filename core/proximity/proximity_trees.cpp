@@ -383,8 +383,8 @@ Error too_many_within(std::size_t most, const std::string& what) {
   return Error("within",
                "has more than " + std::to_string(most) + " pairs of " + what +
                    ", which are too many to list",
-               "give a smaller distance, or ask for the pairs without their distances, by "
-               "{clearance} of {collide}");
+               "give a smaller distance, or find the pairs without their distances, as collisions "
+               "with {clearance}");
 }
 
 struct ProximityTrees::State {

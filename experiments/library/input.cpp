@@ -153,14 +153,6 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-void require_enough(std::size_t triangles, std::size_t least) {
-  if (triangles >= least) return;
-  throw Error("triangles",
-              std::string(triangles == 0 ? "hold no triangle" : "hold one triangle alone") +
-                  ", so there is nothing to test",
-              "give " + std::to_string(least) + " or more");
-}
-
 // Each object must have a triangle. So a label for each triangle, as in 0, 0, 1, 1, cannot be
 // mistaken for the first triangles of objects: most of these would have no triangles.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
@@ -173,13 +165,10 @@ void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles
     std::string remedy =
         "give the first triangle of each object: 0, then rising numbers below the number of "
         "triangles";
-    if (!rises) {
+    if (!rises)
       remedy +=
           ". A label for each triangle is no list of starts: sort the triangles by label and give "
           "where each label begins (Python: give labels=)";
-    } else if (starts[o] == triangles) {
-      remedy += ", without the end of the last object";
-    }
     throw Error("object_starts", reason, remedy);
   }
 }
@@ -218,7 +207,9 @@ bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, 
     same = copy_triangles(input.wide_triangles, vertices, same, scene.triangles) && same;
   }
   require_unused(bad, vertices, scene);
-  require_enough(count, asked ? 2 : input.object_starts.empty() ? 0 : 1);
+  if (const unsigned least = asked ? 2 : input.object_starts.empty() ? 0 : 1; count < least)
+    throw Error("triangles", "are " + std::to_string(count) + ", so there is nothing to test",
+                "give " + std::to_string(least) + " or more");
   taken.passed_over = bad.size();
   scene.source_face.resize(count);
   const std::size_t objects = std::max<std::size_t>(input.object_starts.size(), 1);

@@ -382,7 +382,6 @@ const Option& run_option(std::string_view name) {
 
 std::string option_word(const std::string& name) {
   if (name == "doctor" || name == "run") return "farcull " + name;  // two commands
-  if (name == "collide") return "farcull run";  // as the function of the library
   // Messages also name these options, which only single commands have.
   static constexpr std::string_view kOthers[] = {"certificate", "compare", "inside", "no_verify",
                                                  "pairs",       "repeat",  "within"};

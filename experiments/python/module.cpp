@@ -230,10 +230,7 @@ void fill(py::module_& module) {
   });
   register_exceptions();
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters([](const std::string& name) -> std::string {
-    if (name == "collide") return "farcull.collide";
-    return option_word(name);  // for records; exceptions name keywords (as_parameters())
-  });
+  spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
   add_collider(module);
   add_distances(module);
   add_scenes(module);

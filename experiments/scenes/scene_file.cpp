@@ -184,7 +184,13 @@ class SceneFile : SceneValues {
     Split split = Split::kNone;
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
     const bool self = object.contains("self") && truth(object["self"], place + ".self");
-    builder.add(meshes_.get(mesh_path(path, mesh)), name, split, placement, self);
+    try {
+      builder.add(meshes_.get(mesh_path(path, mesh)), name, split, placement, self);
+    } catch (const Error& error) {
+      if (error.reason != "the file does not exist") throw;
+      throw Error(error.where, error.reason,
+                  fmt::format("{}: {}.mesh of {} names this one", error.remedy, place, path));
+    }
   }
 
   Split read_split(const json& value, const std::string& place) const {

@@ -15,7 +15,7 @@ MemoryError where there is no memory; a file that is missing, :class:`MissingFil
 FileNotFoundError too. There is no answer then.
 """
 
-import errno
+import errno as _errno
 import os
 
 # Mesa's llvmpipe draws without threads: they may damage the memory of this process. Mesa reads the
@@ -49,7 +49,7 @@ class MissingFileError(Error, FileNotFoundError):
 
     def __init__(self, where: str, reason: str, remedy: str) -> None:
         Error.__init__(self, where, reason, remedy)
-        self.errno, self.strerror, self.filename = errno.ENOENT, reason, where
+        self.errno, self.strerror, self.filename = _errno.ENOENT, reason, where
 
 
 try:

@@ -367,6 +367,11 @@ def _text_of(name: str, value: Any) -> str:
     raise InputError(name, f"{value!r} is no value of it", "give text or a number")
 
 
+def counted(count: int, noun: str) -> str:
+    """As in "1 pair" and "2 pairs", for texts."""
+    return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
 def threads(given: Any) -> int:
     return integer("threads", given, 0, 1024)
 

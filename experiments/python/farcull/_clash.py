@@ -50,7 +50,7 @@ class Clash:
         return self._clash.table()
 
     def __repr__(self) -> str:
-        return f"<farcull.Clash of {self.scene!r}: {len(self.rows)} pairs of objects>"
+        return f"<farcull.Clash of {self.scene!r}: {_arguments.counted(len(self.rows), 'pair')} of objects>"
 
 
 def clash(

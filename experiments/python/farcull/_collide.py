@@ -86,9 +86,9 @@ class Result:
         return {**self.__dict__, "_input": None}
 
     def __repr__(self) -> str:
-        rows = len(self.pairs), len(self.neighbour_pairs)
         more = "" if self.complete else ", and there may be more"
-        return f"<farcull.Result: {rows[0]} pairs, {rows[1]} of neighbours{more}>"
+        pairs = _arguments.counted(len(self.pairs), "pair")
+        return f"<farcull.Result: {pairs}, {len(self.neighbour_pairs)} of neighbours{more}>"
 
 
 def ends(points: NDArray[np.float64], *names: str) -> Dict[str, NDArray[np.float64]]:

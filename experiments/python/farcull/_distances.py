@@ -92,7 +92,7 @@ class Distances(Sequence[Distance]):
         return pandas().DataFrame(columns)
 
     def __repr__(self) -> str:
-        return f"<farcull.Distances: {len(self)} answers>"
+        return f"<farcull.Distances: {_arguments.counted(len(self), 'answer')}>"
 
 
 class DistanceFinder:

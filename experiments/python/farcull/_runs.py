@@ -81,7 +81,7 @@ class Record:
         return self._record.table()
 
     def __repr__(self) -> str:
-        return f"<farcull.Record of {self.scene!r} by {self.method}: {len(self.pairs)} pairs>"
+        return f"<farcull.Record of {self.scene!r} by {self.method}: {_arguments.counted(len(self.pairs), 'pair')}>"
 
 
 def run(

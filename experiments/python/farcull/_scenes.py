@@ -119,8 +119,8 @@ class Scene:
 
     def __repr__(self) -> str:
         return (
-            f"<farcull.Scene {self.name!r}: {len(self.names)} objects, "
-            f"{len(self.triangles)} triangles>"
+            f"<farcull.Scene {self.name!r}: {_arguments.counted(len(self.names), 'object')}, "
+            f"{_arguments.counted(len(self.triangles), 'triangle')}>"
         )
 
 

@@ -219,7 +219,8 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
 
 // ---- the builder
 
-MeshBuilder::MeshBuilder(std::string name) : name_(std::move(name)) {}
+MeshBuilder::MeshBuilder(std::string name, std::uint32_t first)
+    : name_(std::move(name)), first_(first) {}
 
 void MeshBuilder::add_vertex(const Vec3& p, long line) {
   if (mesh_.vertices.size() == kMaxCount)
@@ -257,8 +258,8 @@ void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {
     if (const auto bad = not_finite_.find(corner);
         !not_finite_.empty() && bad != not_finite_.end()) {
       throw Error(name_,
-                  fmt::format("vertex {} (counted from 0) is not finite, and face {} uses it",
-                              corner, faces_),
+                  fmt::format("vertex {} (counted from {}) is not finite, and face {} uses it",
+                              corner + first_, first_, faces_ + first_),
                   "give it finite coordinates that a double can hold", bad->second);
     }
     points.push_back(mesh_.vertices[corner]);

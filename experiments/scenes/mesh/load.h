@@ -142,7 +142,8 @@ std::string mesh_stem(const std::string& path);
 /// lines.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(std::string name);
+  /// first: the number of the first vertex and face in messages about vertices.
+  explicit MeshBuilder(std::string name, std::uint32_t first = 0);
 
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
   /// p may be infinite or NaN if no face uses it. Throws Error beyond 2^32 - 1 vertices.
@@ -163,6 +164,7 @@ class MeshBuilder {
 
  private:
   std::string name_;
+  std::uint64_t first_;
   Mesh mesh_;
   std::unordered_map<std::string, std::uint32_t> groups_, repeats_;
   std::unordered_set<std::string> group_names_;

@@ -67,6 +67,18 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
+// Refuses bytes that look like another format. Only what is no OBJ anyway comes here.
+void refuse_other_format(std::string_view bytes, const std::string& name) {
+  const std::string start = lower_case(bytes.substr(0, 5));
+  const bool stl = is_binary_stl(bytes) || start == "solid";
+  const std::string likely = stl ? "STL" : start.starts_with("ply") ? "PLY" : "OFF";
+  if (stl || start.starts_with("ply") || start.starts_with("off"))
+    throw Error(name, "looks like " + likely + ", not OBJ", "rename it to ." + lower_case(likely));
+  if (bytes.substr(0, 512).find('\0') != std::string_view::npos)
+    throw Error(name, "has NUL bytes, which no OBJ has",
+                "rename it by its format, or get it again");
+}
+
 // Refuses a lone CR if lines end with LF. It would be a blank, so that the text after it would be
 // in the same line and would be lost in a comment or after a vertex.
 void require_one_end(std::string_view bytes, const std::string& name) {
@@ -75,6 +87,7 @@ void require_one_end(std::string_view bytes, const std::string& name) {
        at = bytes.find('\r', at + 1)) {
     const std::string_view after = bytes.substr(at + 1, 1);
     if (after.empty() || after == "\n" || after == "\r") continue;
+    refuse_other_format(bytes, name);
     const auto before =
         std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     throw Error(name, "a line ends with CR alone, and others end with LF",
@@ -87,7 +100,7 @@ void require_one_end(std::string_view bytes, const std::string& name) {
 Mesh parse_obj(std::string_view bytes, const std::string& name) {
   require_one_end(bytes, name);
   TextReader in(bytes, name, {.comment = '#', .continuation = true});
-  MeshBuilder mesh(name);
+  MeshBuilder mesh(name, 1);
   std::vector<std::uint32_t> corners;
   std::string within;  // the number of the object
   std::map<std::string, std::size_t, std::less<>> objects;
@@ -127,6 +140,7 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
     }
   }
   if (unknown > 0 && mesh.vertex_count() == 0) {
+    refuse_other_format(bytes, name);
     throw Error(name, first_unknown + " is not a statement of OBJ",
                 "see whether the file is an OBJ file and whole", line_of_unknown);
   }
@@ -295,13 +309,16 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
+// No text has NUL bytes; a binary file has them in the padding of its header, in the number of its
+// triangles or in its attribute bytes.
+bool has_nul(std::string_view bytes) {
+  return bytes.substr(0, 4096).find('\0') != std::string_view::npos;
+}
+
 bool is_text(std::string_view bytes) {
   if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
   const std::size_t start = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
-  if (lower_case(bytes.substr(start, 5)) != "solid") return false;
-  // No text has NUL bytes; a binary file has them in the padding of its header or in its attribute
-  // bytes.
-  return bytes.substr(0, 4096).find('\0') == std::string_view::npos;
+  return lower_case(bytes.substr(start, 5)) == "solid" && !has_nul(bytes);
 }
 
 Mesh parse_binary(std::string_view bytes, const std::string& name) {
@@ -315,6 +332,10 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   }
   const std::uint64_t triangles = little_word(bytes, 80);
   if (!is_binary_stl(bytes)) {
+    if (!has_nul(bytes)) {
+      throw Error(name, "is no STL: it is text, and does not begin with 'solid'",
+                  "rename it by its format, such as .obj");
+    }
     throw Error(
         name,
         fmt::format("the header promises {} triangles, {} bytes in all, but the file has {} bytes",

@@ -37,7 +37,7 @@ bad no certificate | --certificate: farcull distance has no such option | {two} 
      output=['--json', '--csv'],
      within=['-1', 'nan', ''])
 rows(r"""
-bad more pairs than are answered | within: has more than 4194304 pairs of triangles, .*; give a smaller distance, or .*, by --clearance of farcull run$
+bad more pairs than are answered | within: has more than 4194304 pairs of triangles, .*; give a smaller distance, or .*, as collisions with --clearance$
   | distance random-soup --pairs all --within 100
 """, limits={'cpu': None})
 

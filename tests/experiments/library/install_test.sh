@@ -33,6 +33,11 @@ share=$work/prefix/share
   fail "the program that writes reports is not installed"
 grep -q farcull "$share/bash-completion/completions/farcull" || fail "the completion is not installed, or empty"
 grep -q LGPL-3.0-or-later "$share/doc/farcull/LICENSE" || fail 'the licence is not installed'
+pages=$(grep -rhoE 'docs/[a-z-]+\.md' "$work/prefix/include" | sort -u)
+[[ $pages == *docs/library.md* ]] || fail 'the headers do not name the page of the library'
+for page in $pages; do
+  cmp "$source/$page" "$share/doc/farcull/${page#docs/}" || fail "a header names $page, which is not installed"
+done
 
 # by_cmake PREFIX: prints what the example says that find_package() builds with the library below the prefix.
 by_cmake() {

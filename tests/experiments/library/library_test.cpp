@@ -228,17 +228,16 @@ TEST(Library, RefusesNoTriangleAndOneAlone) {
   };
   using Said = std::array<std::string, 2>;
   for (const bool self : {false, true}) {
-    const Said none = {"triangles", "hold no triangle, so there is nothing to test"};
+    const Said none = {"triangles", "are 0, so there is nothing to test"};
     EXPECT_EQ(refused({}, self), none);
     EXPECT_EQ(refused({points, {}, starts}, self), none);
     EXPECT_EQ(refused({points, one, starts}, self),
-              (Said{"triangles", "hold one triangle alone, so there is nothing to test"}));
+              (Said{"triangles", "are 1, so there is nothing to test"}));
   }
   EXPECT_EQ(refusal([&] { distances({}); })[0], "triangles");
 }
 
-// Labels are explained only where starts do not rise; where only the last one is too large, it may
-// be the end of the last object.
+// Labels are explained only where starts do not rise: the last one may be the end of an object.
 TEST(Library, ExplainsStartsThatAreNone) {
   const std::vector<double> points = {0, 0, 0};
   const std::vector<std::uint32_t> two = {0, 0, 0, 0, 0, 0};
@@ -246,7 +245,7 @@ TEST(Library, ExplainsStartsThatAreNone) {
     return error_of([&] { collide({points, two, starts}); }).remedy;
   };
   EXPECT_TRUE(has_text(remedy({0, 0}), "A label for each triangle"));
-  EXPECT_TRUE(remedy({0, 1, 2}).ends_with("without the end of the last object"));
+  EXPECT_TRUE(remedy({0, 1, 2}).ends_with("below the number of triangles"));
   EXPECT_TRUE(remedy({0, 3}).ends_with("below the number of triangles"));
 }
 

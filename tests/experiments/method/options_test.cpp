@@ -111,7 +111,6 @@ TEST(Error, SpellsParametersAsTheProgramDoes) {
 TEST(Error, LeavesOtherNamesInBraces) {
   for (const Option& option : run_options()) EXPECT_FALSE(option_word(option.name).empty());
   EXPECT_EQ(option_word("no_verify"), "--no-verify");
-  EXPECT_EQ(option_word("collide"), "farcull run");
   EXPECT_EQ(option_word("left"), "");
 }
 

@@ -127,6 +127,7 @@ def test_distances_are_a_sequence(scene):
     assert found[-1] == rows[-1] == found[np.int64(len(rows) - 1)] and list(found[1:3]) == rows[1:3]
     assert list(found[found.distance > 1]) == [row for row in rows if row.distance > 1] != rows
     assert found.index(rows[2]) == 2 and rows[2] in found and repr(found) == "<farcull.Distances: 6 answers>"
+    assert repr(found[:1]) == "<farcull.Distances: 1 answer>"
     with pytest.raises(IndexError):
         found[6]
     none = farcull.distances(V, F, OBJECTS, kind="all", within=0)[:0]

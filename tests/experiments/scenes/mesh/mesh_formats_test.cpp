@@ -66,17 +66,16 @@ TEST(ObjReader, RefusesWithTheLine) {
                        {kThree + "f 1 2 99999999999999999999\n", 4, "9999"},
                        {kThree + "f 1 2\n", 4, "polygon with 2 vertices"},
                        {kThree + "f\n", 4, "polygon with 0 vertices"},
-                       {"v 0 0 nan\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", 1, "vertex 0 (counted from 0)"},
-                       {"v 0 0 0\nv inf 0 0\nf 1 1 2\n", 2, "is not finite, and face 0"},
+                       {"v 0 0 nan\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", 1, "vertex 1 (counted from 1)"},
+                       {"v 0 0 0\nv inf 0 0\nf 1 1 2\n", 2, "is not finite, and face 1"},
                        {"v 0 1e999 0\nf 1 1 1\n", 1, "not finite"},
                        {"v 0 0\n", 1, "z is missing"},
                        {"v 0 0 zero\n", 1, "not a number"},
                        // Free-form geometry would be lost; binary garbage is not printed as it is.
                        {kThree + "f 1 2 3\nsurf 0 1 0 1 1 2 3 4\n", 5, "surf"},
                        {std::string("\x7f"
-                                    "ELF\x02\0\0\xff",
-                                    8),
-                        1, "'\\x7fELF\\x02\\x00\\x00\\xff'"},
+                                    "ELF\x02\x03\x03\xff"),
+                        1, "'\\x7fELF\\x02\\x03\\x03\\xff'"},
                        {kThree, 0, "no triangles"},
                        {"\n# nothing\n", 0, "no triangles"}});
   for (const char* corner : {"x", "1.5", "1/x", "/1", "1e0", "+-1", "--1", "+", "-"})

@@ -28,7 +28,7 @@ TEST(MeshHabits, AnUnusedVertexMayBeNoNumber) {
   const Error error = error_of([] { obj("v 0 0 0\nv nan 1 0\nv 1 0 0\nf 1 2 3\n"); });
   EXPECT_EQ(error.line, 2);
   EXPECT_TRUE(
-      has_text(error.reason, "vertex 1 (counted from 0) is not finite, and face 0 uses it"));
+      has_text(error.reason, "vertex 2 (counted from 1) is not finite, and face 1 uses it"));
 }
 
 TEST(MeshHabits, LinesMayEndWithCarriageReturns) {
@@ -104,6 +104,36 @@ TEST(MeshHabits, AFileThatMixesEndsOfLinesIsRefused) {
   EXPECT_TRUE(has_text(error.reason, "ends with CR alone")) << error.what();
   EXPECT_EQ(error.line, 5);
   EXPECT_EQ(obj(first + "# more\r\r\nv 0 0 1\r").triangles.size(), 1u);
+}
+
+// Files of another format than their names say. Twins: a note where a file is an OBJ all the same,
+// and the size where a binary STL file is cut.
+TEST(MeshHabits, AFileThatIsNamedByAnotherFormatIsToldSo) {
+  const std::string text =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\nendsolid a\n";
+  std::string binary(84, ' ');  // it has lone CRs, and lines that end with LF
+  binary.replace(80, 4, bytes_of(std::uint32_t{1}));
+  for (const float x : {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) binary += bytes_of(x);
+  binary += "\r\n";
+  binary.replace(0, 9, "part\rof\n\r");
+  const auto said = [](const std::string& bytes) {
+    const Error error = error_of([&] { obj(bytes); });
+    EXPECT_FALSE(has_text(error.remedy, "tr ")) << error.what();
+    return error.reason + "; " + error.remedy;
+  };
+  EXPECT_EQ(said(text), "looks like STL, not OBJ; rename it to .stl");
+  EXPECT_EQ(said(binary), "looks like STL, not OBJ; rename it to .stl");
+  EXPECT_EQ(said(binary_ply(false)), "looks like PLY, not OBJ; rename it to .ply");
+  EXPECT_EQ(said(kOff), "looks like OFF, not OBJ; rename it to .off");
+  EXPECT_TRUE(has_text(said(binary + "more"), "NUL bytes"));
+  EXPECT_EQ(obj("off\n" + kThree + "f 1 2 3\n").notes.size(), 1u);
+
+  std::string long_obj;
+  for (int k = 0; k < 9; ++k) long_obj += kThree;
+  const auto of_stl = [](const std::string& bytes) { return error_of([&] { stl(bytes); }).reason; };
+  EXPECT_TRUE(has_text(of_stl(long_obj + "f 1 2 3\n"), "is no STL: it is text"));
+  EXPECT_TRUE(has_text(of_stl(binary + "more"), "promises 1 triangles"));
 }
 
 // Two triangles whose common edge is written twice, and differs in the last digits.
