@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import matplotlib
 matplotlib.use("Agg")
+import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from matplotlib import font_manager, pyplot, textpath, ticker, transforms  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
@@ -147,7 +148,13 @@ def scale_axis(ax, side, spec, values, room):
     axis, line, span = (ax.xaxis, ax.axvline, ax.axvspan) if side == "x" else (ax.yaxis, ax.axhline, ax.axhspan)
     scaled, limits = (ax.set_xscale, ax.set_xlim) if side == "x" else (ax.set_yscale, ax.set_ylim)
     most = max(2, int(room / (32 if side == "x" else 18)))
-    if not spec.log:
+    if spec.even:
+        ticks = list(dict.fromkeys(values)) or [0.0]
+        known = sorted([min(ticks) - 1, *ticks, 2 * abs(max(ticks)) + 1])
+        places = np.arange(float(len(known)))
+        scaled("function", functions=(lambda v: np.interp(v, known, places), lambda at: np.interp(at, places, known)))
+        low, high = np.interp([0.7, len(ticks) + 0.3], places, known)
+    elif not spec.log:
         least, highest = (min(values), max(values)) if values else (0.0, 1.0)
         least = spec.low if spec.low is not None else 0.0 if 0 < least < highest / 2 else least
         highest = highest if spec.high is None else spec.high
@@ -172,10 +179,10 @@ def scale_axis(ax, side, spec, values, room):
         else:
             scaled("log")
             ticks = log_ticks(values, low, high, most)
-    limits(low, high)
+    limits(*((high, low) if spec.even and ticks[0] > ticks[-1] else (low, high)))
     ticks = [at for at in ticks if low <= at <= high] or [least, highest]
     powers = spec.log and any(at >= 1e5 or 0 < at < 1e-3 for at in ticks)
-    labels = [power_label(round(math.log10(at))) if powers and at > 0 and abs(math.log10(at) % 1 - 0.5) > 0.4999
+    labels = [power_label(round(math.log10(at))) if (powers or spec.even and not 0.01 <= at < 1000) and at > 0 and abs(math.log10(at) % 1 - 0.5) > 0.4999
               else tick_label(at) for at in ticks]
     keep = 1
     while side == "x" and sum(text_width(label) + 8 for label in labels[::keep]) > room and keep < len(ticks):

@@ -79,6 +79,7 @@ class Axis:
     zero: bool = False
     low: float = None  # fixed ends
     high: float = None
+    even: bool = False  # only the values of the series, in their order, at even distances
 
 
 def log(label, zero=False, low=None, high=None):

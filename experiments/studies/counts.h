@@ -17,12 +17,19 @@
 
 namespace farcull {
 
+/// Pairs of a scene of ContactCells whose contact varies with its number.
+struct VaryingCounts {
+  std::uint64_t varying = 0, missed_varying = 0;  // of `colliding` and `missed`
+  FARCULL_FIELDS(varying, missed_varying)
+};
+
 /// An answer compared with the truth of its scene (measure/harness.h).
 struct AnswerCounts {
   std::uint64_t colliding = 0, missed = 0;  // pairs
   std::uint64_t missed_triangles = 0;       // colliding triangles in no pair of the answer
   std::uint64_t candidates = 0;             // pairs given to exact tests
   std::uint64_t triangles = 0, objects = 0;
+  std::optional<VaryingCounts> varying = {};
 };
 
 /// Work of a method that draws.
@@ -78,7 +85,7 @@ struct RunCounts : AnswerCounts {
   FARCULL_FIELDS(colliding, missed, missed_penetrating, colliding_triangles, missed_triangles,
                  candidates, kept_triangles, kept_objects, triangles, objects, promises, scene_hash,
                  revoked, left_by_boxes, views_used, at_risk, at_risk_bare, object_triangles, drawn,
-                 radius, fragments, size, neighbours)
+                 radius, fragments, size, neighbours, varying)
 };
 
 /// Counts of a PeerPoint.
@@ -89,7 +96,7 @@ struct PeerCounts : AnswerCounts {
   std::optional<bool> promises = {};
   std::optional<std::string> scene_hash = {};
   FARCULL_FIELDS(colliding, missed, wrong, colliding_triangles, missed_triangles, candidates,
-                 triangles, objects, library, promises, scene_hash)
+                 triangles, objects, library, promises, scene_hash, varying)
 };
 
 /// Counts of a LemmaPoint (lemma/lemma.h, LemmaRow).

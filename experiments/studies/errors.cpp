@@ -56,15 +56,14 @@ constexpr int kMostOfForms = 1024;  // px
 // gets only the forms that miss little.
 std::vector<CullideForm> forms_of(const ErrorScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
-  const CullideForm strict = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
-  if (scene.again) return {kPublishedForm, conservative, strict};
+  if (scene.again) return {kPublishedForm, conservative, kStrictForm};
   std::vector<CullideForm> out = {
       kPublishedForm,
       {.rounds = 1, .views = kBothDirections},
       {.rounds = 1, .clear = ClearRule::all},
       {.rounds = 1, .clear = ClearRule::all, .views = kBothDirections},
       conservative,
-      strict,
+      kStrictForm,
   };
   if (!scene.self) out.push_back({.objects_alone = true});
   return out;
@@ -131,10 +130,7 @@ constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
 
 // CULLIDE until a round changes nothing, as published, and in two forms that miss less.
 const std::vector<CullideForm> kForms = {
-    {},
-    kPublishedForm,
-    {.rounds = 1, .conservative = true},
-    {.rounds = 1, .clear = ClearRule::all, .conservative = true}};
+    {}, kPublishedForm, {.rounds = 1, .conservative = true}, kStrictForm};
 
 // All methods at one resolution.
 void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution, int repeat) {
@@ -240,42 +236,51 @@ Study error_time_study() {
 
 namespace {
 
-constexpr const char* kLibrary = "fcl-float";
 constexpr long kFrames = 500;  // of the cloth
+// Libraries whose own test of two triangles rounds.
+constexpr const char *kFloat = "fcl-float", *kDouble = "fcl-double";
 
 void add_between_objects(std::vector<Point>& out, const PointScene& scene, int resolution) {
-  out.insert(out.end(), {cullide_point(scene, cullide, resolution), PeerPoint{scene, kLibrary},
-                         far_point(scene, "obb", kBudgetRadius, resolution),
-                         far_point(scene, "exact", kBudgetRadius, resolution),
-                         plain_point(scene, boxes), plain_point(scene, exact)});
+  const RunPoint published = cullide_point(scene, cullide, resolution);
+  out.insert(out.end(),
+             {published, in_form(published, kStrictForm), PeerPoint{scene, kFloat},
+              PeerPoint{scene, kDouble}, far_point(scene, "obb", kBudgetRadius, resolution),
+              far_point(scene, "exact", kBudgetRadius, resolution), plain_point(scene, boxes),
+              plain_point(scene, exact)});
 }
 
 void add_against_itself(std::vector<Point>& out, const PointScene& scene, int resolution) {
-  out.insert(out.end(), {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, kLibrary},
-                         far_point(scene, "obb", kBudgetRadius, resolution),
-                         plain_point(scene, boxes), plain_point(scene, exact)});
+  out.insert(out.end(),
+             {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, kFloat},
+              PeerPoint{scene, kDouble}, far_point(scene, "obb", kBudgetRadius, resolution),
+              plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
-// Each family from a value that is harmless to its extreme.
+// Each family from a harmless value to its extreme, with more values where CULLIDE begins to fail;
+// of offset and scale, where floats do.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;
-    std::vector<const char*> values, few;
+    std::vector<const char*> values;
   };
+  const std::vector<const char*> ratios = {"1e0", "2e0", "3e0", "4e0", "5e0", "7e0",
+                                           "1e1", "3e1", "1e2", "1e6", "1e12"};
   const std::vector<Family> families = {
-      {"slivers", {"1e2", "1e4", "1e6", "1e9", "1e12"}, {"1e2", "1e12"}},
-      {"stack", {"1e-1", "1e-3", "1e-6", "1e-10", "1e-14"}, {"1e-1", "1e-14"}},
-      {"mixed", {"1e0", "1e3", "1e6", "1e12"}, {"1e0", "1e12"}},
-      // A pixel is 2^45 ulps, 3.5e13.
-      {"gap",
-       {"-1e13", "-1e9", "-1e3", "-1e0", "0", "1e0", "1e6", "1e12", "1e14"},
-       {"-1e13", "-1e0", "0", "1e0", "1e14"}},
-      {"offset", {"1e0", "1e3", "1e6", "1e9", "1e12"}, {"1e0", "1e12"}},
-      {"scale", {"1e-9", "1e-3", "1e3", "1e9"}, {"1e-9", "1e9"}}};
+      {"slivers", ratios},
+      {"mixed", ratios},
+      {"edge-on", ratios},
+      // 3e-14 px are an ulp.
+      {"overlap", {"2e0", "1e0", "8e-1", "6e-1", "3e-1", "2e-1", "1e-1", "1e-2", "3e-14", "0"}},
+      {"gap", {"1e0", "1e-2", "1e-6", "3e-14"}},
+      // A step of the depth buffer is 3e-5 px.
+      {"stack", {"2e0", "1e0", "5e-1", "25e-2", "12e-2", "6e-2", "1e-2", "1e-4", "1e-5", "1e-13"}},
+      {"offset", {"1e0", "1e3", "1e6", "1e7", "3e7", "1e8", "3e8", "1e9", "1e12"}},
+      {"scale", {"1e-9", "1e-3", "1e0", "1e3", "1e6", "1e7", "1e8", "1e9"}}};
   for (const Family& family : families) {
-    for (const char* value : quick ? family.few : family.values) {
+    std::vector<const char*> values = family.values;
+    if (quick) values = {values.front(), values[values.size() / 2], values.back()};
+    for (const char* value : values)
       add_between_objects(out, ContactCells{family.name, quick ? 18 : 24, value}, kCellsResolution);
-    }
   }
 }
 
@@ -300,16 +305,35 @@ std::vector<Point> stability_grid(const GridChoice& choice) {
 }
 
 PointResult measure_stability(const Point& point, MeasurementContext& lab) {
-  if (const auto* run = std::get_if<RunPoint>(&point)) return measure_with_risk(*run, lab);
-  PointResult out = measure_peer(std::get<PeerPoint>(point), lab, 1);
-  if (auto* counts = std::get_if<PeerCounts>(&out.counts)) {
-    counts->colliding_triangles.reset();
-    counts->library.reset();
-    counts->promises = false;
-    counts->scene_hash = scene_hash(lab.current());
-    PointTimes& times = out.times;
-    times.total = *times.build + *times.cull + *times.exact;
+  PointResult out;
+  const PointScene* scene = nullptr;
+  std::vector<TrianglePair> pairs;
+  AnswerCounts* answer = nullptr;
+  if (const auto* run = std::get_if<RunPoint>(&point)) {
+    Record record;
+    out = measure_with_risk(*run, lab, &record);
+    scene = &run->scene;
+    pairs = record.collisions.all();
+    answer = std::get_if<RunCounts>(&out.counts);
+  } else {
+    const auto& peer = std::get<PeerPoint>(point);
+    out = measure_peer(peer, lab, 1, &pairs);
+    scene = &peer.scene;
+    if (auto* counts = std::get_if<PeerCounts>(&out.counts)) {
+      counts->colliding_triangles.reset();
+      counts->library.reset();
+      counts->promises = false;
+      counts->scene_hash = scene_hash(lab.current());
+      PointTimes& times = out.times;
+      times.total = *times.build + *times.cull + *times.exact;
+      answer = counts;
+    }
   }
+  const auto* cells = std::get_if<ContactCells>(scene);
+  if (cells == nullptr || answer == nullptr) return out;
+  std::vector<TrianglePair> varying = lab.truth().pairs;
+  std::erase_if(varying, [&](const TrianglePair& pair) { return !varies(pair, *cells); });
+  answer->varying = {.varying = varying.size(), .missed_varying = lacking(varying, pairs)};
   return out;
 }
 
@@ -383,9 +407,10 @@ Study stability_study() {
   return {.name = "stability",
           .title = "Scenes that go to an extreme",
           .question =
-              "What is missed where cloth is stiff, triangles are slivers, gaps are ulps, "
-              "sheets are stacked, sizes differ by far, or the scene is far away, tiny or "
-              "huge, and how much does culling then still remove?",
+              "At which value does a method begin to miss pairs, where triangles become slivers, "
+              "sizes differ by far, a view sees triangles edge-on, overlaps and distances shrink "
+              "to ulps, the scene is far away or tiny, or cloth is stiff, and how much does "
+              "culling then still remove?",
           .grid = stability_grid,
           .measure = measure_stability,
           .library = library_of_peer};

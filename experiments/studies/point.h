@@ -41,10 +41,10 @@ struct ClusteredScene {
   std::uint64_t seed = 1;
 };
 
-/// Contacts at corners of pixels. Each family takes one number to an extreme (contact_cells() in
+/// Contacts of a family in which one number goes to an extreme (contact_cells() in
 /// contact_cells.cpp).
 struct ContactCells {
-  std::string family;  // slivers, stack, mixed, gap, offset or scale
+  std::string family;  // slivers, mixed, edge-on, overlap, gap, stack, offset or scale
   int side = 24;       // cells in a row; there are side * side of them
   std::string value;   // the number, as in 1e6
 };
@@ -245,6 +245,8 @@ inline RunPoint in_form(RunPoint point, const CullideForm& form) {
 }
 /// CULLIDE as published: one round.
 inline const CullideForm kPublishedForm = {.rounds = 1};
+/// The form that misses least.
+inline const CullideForm kStrictForm = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
 inline constexpr const char* kBothDirections = "x,-x,y,-y,z,-z";
 
 /// The point at the least resolution at which triangles cover this many pixels on average.

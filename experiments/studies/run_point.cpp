@@ -328,7 +328,8 @@ std::string library_of_peer(const Point& point) {
   return peer.missing.empty() ? peer.library : "";
 }
 
-PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads) {
+PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads,
+                         std::vector<TrianglePair>* pairs) {
   const Scene& scene = open_scene(point.scene, lab);
   const Peer peer = peer_named(point.peer);
   PointResult out{.device = "cpu"};
@@ -352,6 +353,7 @@ PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsign
                .exact = answer.exact_ms,
                .total = total};
   out.answer = hash_of(answer.pairs);
+  if (pairs != nullptr) *pairs = answer.pairs;
   return out;
 }
 

@@ -35,11 +35,15 @@ constexpr int kMostSizedResolution = 8192;
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
 /// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
-/// and z at kCellsResolution. In half of the cells the triangles meet at a corner of a pixel, so
-/// that sampling loses them if the ball is too small; in the other half they are 3 px apart, so
-/// that there is something to cull. Throws std::logic_error for an unknown family.
+/// and z at kCellsResolution. In a sixth of the cells the triangles meet at a corner of a pixel, so
+/// that sampling loses them if the ball is too small; in a third they meet as the family and its
+/// number say; in the other half they are apart, so that there is something to cull. Throws
+/// std::logic_error for an unknown family.
 constexpr int kCellsResolution = 512;
 Scene contact_cells(const ContactCells& scene);
+/// Whether a pair of this scene that collides is in a cell where the contact varies with the
+/// number.
+bool varies(const TrianglePair& pair, const ContactCells& scene);
 
 /// How many triangles boxes left, and how many views were drawn: RunCounts::left_by_boxes and
 /// views_used.
@@ -70,7 +74,9 @@ PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab,
 /// Opens the scene and runs the library on it once on `threads` threads. Pairs of neighbours count
 /// neither as missed nor as wrong, since libraries leave them out. Left out if this build lacks the
 /// library or the library refuses the scene. Throws std::logic_error if there is no such peer.
-PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads);
+/// pairs: receives the answer; may be null.
+PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsigned threads,
+                         std::vector<TrianglePair>* pairs = nullptr);
 
 /// The library of a PeerPoint with its version; empty if this build lacks it, and for all other
 /// points (Study::library).

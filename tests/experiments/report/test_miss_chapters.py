@@ -230,6 +230,27 @@ def test_precision_tells_rounding_from_violations(at_budget):
     assert [m.at for p in figure(chapter, "precision").panels for m in p.marks] == [3.5, 1.5]
 
 
+# ---- extreme scenes
+
+def cells(value, method="cullide", lost=0, varying=10, family="overlap", **more):
+    return row(f"contacts:{family}:24:{value}", method, {
+        "colliding": 20, "missed": 10 + lost, "varying": varying, "missed_varying": lost, "promises": False}, **more)
+
+
+def test_stability_draws_the_share_of_contacts_that_vary_from_the_harmless_value_to_the_extreme():
+    strict = "cullide --rounds 1 --clear all --conservative"
+    chapter = chapter_of("stability", [cells("1e0"), cells("1e0", strict), cells("1e-2", lost=5), cells("1e-2", strict),
+                                       cells("0", lost=10), cells("0", strict, lost=3),
+                                       cells("1e0", varying=0, family="gap"), cells("1e0", family="slivers")])
+    drawn = figure(chapter, "stability-missed").panels
+    assert [p.title for p in drawn] == ["overlaps", "slivers"], "of gaps nothing collides"
+    assert (series(chapter, "stability-missed", "CULLIDE").x, series(chapter, "stability-missed", "CULLIDE").y) == (
+        [1, 0.01, 0], [0, 50, 100])
+    assert [s.labels for s in drawn[0].series] == [["", "CULLIDE", ""], ["", "", "CULLIDE, strict"]]
+    assert ("overlaps, overlap (px): contacts that vary are missed by CULLIDE from 0.01 on, up to 100 %; CULLIDE, "
+            "strict from 0 on, up to 30 %.") in findings(chapter)
+    assert "slivers, aspect" not in findings(chapter), "the twin: none is missed"
+
 
 # ---- cloth
 

@@ -3,6 +3,7 @@ import itertools
 import math
 import xml.dom.minidom
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -90,6 +91,13 @@ def test_an_axis_holds_every_value_of_any_size(axis):
             ax, _, ticks, _ = scaled(axis, [value, value * 3, math.nan], 60)
             assert ax.get_ylim()[0] < ax.get_ylim()[1] and ax.get_ylim()[0] <= value <= 3 * value <= ax.get_ylim()[1]
             assert 0 < len(ticks) <= 10
+
+
+@pytest.mark.parametrize("values", [[1, 2, 1e6, 1e12], [2, 0.5, 3e-14, 0]])
+def test_values_at_even_distances_keep_their_order(values):
+    ax, _, ticks, _ = scaled(Axis(even=True), values + values)
+    places = [ax.transData.transform((0, v))[1] for v in values]
+    assert ticks == values and np.allclose(np.diff(places), places[1] - places[0]) and places[0] < places[1]
 
 
 # ---- figures
