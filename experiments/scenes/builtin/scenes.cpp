@@ -233,6 +233,8 @@ std::string likely_name(const std::string& name) {
   return best.empty() ? "correct the name; " : did_you_mean(best);
 }
 
+bool is_builtin_scene(const std::string& name) { return find_builtin_scene(name) != nullptr; }
+
 std::optional<std::uint64_t> builtin_seed(const std::string& name) {
   const BuiltinScene* const entry = find_builtin_scene(name);
   if (entry == nullptr) return {};
