@@ -162,14 +162,13 @@ void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles
     std::string reason = "object " + std::to_string(o) + " starts at triangle " +
                          std::to_string(starts[o]) + " of " + std::to_string(triangles);
     if (!rises && o > 0) reason += ", and the object before it at " + std::to_string(starts[o - 1]);
-    std::string remedy =
-        "give the first triangle of each object: 0, then rising numbers below the number of "
-        "triangles";
-    if (!rises)
-      remedy +=
-          ". A label for each triangle is no list of starts: sort the triangles by label and give "
-          "where each label begins (Python: give labels=)";
-    throw Error("object_starts", reason, remedy);
+    const std::string labels =
+        ". A label for each triangle is no list of starts: sort the triangles by label and give "
+        "where each label begins (Python: give labels=)";
+    throw Error("object_starts", reason,
+                "give the first triangle of each object: 0, then rising numbers below the number "
+                "of triangles" +
+                    (rises ? "" : labels));
   }
 }
 

@@ -45,9 +45,7 @@ def array(name: str, given: Any) -> np.ndarray:
             remedy += "; V and F may be swapped"
         raise InputError(name, f"are of type {out.dtype}", remedy)
     if out.ndim != 2 or out.shape[1] != 3:
-        remedy = f"give an array of shape ({'m' if indices else 'n'}, 3)"
-        if indices and out.ndim == 2 and out.shape[1] > 3:
-            remedy = "triangulate polygons, and " + remedy
+        remedy = "give an array of shape (m, 3); triangulate polygons" if indices else "give an array of shape (n, 3)"
         raise InputError(name, "have no three columns", remedy)
     if indices:
         if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy compares in doubles
@@ -175,19 +173,17 @@ Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def arrays(
     V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Union[Grouped, None, bool] = False
 ) -> Tuple[Grouped, Arrays]:
-    """The input of a call. ``before``: of the call whose arrays poses move where they are given alone; False: poses
-    are never alone."""
+    """The input of a call. ``before``: of the call whose arrays poses alone move; False: they are never alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
     if alone and isinstance(before, Grouped) and len(matrices):
         return before, (np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, np.int64), matrices)
+    more = "" if before is False else "; poses alone move those of the call before, if it had an answer"
     for name, given in (("V", V), ("F", F)):
         if given is None:
-            more = "" if before is False else "; poses alone move those of the call before, if it had an answer"
             raise InputError(name, "is not given", "give V and F" + more)
     grouped = Grouped(F, object_starts, labels)
     if matrices.size and not grouped.triangles.size:
-        more = "" if before is False else ", or poses alone to move those of the call before"
         raise InputError("F", "has no triangles", "give some" + more)
     return grouped, (array("V", V), grouped.triangles, grouped.starts, matrices)
 
@@ -324,19 +320,14 @@ def limit(given: Any) -> int:
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
 
 
-def weld(given: Any) -> str:
+def weld(given: Any, name: str = "weld") -> str:
     """A tolerance as the library reads it; empty for None."""
     if given is None:
         return ""
-    text = _text_of("weld", given)
+    text = _text_of(name, given)
     if not text:
-        raise InputError("weld", "is empty", "give a length, or one as in '1e-7*size'")
+        raise InputError(name, "is empty", "give a length, or one as in '1e-7*size'")
     return text
-
-
-def tolerance(given: Any) -> str:
-    """A tolerance of :func:`farcull.clash` as the library reads it."""
-    return _text_of("tolerance", given if isinstance(given, str) else number("tolerance", given))
 
 
 def texts(**options: Any) -> Dict[str, str]:

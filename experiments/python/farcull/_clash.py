@@ -74,7 +74,7 @@ def clash(
     """
     given = scene_of(scene)
     made = _farcull.clash(
-        given, _arguments.number("clearance", clearance), _arguments.tolerance(tolerance),
+        given, _arguments.number("clearance", clearance), _arguments.weld(tolerance, "tolerance"),
         _arguments.ignored(ignore, given),
         _arguments.flag("depth", depth), _arguments.threads(threads),
     )

@@ -71,9 +71,9 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
 void refuse_other_format(std::string_view bytes, const std::string& name) {
   const std::string start = lower_case(bytes.substr(0, 5));
   const bool stl = is_binary_stl(bytes) || start == "solid";
-  const std::string likely = stl ? "STL" : start.starts_with("ply") ? "PLY" : "OFF";
-  if (stl || start.starts_with("ply") || start.starts_with("off"))
-    throw Error(name, "looks like " + likely + ", not OBJ", "rename it to ." + lower_case(likely));
+  const std::string likely = stl ? "stl" : start.substr(0, 3);
+  if (stl || likely == "ply" || likely == "off")
+    throw Error(name, "looks like a ." + likely + " file, not OBJ", "rename it");
   if (bytes.substr(0, 512).find('\0') != std::string_view::npos)
     throw Error(name, "has NUL bytes, which no OBJ has",
                 "rename it by its format, or get it again");
@@ -309,11 +309,8 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// No text has NUL bytes; a binary file has them in the padding of its header, in the number of its
-// triangles or in its attribute bytes.
-bool has_nul(std::string_view bytes) {
-  return bytes.substr(0, 4096).find('\0') != std::string_view::npos;
-}
+// No text has NUL bytes; a binary file has them in its header or in its attribute bytes.
+bool has_nul(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') != bytes.npos; }
 
 bool is_text(std::string_view bytes) {
   if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
@@ -332,10 +329,8 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   }
   const std::uint64_t triangles = little_word(bytes, 80);
   if (!is_binary_stl(bytes)) {
-    if (!has_nul(bytes)) {
-      throw Error(name, "is no STL: it is text, and does not begin with 'solid'",
-                  "rename it by its format, such as .obj");
-    }
+    if (!has_nul(bytes))
+      throw Error(name, "is text that does not begin with 'solid', not STL", "rename it");
     throw Error(
         name,
         fmt::format("the header promises {} triangles, {} bytes in all, but the file has {} bytes",

@@ -26,7 +26,7 @@ $ sed 's/"method": "[^"]*"/"method": "far\\nproved: all"/' exact.json >lies.json
 0 a certificate that prints a verdict | check lies.json two-spheres | #0 ^proved: these | ! ^proved: all
   | ^  that the method was far.proved: all$
 bad a list that is not there | nothing\.csv: | check exact.json two-spheres --pairs nothing.csv
-bad the proved checker for a list | --verified: is for certificates of one scene | check exact.json two-spheres --pairs pairs.csv --verified
+bad the proved checker for a list | --verified: does not read the list of --pairs | check exact.json two-spheres --pairs pairs.csv --verified
 bad a certificate from standard input | CERTIFICATE: is not read from standard input; name a file | check - two-spheres --verified
 bad an empty name of a list | --pairs: | check exact.json two-spheres --pairs ''
 $ sed 's/"version": 3/"version": 2/' exact.json >older.json

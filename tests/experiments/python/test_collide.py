@@ -128,7 +128,7 @@ def test_a_remedy_fits_the_call():
     for call in (farcull.collide, farcull.distances):
         assert error_of(call, None, F).remedy == error_of(call, V, None).remedy == "give V and F"
         assert error_of(call, V, F[:0], poses=[np.eye(4)]).remedy == "give some"
-        assert error_of(call, V, quads).remedy == "triangulate polygons, and give an array of shape (m, 3)"
+        assert error_of(call, V, quads).remedy == "give an array of shape (m, 3); triangulate polygons"
         assert error_of(call, V[:, :2], F).remedy == "give an array of shape (n, 3)"
         assert mixed in error_of(call, F, V).remedy and mixed not in error_of(call, V, F.astype(bool)).remedy
         assert "label" in error_of(call, V, F, [0, 0, 2]).remedy

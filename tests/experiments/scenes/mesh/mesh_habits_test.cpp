@@ -122,17 +122,17 @@ TEST(MeshHabits, AFileThatIsNamedByAnotherFormatIsToldSo) {
     EXPECT_FALSE(has_text(error.remedy, "tr ")) << error.what();
     return error.reason + "; " + error.remedy;
   };
-  EXPECT_EQ(said(text), "looks like STL, not OBJ; rename it to .stl");
-  EXPECT_EQ(said(binary), "looks like STL, not OBJ; rename it to .stl");
-  EXPECT_EQ(said(binary_ply(false)), "looks like PLY, not OBJ; rename it to .ply");
-  EXPECT_EQ(said(kOff), "looks like OFF, not OBJ; rename it to .off");
+  EXPECT_EQ(said(text), "looks like a .stl file, not OBJ; rename it");
+  EXPECT_EQ(said(binary), "looks like a .stl file, not OBJ; rename it");
+  EXPECT_EQ(said(binary_ply(false)), "looks like a .ply file, not OBJ; rename it");
+  EXPECT_EQ(said(kOff), "looks like a .off file, not OBJ; rename it");
   EXPECT_TRUE(has_text(said(binary + "more"), "NUL bytes"));
   EXPECT_EQ(obj("off\n" + kThree + "f 1 2 3\n").notes.size(), 1u);
 
   std::string long_obj;
   for (int k = 0; k < 9; ++k) long_obj += kThree;
   const auto of_stl = [](const std::string& bytes) { return error_of([&] { stl(bytes); }).reason; };
-  EXPECT_TRUE(has_text(of_stl(long_obj + "f 1 2 3\n"), "is no STL: it is text"));
+  EXPECT_TRUE(has_text(of_stl(long_obj + "f 1 2 3\n"), "is text that does not begin with 'solid'"));
   EXPECT_TRUE(has_text(of_stl(binary + "more"), "promises 1 triangles"));
 }
 
