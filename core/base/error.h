@@ -11,7 +11,7 @@ namespace farcull {
 class Error : public std::runtime_error {
  public:
   /// line: of a text file, from 1; 0: no line. A text may name a parameter in braces, as in
-  /// "{radius}"; spelled() replaces it.
+  /// "{radius}"; the reader sees its name as the program writes it.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
