@@ -232,6 +232,9 @@ TEST(ContactCells, AreMissedByCullideMoreAndMore) {
   for (const auto& [family, values] : contact_families(false)) {
     std::vector<double> missed;  // per cent
     for (const ContactCells& cells : values) {
+      // Sheets nearer than a step of the depth buffer (2^-23 of its range, in floats) have equal
+      // depths, which hide each other. CULLIDE finds them again.
+      if (family == "stack" && std::stod(cells.value) < kCellsResolution * 0x1p-23) continue;
       const RunCounts counts =
           stability_counts(cullide_point(cells, Method::cullide, kCellsResolution), lab);
       if (counts.varying->varying == 0) continue;
@@ -245,7 +248,6 @@ TEST(ContactCells, AreMissedByCullideMoreAndMore) {
     SCOPED_TRACE(family + ": " + fmt::format("{}", fmt::join(missed, " ")));
     EXPECT_LE(missed.front(), 2);
     const bool responds = family != "offset" && family != "scale";
-    while (family == "stack" && missed.back() == 0 && missed.size() > 8) missed.pop_back();
     EXPECT_TRUE(responds ? missed.back() >= 95 : missed.back() <= 2);
     for (std::size_t i = 1; i < missed.size(); ++i) EXPECT_GE(missed[i], missed[i - 1] - 3);
   }
