@@ -35,6 +35,7 @@ campaigns=(
   "gl_loops_late bash tests/gl_loops.sh 20 --late"
   "gl_loops_address bash tests/gl_loops.sh 20 --address"
   "mutants bash tests/mutants.sh"
+  "results /usr/bin/python3 tests/results_test.py"
 )
 
 # run_campaigns [NAMES...]: runs those, or all; keeps the output of each in build/long/NAME.log, and build/long/NAME.COMMIT
