@@ -262,8 +262,9 @@ def ask_distance(rng, files, words, question, spoil):
 
 
 def ask_compare(rng, files, words, question, spoil):
+    drawless = "--clearance" in question.given and "--methods" not in question.given
     status, out, err = call("compare", *files, *words, "--json", HERE + "r.json",
-                            *([] if "--resolutions" in question.given else ["--resolutions", "32"]))
+                            *([] if drawless or "--resolutions" in question.given else ["--resolutions", "32"]))
 
     def check(status, say):
         record = read_json(HERE + "r.json")
