@@ -58,18 +58,20 @@ def columns_differ(page, made):
     return [f'the page has no table with the columns {head}' for head, _ in tables(made) if head not in known]
 
 
-def counts_differ(page, made, columns):
-    """Cells of these columns in rows that begin with the same words, in the tables that both have."""
-    old = {(tuple(head), *row[:2]): row for head, rows in tables(page_text(page)) for row in rows}
+def counts_differ(page, made, columns, keys):
+    """Cells of these columns in the tables that both have. The first `keys` cells name a row."""
+    old = {(tuple(head), *row[:keys]): row for head, rows in tables(page_text(page)) for row in rows}
+    heads = {key[0] for key in old}
     out, compared = [], 0
     for head, rows in tables(made):
-        for row in rows:
-            of = old.get((tuple(head), *row[:2]))
-            for k, name in enumerate(head):
-                if of and re.fullmatch(columns, name):
-                    compared += 1
-                    if row[k] != of[k]:
-                        out.append(f'{row[0]}, {row[1]}, {name}: {of[k]} on the page, now {row[k]}')
+        counts = [k for k, name in enumerate(head) if re.fullmatch(columns, name)]
+        for row in rows if tuple(head) in heads and counts else []:
+            words, of = ', '.join(row[:keys]), old.get((tuple(head), *row[:keys]))
+            if not of:
+                out.append(f'the page has no row {words}')
+                continue
+            compared += len(counts)
+            out += [f'{words}, {head[k]}: {of[k]} on the page, now {row[k]}' for k in counts if row[k] != of[k]]
     return out if compared else [*out, 'no count was compared']
 
 
@@ -92,7 +94,7 @@ def written(study, *words):
 
 def headline():
     made = written('headline')
-    return columns_differ('headline', made) + counts_differ('headline', made, '.*missed')
+    return columns_differ('headline', made) + counts_differ('headline', made, '.*missed', 1)
 
 
 def studies():
@@ -109,7 +111,7 @@ def stages():
              'torii')
         with open(f'{folder}/page.md', encoding='utf-8') as file:
             made = file.read()
-    return columns_differ('stages', made) + counts_differ('stages', made, 'triangles|boxes leave|view 1|2|pairs tested')
+    return columns_differ('stages', made) + counts_differ('stages', made, 'triangles|boxes leave|view 1|2|pairs tested', 2)
 
 
 def libraries():

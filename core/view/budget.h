@@ -20,11 +20,10 @@ struct BudgetTerm {
 struct Budget {
   double sampling = 0;  // the largest distance of a point of a pixel from its centre
   double input = 0;     // rounding of proxy corners from double to float32
-  double double_ =
-      0;              // the affine map and the clipping of a primitive that is just drawable
-  double vertex = 0;  // rounding of vertex stage, division by w = 1 and viewport transform
-  double snap = 0;    // snapping of window coordinates
-  double offset = 0;  // rounding of the offset: zero, since offsets round outward
+  double double_ = 0;   // the affine map and the clipping of a primitive that is just drawable
+  double vertex = 0;    // rounding of vertex stage, division by w = 1 and viewport transform
+  double snap = 0;      // snapping of window coordinates
+  double offset = 0;    // rounding of the offset: zero, since offsets round outward
 
   std::array<BudgetTerm, 6> terms() const;
   /// Strictly greater than the sum of the terms, rounded up.

@@ -354,8 +354,7 @@ int CheckCommand::run() {
       throw Error("--verified", reason, remedy);
     };
     if (to.certificate.empty())
-      refuse("needs a certificate, which has what it proves a list by",
-             "make one with farcull run SCENE --certificate FILE");
+      refuse("needs a certificate", "make one with farcull run SCENE --certificate FILE");
     if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
     if (clearance_)
       refuse("does not take --clearance", "leave --clearance out: the certificate has it");

@@ -232,9 +232,9 @@ TEST(ContactCells, AreMissedByCullideMoreAndMore) {
   for (const auto& [family, values] : contact_families(false)) {
     std::vector<double> missed;  // per cent
     for (const ContactCells& cells : values) {
-      // Sheets nearer than a step of the depth buffer (2^-23 of its range, in floats) have equal
-      // depths, which hide each other. CULLIDE finds them again.
-      if (family == "stack" && std::stod(cells.value) < kCellsResolution * 0x1p-23) continue;
+      // Sheets nearer than a step of depth have equal depths, which hide each other, so CULLIDE
+      // finds them again. The range of depths is that of the window; floats below 1 have 24 bits.
+      if (family == "stack" && std::stod(cells.value) < kCellsResolution * 0x1p-24) continue;
       const RunCounts counts =
           stability_counts(cullide_point(cells, Method::cullide, kCellsResolution), lab);
       if (counts.varying->varying == 0) continue;
