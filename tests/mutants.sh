@@ -24,10 +24,8 @@
 #   change: what changes, in a sentence
 #   program: the program of the tests, where it is not farcull_mutant_tests
 #   explained: why no test can notice it, if none can
-#   --- old
-#   text that stands in the file once
-#   --- new
-#   text in its place; none to remove it
+#   -a line of a text that stands in the file once
+#   +a line of the text in its place; none to remove it
 set -euo pipefail
 export LC_ALL=C
 
@@ -359,8 +357,8 @@ self_test() {
   cd "$scratch/copy"
   lists=(tests/mutants/control.txt)
   check >/dev/null || failures=1
-  refused "no such text" 's/^\}  .*farcull$/no such text/' 'control-comment: the old text is not in'
-  refused "a text twice" 's/^\}  .*farcull$/double/' 'stands more than once'
+  refused "no such text" 's/^-\}  .*farcull$/-no such text/' 'control-comment: the old text is not in'
+  refused "a text twice" 's/^-\}  .*farcull$/-double/' 'stands more than once'
   refused "no such file" 's/budget\.cpp/nowhere.cpp/' 'nowhere.cpp is missing'
   refused "another folder" 's/^file: .*/file: experiments\/command\/main.cpp/' 'is not in core'
   refused "no such test" 's/Budget\.\*/Budget.Nowhere/' 'no test is called Budget.Nowhere'

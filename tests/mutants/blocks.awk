@@ -35,30 +35,20 @@ function finish(   k) {
 }
 
 # A block ends with its list.
-FNR == 1 { open = 0; inside = "" }
+FNR == 1 { open = 0 }
 /^=== / {
   finish()
   open = 1
   names[++n] = substr($0, 5)
   at[n] = FILENAME
   raw[n] = $0 "\n"
-  inside = ""
-  blank = ""
   next
 }
 open { raw[n] = raw[n] $0 "\n" }
-/^--- (old|new)$/ && open {
-  inside = $2
-  part[inside] = ""
-  lines = 0
-  blank = ""
-  next
-}
-# Blank lines at the end of a text do not belong to it.
-inside != "" && $0 == "" { blank = blank "\n"; next }
-inside != "" {
-  part[inside] = part[inside] (lines++ ? "\n" : "") blank $0
-  blank = ""
+/^[-+]/ && open {
+  key = /^-/ ? "old" : "new"
+  before = key in part ? part[key] "\n" : ""
+  part[key] = before substr($0, 2)
   next
 }
 open && /^[a-z]+: / {
