@@ -28,7 +28,7 @@ fuzz() {
   local corpus=build-fuzz/corpus/$2 seeds=build-fuzz/seeds/$2 log=build-fuzz/$1.log
   rm -rf "$seeds"
   mkdir -p "$corpus" "$seeds" build-fuzz/findings
-  tar -xf "tests/fuzz/corpus/$2.tar" -C "$seeds"
+  tar -xf "tests/fuzz/corpus/$2.tar.gz" -C "$seeds"
   echo "fuzz: $1 for $seconds s (all output: $log)"
   # The time limit finds hangs: an input of 4 KiB takes milliseconds. The targets compare every
   # allocation with the size of the input; the memory limits find allocations without operator new.
@@ -38,7 +38,7 @@ fuzz() {
     grep -E '^finding:|ERROR:|SUMMARY:|runtime error:|terminate called|what\(\)|written to' "$log" \
       >&2 || tail -n 20 "$log" >&2
     echo "fuzz: to minimize it: build-fuzz/tests/fuzz/$1 -minimize_crash=1 -runs=100000 FILE" >&2
-    echo "fuzz: to add it: tar -rf tests/fuzz/corpus/$2.tar -C FOLDER NAME" >&2
+    echo "fuzz: to add it: cd tests/fuzz/corpus && gunzip $2.tar.gz && tar -rf $2.tar -C FOLDER NAME && gzip -9n $2.tar" >&2
     return 1
   fi
   grep -E '^stat::(number_of_executed_units|slowest_unit_time_sec)' "$log"

@@ -385,7 +385,7 @@ def compare(farcull, checker, folder, count):
         size = max(max(axis) - min(axis) for axis in zip(*points))
         comparison.tiles(name, place, objects, index, 0)
         comparison.scene(f'{name} with a clearance', place, objects, index, spoil=name == SPOILED[0], clearance=size * 10 ** -(3 + index % 4))
-    comparison.fuzzed('tests/fuzz/corpus/check.tar', f'{folder}/fuzz')
+    comparison.fuzzed('tests/fuzz/corpus/check.tar.gz', f'{folder}/fuzz')
     place = f'{folder}/random'
     first = int(os.environ.get('FARCULL_SEED', '0')) * 1000000
     size = 40 if count > 100 else 10
