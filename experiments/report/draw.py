@@ -270,20 +270,25 @@ class Drawer:
         points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
                   for *at, text in zip(s.x, s.y, s.labels or [""] * len(s.x)) if len(finite(at)) == 2]
         taken = [(x - 3, y - 3, x + 3, y + 3) for *_, x, y in points]
-        for s in panel.series:  # and the bars
+        for s in panel.series:  # and the bars, and the lines, which are cut into squares
             for low, high, y in zip(s.x_low, s.x_high, s.y):
                 (left, at), (right, _) = (ax.transData.transform((x, y)) * scale for x in (low, high))
                 taken.append((left, at - 2, right, at + 2))
+            ends = [ax.transData.transform(at) * scale for at in zip(s.x, s.y) if len(finite(at)) == 2]
+            for begin, end in zip(ends, ends[1:]) if s.style != "points" else ():
+                taken += [(x - 2, y - 2, x + 2, y + 2) for x, y in np.linspace(begin, end, 2 + int(np.hypot(*(end - begin)) / 4))]
 
         def covered(box):
             def both(a, b):
                 return max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1]))
-            return sum(both(box, other) for other in taken) + (box[2] - box[0]) * (box[3] - box[1]) - both(box, inside)
+            outside = (box[2] - box[0]) * (box[3] - box[1]) - both(box, inside)
+            return sum(both(box, other) for other in taken) + 10 * outside
 
         for name, text, at, x, y in sorted(points, key=lambda point: -len(point[1])):
             wide = text_width(text)
             places = [(x + dx, y + dy) for far in (5, 12, 20, 30, 42) for dx, dy in (
-                (-wide / 2, far), (-wide / 2, -far - 6), (far, -3), (-far - wide, -3), (far, far), (-far - wide, far))]
+                (-wide / 2, far), (-wide / 2, -far - 6), (far, -3), (-far - wide, -3), (far, far), (-far - wide, far),
+                (far, -far - 6), (-far - wide, -far - 6))]
             low, base = min(places, key=lambda at: covered((at[0], at[1] - 2, at[0] + wide, at[1] + 7)))
             taken.append((low, base - 2, low + wide, base + 7))
             if text:

@@ -181,6 +181,27 @@ def test_what_is_broken_comes_first():
 
 
 # Labels stand in place of a key: beside their points, apart from each other, and inside the figure.
+def crossed(canvas, x, y):
+    """The texts in the plot that the line through these points crosses, and those that leave the frame."""
+    ax, out = canvas.axes[0], []
+    path = ax.transData.transform(list(zip(x, y)))
+    for text in ax.texts:
+        box = text.get_window_extent(canvas.canvas.get_renderer())
+        along = [end for begin, end in zip(path, path[1:]) for end in begin + (end - begin) * np.linspace(0, 1, 500)[:, None]]
+        inside = ax.bbox.x0 <= box.x0 and box.x1 <= ax.bbox.x1 and ax.bbox.y0 <= box.y0 and box.y1 <= ax.bbox.y1
+        out += [text.get_text()] * (not inside or any(box.contains(*at) for at in along))
+    return out
+
+
+def test_labels_beside_lines():
+    x, y = [100, 260, 760, 2200, 6500], [480, 250, 140, 67, 31]
+    line = Series("cullide", x, y, labels=["cullide 128 px", "256 px", "512 px", "1024 px", "2048 px"])
+    figure = Figure("f", "F", "c", [Panel("p", log("ms"), log("missed", zero=True), [line, Series("boxes", [1], [0], labels=["boxes"])])])
+    assert crossed(draw.Drawer(figure).canvas, x, y) == []
+    line.style = "points"  # the twin: places are chosen as if there were no line
+    assert crossed(draw.Drawer(figure).canvas, x, y)
+
+
 def test_labels_at_points():
     near = Series("far", [1, 1.1, 1.2], [0, 0, 0], labels=["far 128 px", "256 px", "512 px"])
     figure = Figure("f", "F", "c", [Panel("p", log("ms"), log("missed", zero=True), [near, Series("exact", [30], [9], labels=["exact"])])])
