@@ -11,9 +11,11 @@
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "experiments/command/command.h"
+#include "experiments/measure/frames.h"
 #include "experiments/method/clash.h"
 #include "experiments/method/run.h"
 #include "experiments/picture/picture.h"
+#include "experiments/record/clash_frames.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
@@ -34,6 +36,7 @@ constexpr const char* kExamples =
     "  farcull clash house/ --tolerance '1e-9*size'    # rounded coordinates clash no more\n"
     "  farcull clash house/ --only 'pipe*:wall*' --compare old.csv --csv new.csv\n"
     "  farcull clash robot.json --ignore 'link*:base,hand:cup' --fail-on clash,touch\n"
+    "  farcull clash 'arm_%04d.obj' wall.obj --frames 1:100 --csv clashes.csv\n"
     "  farcull clash a.obj b.obj --depth --json - | jq '.pairs[0].depth'\n\n"
     "Each pair of parts has a verdict, the most serious first:\n"
     "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
@@ -51,7 +54,8 @@ constexpr const char* kExamples =
     "closed parts no longer overlap; the true one lies between. curve: length of the curve in\n"
     "which the surfaces cross. docs/clash.md has the columns and the proofs.\n"
     "A comma, colon or * that is part of a name is written with \\ before it, as in 'a\\,b:c'.\n\n"
-    "Exit status 0: none of the words of --fail-on. 1: one of them; also if a pair of parts was\n"
+    "Exit status 0: none of the words of --fail-on, in no frame. 1: one of them; also if a pair "
+    "was\n"
     "not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // of a file of --compare
@@ -86,10 +90,18 @@ class ClashCommand {
  private:
   SceneArguments parts() const;
   std::vector<ClashVerdict> failing() const;
+  bool only_new() const { return std::ranges::count(split_list(fail_on_.value_or("")), "new") > 0; }
+  // Takes what is ignored out of the scene and into the options, with --ignore and --only. lacking:
+  // passed_over after the first frame.
+  void prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const;
+  bool fails(const ClashRecord& record, const ClashTable& table) const;
+  int run_frames(const SceneArguments& files, FrameRange range, const Outputs& outputs,
+                 const WeldTolerance& tolerance, ClashOptions options,
+                 const ClashTable& table) const;
 
   SceneArguments scene_;
   bool depth_ = false;
-  Text clearance_, tolerance_, ignore_, ignore_file_, only_, unit_, fail_on_, compare_;
+  Text clearance_, tolerance_, ignore_, ignore_file_, only_, unit_, fail_on_, compare_, frames_;
   Outputs outputs_;
 };
 
@@ -116,7 +128,11 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
                "only these pairs of parts are examined, as in\npipe*:wall*"},
               {"--fail-on", &fail_on_, "LIST",
                "verdicts for which the exit status is 1, or none;\n"
-               "with touch, pairs that touch are listed as well;\ndefault clash,contained,unknown"},
+               "with touch, pairs that touch are listed as well; with\nnew, only rows that "
+               "--compare calls new count; default\nclash,contained,unknown"},
+              {"--frames", &frames_, "N|A:B",
+               "in each of these frames, as of farcull run --frames;\n"
+               "the table has the worst verdict of each pair"},
               {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
               {"--csv", &outputs_.csv, "FILE",
                "write the pairs as CSV to this file; - for standard\noutput, without the table"},
@@ -163,18 +179,81 @@ SceneArguments ClashCommand::parts() const {
 }
 
 std::vector<ClashVerdict> ClashCommand::failing() const {
-  if (!fail_on_) return {ClashVerdict::clash, ClashVerdict::contained, ClashVerdict::unknown};
+  const std::vector<ClashVerdict> usual = {ClashVerdict::clash, ClashVerdict::contained,
+                                           ClashVerdict::unknown};
   std::vector<ClashVerdict> out;
-  if (*fail_on_ == "none") return out;
-  for (const std::string& word : split_list(*fail_on_)) {
+  if (fail_on_ == "none") return out;
+  if (only_new() && !compare_)
+    throw Error("--fail-on", "new needs an earlier table", "name it with --compare OLD.csv");
+  for (const std::string& word : split_list(fail_on_.value_or("new"))) {
+    if (word == "new") continue;
     const auto at =
         std::ranges::find_if(kClashVerdicts, [&](ClashVerdict v) { return to_string(v) == word; });
     if (at == kClashVerdicts.end() || *at == ClashVerdict::clear)
       throw Error("--fail-on", "'" + word + "' is no verdict",
-                  "give none, or some of clash, contained, unknown, touch, near");
+                  "give none, or some of clash, contained, unknown, touch, near, new");
     out.push_back(*at);
   }
-  return out;
+  return out.empty() ? usual : out;
+}
+
+void ClashCommand::prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const {
+  const bool first = lacking == UnknownName::refused;
+  if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
+    scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
+  for (Object& object : scene.objects) object.self = false;
+  options.ignored = in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_), lacking),
+                             scene.ignored);
+  if (only_) options.only = ignored_objects(scene, parse_ignored(*only_, "--only"), lacking);
+  if (first && options.only && std::ranges::includes(options.ignored, *options.only))
+    throw Error("--only", "all of these pairs are ignored", "leave out --only or --ignore");
+  if (first) require_asked(scene, options.ignored, "SCENE", "");
+  scene.ignored.clear();
+}
+
+bool ClashCommand::fails(const ClashRecord& record, const ClashTable& table) const {
+  if (record.examined < record.asked && fail_on_ != "none") return true;
+  for (std::size_t k = 0; k < record.rows.size(); ++k) {
+    const ClashRow& row = record.rows[k];
+    if (!row.ignored && std::ranges::count(table.failing, row.verdict) > 0 &&
+        !(only_new() && table.compared->same[k]))
+      return true;
+  }
+  return false;
+}
+
+int ClashCommand::run_frames(const SceneArguments& files, FrameRange range, const Outputs& outputs,
+                             const WeldTolerance& tolerance, ClashOptions options,
+                             const ClashTable& table) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback("reading the scene");
+  FrameSource source(files, range, false);
+  if (const std::optional<Error> missing = source.missing()) throw *missing;
+  ClashFrames frames;
+  bool broken = false;
+  std::optional<FrameRecord> json;
+  std::optional<GrowingOutput> csv;
+  if (outputs.json) json.emplace(*outputs.json);
+  if (outputs.csv) csv.emplace(*outputs.csv);
+  for_each_frame(range, "what they gave is written", progress, "",
+                 [&](long frame, const Progress& named) {
+                   Scene scene = source.at(frame);
+                   const bool first = frame == range.first;
+                   if (first) options.tolerance = tolerance.length(bounds(scene));
+                   prepare(scene, options, first ? UnknownName::refused : UnknownName::passed_over);
+                   const ClashRecord record = clashes(scene, options, named);
+                   terminal.clear();
+                   say_notes();
+                   broken = fails(record, table) || broken;
+                   const ClashFrames::Report report = frames.add(scene, record, table, frame);
+                   if (json) json->add(report.head, report.frame, report.summary);
+                   if (csv) csv->add(report.csv, "");
+                   if (!outputs.to_stdout()) print(report.text);
+                 });
+  if (json) json->finish();
+  if (csv) csv->finish();
+  if (!outputs.to_stdout()) print(frames.text(table));
+  return broken ? kExitBroken : kExitDone;
 }
 
 int ClashCommand::run() const {
@@ -183,28 +262,27 @@ int ClashCommand::run() const {
   if (clearance_) options.clearance = parse_clearance(*clearance_);
   const std::vector<ClashVerdict> failing = this->failing();
   check_scene(scene_.names);
+  std::optional<FrameRange> range;
+  if (frames_) {
+    range = parse_frames(*frames_);
+    refuse_given({{"--html", outputs_.page.has_value()}, {"--compare", compare_.has_value()}},
+                 "is of one frame", "leave it or --frames out");
+  }
   const SceneArguments files = parts();
-  std::vector<NamedFile> inputs = scene_files(files.names);
+  std::vector<NamedFile> inputs = scene_files(files.names, range);
   if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});
   if (compare_) inputs.push_back({"--compare", *compare_});
   const std::string old = compare_ ? read_file(*compare_, kMostBytes) : "";
   const WeldTolerance tolerance = parse_weld(tolerance_.value_or("0"), "--tolerance");
   const Outputs outputs = checked(outputs_, inputs);
+  ClashTable table{.failing = failing, .unit = unit_.value_or("")};
+  if (range) return run_frames(files, *range, outputs, tolerance, options, table);
   TerminalProgress terminal;
   const Progress progress = terminal.callback("reading the scene");
   const Stopwatch reading;
   Scene scene = read_parts(files);
-  if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
-    scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
   options.tolerance = tolerance.length(bounds(scene));
-  for (Object& object : scene.objects) object.self = false;
-  options.ignored =
-      in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_)), scene.ignored);
-  if (only_) options.only = ignored_objects(scene, parse_ignored(*only_, "--only"));
-  if (options.only && std::ranges::includes(options.ignored, *options.only))
-    throw Error("--only", "all of these pairs are ignored", "leave out --only or --ignore");
-  require_asked(scene, options.ignored, "SCENE", "");
-  scene.ignored.clear();
+  prepare(scene, options, UnknownName::refused);
   if (outputs.page) require_clash_page(scene);
   const double read_ms = reading.ms();
   ClashRecord record = clashes(scene, options, progress);
@@ -215,16 +293,12 @@ int ClashCommand::run() const {
                                              .unit = Unit::triangles});
   record.ms += read_ms;
   terminal.clear();
-  ClashTable table{.failing = failing, .unit = unit_.value_or("")};
   if (compare_) table.compared = compare_clashes(scene, record, old, *compare_);
   if (outputs.csv) write_output(*outputs.csv, clash_csv(scene, record, table));
   if (outputs.json) write_json(clash_json(scene, record, table), *outputs.json);
   if (outputs.page) write_output(*outputs.page, clash_page(scene, record, table.unit));
   if (!outputs.to_stdout()) print(clash_text(scene, record, table));
-  const bool fails =
-      std::ranges::any_of(failing, [&](ClashVerdict v) { return record.count(v) > 0; }) ||
-      (record.examined < record.asked && fail_on_ != "none");
-  return fails ? kExitBroken : kExitDone;
+  return fails(record, table) ? kExitBroken : kExitDone;
 }
 
 }  // namespace

@@ -254,8 +254,8 @@ std::vector<Vec3> starts_of(const ClashRow& row) {
 }
 
 /// Bounds the depth, if asked for. An overlap becomes a touch if the upper bound of its depth is at
-/// most the tolerance. pairs: the triangles that meet; none for a containment. Precondition: both
-/// objects are closed.
+/// most the tolerance; else sets ClashRow::shallow. pairs: the triangles that meet; none for a
+/// containment. Precondition: both objects are closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
@@ -267,7 +267,27 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
     const std::vector<Vec3> ways = ways_apart(scene, pairs);
     const Penetration found =
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
-    if (found.hi > tolerance) return;
+    if (found.hi > tolerance) {
+      // A point of one surface this far inside the other object stays inside after every
+      // translation by the tolerance. Its distance is rounded, so this proves nothing, but is
+      // hardly wrong.
+      const auto is_deep = [&](const Vec3& p) {
+        return std::ranges::any_of(std::array{&a, &b}, [&](const ClosedObject* solid) {
+          return solid->has(p) && (solid->nearest(p) - p).norm() > tolerance;
+        });
+      };
+      const auto has_deep = [&](std::uint32_t triangle) {
+        const auto [p, q, r] = scene.corners(triangle);
+        return std::ranges::any_of(std::array<Vec3, 4>{p, q, r, (p + q + r) / 3}, is_deep);
+      };
+      constexpr std::size_t kMost = 1000;  // pairs that are looked at
+      const auto some = pairs.first(std::min(pairs.size(), kMost));
+      row.shallow = !is_deep(row.witness[0]) && std::ranges::none_of(some, [&](const auto& pair) {
+        return has_deep(pair.a) || has_deep(pair.b);
+      });
+      if (row.shallow && !row.depth && std::isfinite(found.hi)) row.depth = found;
+      return;
+    }
     row.depth = {.lo = row.depth ? row.depth->lo : found.lo,
                  .hi = found.hi,
                  .translation = found.translation};

@@ -51,8 +51,10 @@ struct ClashRow {
   ClashVerdict verdict = ClashVerdict::clear;
   ClashVerdict exact = ClashVerdict::clear;  // the verdict with a tolerance of 0
   bool ignored = false;
-  bool proved = true;       // false: a touch was not proved to be one, so it counts as a clash
-  std::uint64_t pairs = 0;  // of triangles that meet
+  bool proved = true;    // false: a touch was not proved to be one, so it counts as a clash
+  bool shallow = false;  // true: the depth is not proved to be within the tolerance, and no point
+                         // was found that is deeper, as of a part that is tight in a slot
+  std::uint64_t pairs = 0;                                     // of triangles that meet
   std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // how many of these, by kind
   std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
   std::optional<SquaredDistance> squared = {};  // of the surfaces, if they do not meet and are at
@@ -65,7 +67,7 @@ struct ClashRow {
   double curve = 0;  // length of the curve in which the surfaces cross
   std::vector<std::array<Vec3, 2>> segments = {};  // of that curve, each once; ends rounded
   std::optional<Penetration> depth = {};   // of a clash or containment of two closed objects; set
-                                           // if asked for or if within the tolerance
+                                           // if asked for, within the tolerance or shallow
   std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth;
                                            // set if a depth is asked for or a tolerance is given
   bool within_tolerance() const { return verdict != exact; }

@@ -12,6 +12,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/record/clash_frames.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
@@ -99,15 +100,21 @@ std::string place_text(const ClashRow& row) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
+bool lists_touches(const ClashTable& table) {
+  return std::ranges::count(table.failing, ClashVerdict::touch) > 0;
+}
+bool is_hidden(const auto& row, const ClashTable& table) {
+  return row.verdict == ClashVerdict::touch && !row.ignored && !lists_touches(table);
+}
+
 std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
   Table out("lllrrrll", 3);  // verdict and both names
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
-  const bool touches = std::ranges::count(table.failing, ClashVerdict::touch) > 0;
   for (std::size_t k = 0; k < record.rows.size(); ++k) {
     const ClashRow& row = record.rows[k];
-    if (row.verdict == ClashVerdict::touch && !touches && !row.ignored) continue;
+    if (is_hidden(row, table)) continue;
     if (++all > kRowsShown) continue;
     out.add({(table.compared ? compared_word(table, k) + std::string(" ") : "") +
                  to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
@@ -119,7 +126,7 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
   }
   for (std::size_t k = 0; table.compared && k < table.compared->gone.size(); ++k) {
     const auto& [a, b, verdict] = table.compared->gone[k];
-    if (verdict == to_string(ClashVerdict::touch) && !touches) continue;
+    if (verdict == to_string(ClashVerdict::touch) && !lists_touches(table)) continue;
     if (++all <= kRowsShown) out.add({"gone " + verdict, a, b, "", "", "", "", ""});
   }
   if (all == 0) return "";
@@ -127,6 +134,11 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
   const std::string hint =
       deep && !record.options.depth ? "depths are not asked for (--depth)\n" : "";
   return "\n" + out.text() + more_line(all, kRowsShown) + hint;
+}
+
+std::string heading(const Scene& scene) {
+  return fmt::format("{}: {}, {}{}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
+                     counted(scene.triangles.size(), "triangle", "triangles"), folded_text(scene));
 }
 
 std::string counts_text(const ClashRecord& record) {
@@ -199,7 +211,7 @@ Json row_json(const Scene& scene, const ClashRow& row) {
               {"verdict", to_string(row.verdict)},
               {"exact", to_string(row.exact)},
               {"ignored", row.ignored},
-              {"proved", row.proved},
+              {"proved", row.proved && !row.shallow},
               {"triangle_pairs", row.pairs},
               {"kinds", kinds},
               {"inner", json_of(row.inner)},
@@ -231,11 +243,12 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
            (row.pairs > 0 ? ", " + contact_words(row) : "");
   }
   if (row.pairs == 0) return "";
+  const char* shallow = row.shallow ? "; not proved to be within the tolerance" : "";
   if (row.verdict == ClashVerdict::clash && row.kinds[std::size_t(ContactKind::crossing)] == 0) {
     return (row.proved ? "the insides overlap, and " : "not proved to touch only: ") +
-           contact_words(row);
+           contact_words(row) + shallow;
   }
-  return contact_words(row);
+  return contact_words(row) + shallow;
 }
 
 std::string no_depth_words(const Scene& scene, const ClashRow& row) {
@@ -289,9 +302,7 @@ bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failin
 }
 
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
-  std::string out =
-      fmt::format("{}: {}, {}{}\n", scene.name, counted(scene.objects.size(), "part", "parts"),
-                  counted(scene.triangles.size(), "triangle", "triangles"), folded_text(scene));
+  std::string out = heading(scene);
   out += fmt::format("examined   {} of {} of parts{}\n", grouped(record.examined),
                      counted(record.asked, "pair", "pairs"),
                      is_clean(record, table.failing) ? ": clean" : "");
@@ -319,11 +330,11 @@ std::string clash_csv(const Scene& scene, const ClashRecord& record, const Clash
   out += table.compared ? ",compared\n" : "\n";
   for (std::size_t k = 0; k < record.rows.size(); ++k) {
     const ClashRow& row = record.rows[k];
-    out +=
-        fmt::format("{},{},{},{},{},{},{},{},{},", csv_cell(name_of(scene, row.objects.a)),
-                    csv_cell(name_of(scene, row.objects.b)), id_of(scene, row),
-                    to_string(row.verdict), to_string(row.exact), int{row.ignored}, int{row.proved},
-                    row.pairs, row.inner ? csv_cell(name_of(scene, *row.inner)) : "");
+    out += fmt::format("{},{},{},{},{},{},{},{},{},", csv_cell(name_of(scene, row.objects.a)),
+                       csv_cell(name_of(scene, row.objects.b)), id_of(scene, row),
+                       to_string(row.verdict), to_string(row.exact), int{row.ignored},
+                       int{row.proved && !row.shallow}, row.pairs,
+                       row.inner ? csv_cell(name_of(scene, *row.inner)) : "");
     out += row.squared ? fmt::format("{},{},", row.distance, row.squared->text()) : ",,";
     out += row.depth ? fmt::format("{},{},", row.depth->lo, row.depth->hi) : ",,";
     out += fmt::format("{},{}", csv_cell(no_depth_words(scene, row)), row.curve);
@@ -382,6 +393,77 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const ClashTable&
           {"stages", stages_json(record.trace)},
           {"time_ms", {{"total", record.ms}}},
           {"commit", FARCULL_COMMIT}};
+}
+
+ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& record,
+                                     const ClashTable& table, long frame) {
+  const Json all = clash_json(scene, record, table);
+  Report out;
+  out.frame["frame"] = frame;
+  std::istringstream lines(clash_csv(scene, record, table));
+  std::string line;
+  std::getline(lines, line);
+  if (frames_ == 0) {
+    for (const char* key : {"scene", "objects", "unit", "clearance", "tolerance", "commit"})
+      head_[key] = all[key];
+    out.csv = "frame," + line + "\n";
+    out.text = heading(scene) + fmt::format("\n{:>7}", "frame");
+    for (const ClashVerdict v : kClashVerdicts) out.text += fmt::format("  {:>9}", to_string(v));
+    out.text += "\n";
+  }
+  while (std::getline(lines, line)) out.csv += fmt::format("{},{}\n", frame, line);
+  for (const auto& [key, value] : all.items()) {
+    if (!head_.contains(key) || head_[key] != value) out.frame[key] = value;
+  }
+  out.text += fmt::format("{:>7}", frame);
+  for (const std::uint64_t n : record.verdicts) out.text += fmt::format("  {:>9}", grouped(n));
+  out.text += "\n";
+  for (const ClashRow& row : record.rows) {
+    const std::string &a = name_of(scene, row.objects.a), &b = name_of(scene, row.objects.b);
+    WorstClash& worst = pairs_[std::minmax(a, b)];
+    if (worst.id.empty()) worst = {.name_a = a, .name_b = b, .id = id_of(a, b)};
+    if (row.verdict < worst.verdict)
+      worst.verdict = row.verdict, worst.first = frame, worst.frames = 0;
+    if (row.verdict == worst.verdict) worst.last = frame, ++worst.frames;
+    worst.ignored = row.ignored;
+    if (row.depth && !(worst.depth >= row.depth->lo))
+      worst.depth = row.depth->lo, worst.deepest = frame;
+    if ((row.pairs > 0 || row.squared) && !(worst.distance && *worst.distance <= row.distance))
+      worst.distance = row.distance, worst.nearest = frame;
+  }
+  ++frames_;
+  clean_ = clean_ && all["clean"];
+  out.head = head_;
+  out.summary = {{"frames", frames_}, {"clean", clean_}, {"pairs", json_of(worst())}};
+  return out;
+}
+
+std::vector<WorstClash> ClashFrames::worst() const {
+  std::vector<WorstClash> out;
+  for (const auto& [names, pair] : pairs_) out.push_back(pair);
+  std::ranges::stable_sort(out, {}, [](const WorstClash& pair) {
+    return std::tuple(pair.ignored, pair.verdict, -pair.depth.value_or(0),
+                      pair.distance.value_or(0));
+  });
+  return out;
+}
+
+std::string ClashFrames::text(const ClashTable& table) const {
+  const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
+  const auto at = [](const std::optional<double>& value, const std::optional<long>& frame) {
+    return value ? fmt::format("{:.6g} in {}", *value, *frame) : "";
+  };
+  Table out("lllrrrrr", 3);
+  out.add({"worst", "a", "b", "frames", "first", "last", "depth" + unit, "distance" + unit});
+  std::size_t all = 0;
+  for (const WorstClash& pair : worst()) {
+    if (is_hidden(pair, table) || ++all > kRowsShown) continue;
+    out.add({to_string(pair.verdict) + (pair.ignored ? " (ignored)" : ""), pair.name_a, pair.name_b,
+             grouped(pair.frames), std::to_string(pair.first), std::to_string(pair.last),
+             at(pair.depth, pair.deepest), at(pair.distance, pair.nearest)});
+  }
+  return (all == 0 ? "" : "\n" + out.text() + more_line(all, kRowsShown)) +
+         fmt::format("\n{}{}\n", counted(frames_, "frame", "frames"), clean_ ? ": clean" : "");
 }
 
 }  // namespace farcull

@@ -9,6 +9,14 @@ def box(name, lo, hi):
     write(name, ''.join('v {} {} {}\n'.format(*corners[3 * k:3 * k + 3]) for k in range(8)) + ''.join(f'f {q}\n' for q in quads))
 
 
+def slot(name, left, right):
+    """Two walls on a floor, with a slot from x = left to right and z = 1 to 3."""
+    profile = [(-1, 0), (4, 0), (4, 3), (right, 3), (right, 1), (left, 1), (left, 3), (-1, 3)]
+    faces = [range(1, 9), range(16, 8, -1), *((k % 8 + 1, k, k + 8, k % 8 + 9) for k in range(1, 9))]
+    write(name, ''.join(f'v {x} {y} {z}\n' for y in (0, 2) for x, z in profile)
+          + ''.join(f'f {" ".join(map(str, face))}\n' for face in faces))
+
+
 rows('$ mkdir parts nothing')
 box('parts/a.obj', (0, 0, 0), (2, 2, 2))
 box('parts/b.obj', (1, 0.5, 0.5), (3, 1.5, 1.5))
@@ -35,6 +43,9 @@ old.csv << name_a,verdict; a,clash
 bad compared with another table | old.csv:1: has no column name_b | clash parts --compare old.csv
 old.csv << name_a,name_b,verdict; a,clash
 bad compared with a broken table | old.csv:2: 2 cells under 3 names | clash parts --compare old.csv
+bad new without an earlier table | --fail-on: new needs an earlier table; name it with --compare | clash parts --fail-on new
+bad {one} of frames | {one}: is of one frame; leave it or --frames out | clash two-spheres --frames 2 {one} old.csv
+bad frames of what stands still | --frames: nothing in the scene moves | clash parts --frames 2
 bad compared with nothing | none.csv: | clash parts --compare none.csv
 bad compared with what is written | --csv: .* | clash parts --compare old.csv --csv old.csv
 bad only parts without triangles | empty.off: the mesh has no triangles | clash empty.off
@@ -50,7 +61,7 @@ $ mv cad/left/bolt.step cad/right/bolt.step
 $ mkdir packed && cp parts/a.obj parts/b.obj packed && gzip -c cad/right/bolt.step > packed/bolt.step.gz
 bad a compressed part in a format that is not read | packed.bolt.step.gz: is a .step file | clash packed
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
-""", clearance=['-1', ''], word=['clear', 'clashes'], only=['a:none', 'a', ''])
+""", clearance=['-1', ''], word=['clear', 'clashes'], one=['--html', '--compare'], only=['a:none', 'a', ''])
 
 # ---- good cases
 
@@ -92,6 +103,42 @@ rows(r"""
 0 JSON of a tolerance | clash walls --tolerance 1e-9 --json - | "within_tolerance": 2
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]; assert d["exact"] == "clash" and 0 < d["depth"]["most"] <= 1e-9 and r["tolerance"] == 1e-9, d'
 0 a page of a tolerance | clash walls --tolerance 1e-9 --html walls.html | @walls.html "exact":"clash" | @walls.html within the tolerance
+""")
+
+# ---- a part that is flush in a slot, between whose walls no room is left to move it out. Twins fit, or are deeper.
+
+slot('slot.obj', 1, 2)
+box('flush.obj', (1 - 1e-9, 0, 1), (2 - 1e-9, 2, 2.5))
+box('rounded.obj', (1 - 1.2e-16, 0, 1), (2, 2, 2.5))
+box('tight.obj', (1 - 1e-9, 0, 1), (2 + 1e-9, 2, 2.5))
+box('loose.obj', (1 - 1e-9, 0, 1), (2 - 2e-9, 2, 2.5))
+box('deep.obj', (1 - 1e-9, 0, 0.5), (2 - 1e-9, 2, 2.5))
+rows(r"""
+1 {flush} in a slot | clash slot.obj {flush}.obj --tolerance 1e-6 --csv slot.csv | ~ [0-9]to2[0-9].*;notprovedtobewithinthetolerance
+  | @slot.csv ^slot,{flush},[0-9a-f]{8},clash,clash,0,0,[0-9]+,,,,[0-9.e-]+,2.0
+1 {flush} in a slot, exactly | clash slot.obj {flush}.obj | ! not proved to be
+0 a loose part in a slot | clash slot.obj loose.obj --tolerance 1e-6 | touch .1 within tolerance.
+1 a deep part in a slot | clash slot.obj deep.obj --tolerance 1e-6 --csv slot.csv | ! not proved to be | @slot.csv ^slot,deep,[0-9a-f]{8},clash,clash,0,1,
+0 a tolerance beyond the slot | clash slot.obj flush.obj --tolerance 3 | touch .1 within tolerance.
+""", flush=['flush', 'rounded', 'tight'])
+
+# ---- frames: a part comes nearer, meets the wall in frame 3, and leaves it in frame 5
+
+box('wall.obj', (0, 0, 0), (2.5, 1, 1))
+for frame, at in enumerate((4, 3, 2, 2.25, 2.5), 1):
+    box(f'moves_{frame}.obj', (at, 0.25, 0.25), (at + 1, 0.75, 0.75))
+rows(r"""
+1 frames | clash moves_%d.obj wall.obj --frames 1:5 --clearance 1.5 --depth --unit mm --csv frames.csv --json frames.json
+  | ^ +3 +1 +0 +0 +0 +0 +0$ | ^ +5 +0 +0 +0 +1 +0 +0$ | ^clash +moves_%d +wall +2 +3 +4 +0.5 in 3 +0 in 3$ | ^5 frames$
+  | depth .mm. | @frames.csv #0 ^frame,name_a,name_b,id,verdict, | @frames.csv #3 ^3,moves_%d,wall,.*,clash, | @frames.csv #5 ^5,.*,touch,
+  | $ python3 -c 'import json; r = json.load(open("frames.json")); s = r["summary"]; p = s["pairs"][0]; assert r["objects"] == ["moves_%d", "wall"] and [f["pairs"][0]["verdict"] for f in r["frames"]] == ["near", "near", "clash", "clash", "touch"] and "unit" not in r["frames"][0] and (p["verdict"], p["frames"], p["first"], p["last"], p["deepest"], p["distance"], p["nearest"]) == ("clash", 2, 3, 4, 3, 0, 3) and 0.499 < p["depth"] <= 0.5 and s["frames"] == 5 and not s["clean"], p'
+0 frames without a clash | clash moves_%d.obj wall.obj --frames 1:2 --clearance 1.5 | ^near +moves_%d +wall +2 +1 +2 +0.5 in 2$ | ^2 frames: clean$
+1 a word of --fail-on in one frame | clash moves_%d.obj wall.obj --frames 1:2 --clearance 0.6 --fail-on near | ^near +moves_%d +wall +1 +2 +2 +0.5 in 2$
+0 ignored in frames | clash moves_%d.obj wall.obj parts/c.obj --frames 1:5 --ignore 'moves*:wall' | ^clash .ignored. +moves_%d +wall +2 +3 +4
+0 a tolerance in frames | clash moves_%d.obj wall.obj --frames 3:5 --tolerance 0.6 --json - | "within_tolerance": 1 | "tolerance": 0.6,
+1 JSON of frames | clash moves_%d.obj wall.obj --frames 3:4 --json - | #0 ^{$ | #-1 ^}$ | ! ^worst
+bad frames from another number | moves_0.obj: the file does not exist; .*: --frames 1:3 instead of 0:2$ | clash moves_%d.obj wall.obj --frames 3
+1 frames of a built-in scene | clash two-spheres --frames 2 | ^clash +first +second +2 +0 +1
 
 # ---- chosen pairs, an earlier table, hints, names
 
@@ -101,9 +148,13 @@ $ cp -r parts changed && rm changed/d.obj
 1 an earlier table | clash parts --csv before.csv
 1 nothing changed | clash parts --compare before.csv --csv same.csv | ^compared   0 new, 2 same, 0 gone$ | ^same clash +a +b[ ] | @same.csv ^a,b,.*,same$
 $ mv changed/b.obj changed/c2.obj
+0 nothing new | clash parts --compare before.csv --fail-on new | ^same clash
+0 nothing new among touches | clash parts --compare before.csv --fail-on new,touch | ^same touch
 1 new and gone | clash changed --compare before.csv --csv after.csv | ^compared   1 new, 0 same, 2 gone$ | ^new clash +a +c2[ ] | ^gone clash +a +b | @after.csv ^a,c2,.*,new$
   | @after.csv ^a,b,[0-9a-f]{8},clash,,.*,gone$ | @after.csv ^c,d,.*,touch,,.*,gone$
   | $ python3 -c 'import csv; assert {len(r) for r in csv.reader(open("after.csv"))} == {37}'
+1 a new clash | clash changed --compare before.csv --fail-on new | ^new clash
+0 a new clash, asked about others | clash changed --compare before.csv --fail-on new,touch | ^new clash
 1 what was gone is no row | clash changed --compare after.csv --json - | "compared": "same" | "gone": ..
 1 in the other order | clash parts/b.obj parts/a.obj --compare before.csv | ^compared   0 new, 1 same, 1 gone$
 $ cp parts/a.obj copy.obj
