@@ -261,6 +261,7 @@ int command_line(int argc, char** argv) {
   // llvmpipe's own threads may damage our memory (docs/drivers.md). No thread runs yet, so the
   // environment may be changed.
   ::setenv("LP_NUM_THREADS", "0", 0);
+  const Interruptible interruptible;
   try {
     // For this thread; core/base/parallel.h sets the threads that it starts.
     const FloatingPointGuard guard;

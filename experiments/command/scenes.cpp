@@ -50,12 +50,15 @@ std::string sizes_text() {
   return "Some take numbers, as in crowd:3000:0.2:\n" + table.text();
 }
 
+constexpr const char* kFrameZero =
+    "Frame 0 is where a motion begins, which need not be the scene without --frames.\n";
+
 std::string motions_text() {
   Table table("ll");
   for (const BuiltinScene& scene : builtin_scenes()) {
     if (!scene.motion.empty()) table.add({scene.name, scene.motion});
   }
-  return "These move, as in farcull run two-bunnies --frames 30:\n" + table.text();
+  return "These move, as in farcull run two-bunnies --frames 30:\n" + table.text() + kFrameZero;
 }
 
 std::string suffixes_text() {
@@ -86,10 +89,11 @@ CLI::App* ScenesCommand::add_to(CLI::App& app) {
         "write the scene as meshes, one an object, and\nscene.json into this folder, "
         "which is made if its\nparent is there; files of these names are replaced"},
        {"--json", &outputs_.json, "FILE", kJsonHelp}},
-      "Examples:\n"
-      "  farcull scenes\n"
-      "  farcull run crowd@ground\n"
-      "  farcull scenes crowd:3000:0.2 --write crowd");
+      std::string("Examples:\n"
+                  "  farcull scenes\n"
+                  "  farcull run crowd@ground\n"
+                  "  farcull scenes crowd:3000:0.2 --write crowd\n\n") +
+          kFrameZero);
 }
 
 int ScenesCommand::run() const {

@@ -18,6 +18,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace farcull {
 
@@ -27,7 +28,7 @@ namespace farcull {
 namespace {
 
 // Read by the signal handler, so only lock-free atomics.
-std::atomic<long> items_done = 0, items_wanted = 0;
+std::atomic<long> items_done = 0, items_wanted = 0, files_written = 0;
 static_assert(std::atomic<long>::is_always_lock_free);
 std::atomic<const char*> items = "", how_it_ends = "";
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -54,14 +55,22 @@ std::size_t append(char* text, std::size_t at, long number) {
 extern "C" void say_how_far(int signal) {
   char text[kLine + 1];
   std::size_t size = append(text, 0, on_terminal ? "\r\033[K" : "");
-  size = append(text, size, "farcull: interrupted: after ");
-  size = append(text, size, items_done.load());
-  size = append(text, size, " of ");
-  size = append(text, size, items_wanted.load());
-  size = append(text, size, " ");
-  size = append(text, size, items.load());
-  size = append(text, size, "; ");
-  size = append(text, size, how_it_ends.load());
+  size = append(text, size, "farcull: interrupted");
+  if (items_wanted > 0) {
+    size = append(text, size, ": after ");
+    size = append(text, size, items_done.load());
+    size = append(text, size, " of ");
+    size = append(text, size, items_wanted.load());
+    size = append(text, size, " ");
+    size = append(text, size, items.load());
+    size = append(text, size, "; ");
+    size = append(text, size, how_it_ends.load());
+  } else if (files_written > 0) {
+    size = append(text, size, "; files that are written: ");
+    size = append(text, size, files_written.load());
+  } else {
+    size = append(text, size, "; no file was written");
+  }
   text[size++] = '\n';
   (void)!::write(STDERR_FILENO, text, size);
   SignalGuard::end_by(signal);
@@ -80,6 +89,8 @@ void note(long wanted, const char* what, const char* end, bool terminal) {
 Interruptible::Interruptible(long wanted, const char* what, const char* end, bool terminal)
     : signals_((note(wanted, what, end, terminal), say_how_far)) {}
 
+Interruptible::Interruptible() : Interruptible(0, "", "", is_terminal(stderr)) {}
+Interruptible::~Interruptible() { items_wanted = 0; }
 void Interruptible::done(long count) { items_done = count; }
 
 namespace {
@@ -139,7 +150,7 @@ std::string beside(const std::string& path) {
 
 extern "C" void remove_half_written(int signal) {
   ::unlink(half_written);
-  SignalGuard::end_by(signal);
+  say_how_far(signal);
 }
 
 }  // namespace
@@ -156,6 +167,7 @@ class HalfWritten {
 
   int put(const std::string& place) {
     in_place_ = std::rename(half_written, place.c_str()) == 0;
+    files_written += in_place_;
     return in_place_ ? 0 : errno;
   }
 

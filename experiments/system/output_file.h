@@ -136,9 +136,13 @@ class SignalGuard {
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP print one line on standard error, "farcull:
 /// interrupted: after DONE of WANTED WHAT; END", and then end the program. Signals that the caller
-/// of the program ignores (nohup) stay ignored. One at a time in a process.
+/// of the program ignores (nohup) stay ignored. At most one in a process, inside one without
+/// counts.
 class Interruptible {
  public:
+  /// Without counts: "farcull: interrupted; no file was written", or how many were.
+  Interruptible();
+  ~Interruptible();
   /// The texts have to outlive this object. terminal: clears the line of progress first.
   Interruptible(long wanted, const char* what, const char* end, bool terminal);
 

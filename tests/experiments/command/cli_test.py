@@ -150,6 +150,23 @@ def interrupted():
     case('interrupts', met > 0, 'every run was done before its signal')
 
 
+def interrupted_says():
+    """Ctrl-C says whether a file was written, here before the run and after the first of two outputs, a pipe without reader."""
+    os.mkfifo('fifo')
+    for words, begun, said in (('run field:1000000', lambda child: int(re.search(
+            r'SigCgt:\s*(\w+)', read(f'/proc/{child.pid}/status'))[1], 16) >> signal.SIGINT - 1 & 1, 'no file was written'), (
+            'run two-spheres --pairs new.csv --json fifo', lambda child: os.path.exists('new.csv'), 'files that are written: 1')):
+        child = start(words.split())
+        while child.poll() is None and not begun(child):
+            time.sleep(0.01)
+        time.sleep(0.1)
+        child.send_signal(signal.SIGINT)
+        case(words, ended(child) == -signal.SIGINT, 'not ended by the signal, for which a shell says 130')
+        expect(words, f'@err ^farcull: interrupted; {said}$')
+    os.remove('fifo')
+    os.remove('new.csv')
+
+
 def interrupted_frames():
     """Frames say how far they came, and what they gave stays. A kill says nothing."""
     for sent in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL:
@@ -184,11 +201,14 @@ def interrupted_file():
     status = ended(child)
     if not met:
         print('note: the large file was written too fast to be interrupted')
+    if met and status:
+        expect('interrupt while writing', '@err ^farcull: interrupted; no file was written$')
     case('interrupt while writing', status == 0 or status == -signal.SIGTERM and not glob.glob('pairs.csv*'),
          f'status {status}, left: {glob.glob("pairs.csv*")}')
 
 
 interrupted()
+interrupted_says()
 interrupted_frames()
 interrupted_file()
 
@@ -201,7 +221,8 @@ rows(r"""
 0 help | help | ^  farcull help terms[ ] | $ cmp -s "$out" <("$farcull" --help)
 0 help experiment accuracy | help experiment accuracy | $ cmp -s "$out" <("$farcull" experiment accuracy --help)
 0 help {topic} | help {topic} | $ cmp -s "$out" {root}/docs/help/{topic}.txt
-0 scenes | scenes | ^two-spheres[ ]
+0 scenes | scenes | ^two-spheres[ ] | ^Frame 0 is where a motion begins,
+0 help scenes | help scenes | ^Frame 0 is where a motion begins,
 0 scenes as JSON | scenes --json - | "name": "two-spheres"
 0 a scene as meshes | scenes crowd:5:2@far --write crowd | ^farcull run crowd/scene\.json$
 0 run | run {spheres} | ^scene      two-spheres: 2 objects, 10,240 triangles$ | #0 ^colliding[ ] | ! .{81} | ! left out | [ ]\+ 0 missed$
