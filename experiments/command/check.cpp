@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -323,6 +324,22 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
+  if (frames_) to.frames = parse_frames(*frames_);
+  if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
+  // The scene may come first if a certificate is last, which its text shows.
+  const auto is_certificate = [&](const std::string& path) {
+    const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
+    std::string text(100, ' ');
+    if (std::filesystem::is_regular_file(file))
+      std::ifstream(file).read(text.data(), static_cast<std::streamsize>(text.size()));
+    return text.find("\"farcull-certificate\"") != std::string::npos;
+  };
+  if (!to.scene.names.empty() && !is_certificate(to.certificate) &&
+      is_certificate(to.scene.names.back())) {
+    to.scene.names.insert(to.scene.names.begin(), std::move(to.certificate));
+    to.certificate = std::move(to.scene.names.back());
+    to.scene.names.pop_back();
+  }
   // A scene of several names consists of meshes, so if the first name is not a mesh, it names a
   // certificate.
   const bool mesh = has_mesh_extension(to.certificate);
@@ -341,8 +358,6 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is not read from standard input", "name a file");
   check_scene(to.scene.names);
   if (clearance_) to.clearance = parse_clearance(*clearance_);
-  if (frames_) to.frames = parse_frames(*frames_);
-  if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
   if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
     throw Error("--tiles",
                 "is for certificates of tiles, without --frames, --clearance and --ignore",

@@ -19,6 +19,7 @@ $ grep -qx '  "list_sha256": "{missed}",' c.json
 0 a certificate of exact | check exact.json two-spheres --pairs pairs.csv
   | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no others$ | ^list       {sha} 
   | pairs\.csv is this list: [0-9,]+ rows$ | about the scene and not about the run | ^  which pairs the run kept | ns per pair
+0 the scene first | check two-spheres exact.json | #0 ^proved: these 298 pairs
 1 another list | check exact.json two-spheres --pairs missed.csv
   | #0 ^not proved: missed\.csv is another list: a pair is missing$
 1 a certificate of a run that misses | check c.json two-spheres | #0 ^refuted: the pair is called culled, and it meets$
